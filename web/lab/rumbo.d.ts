@@ -26,6 +26,53 @@ export class Lab {
   news(): string[];
 }
 
+export class Robot {
+  /** A session with a real robot at the port of this name; with `text` it runs the original program. */
+  constructor(port: string, baud: number, text: boolean);
+  /** These bytes arrived. */
+  arrived(bytes: Uint8Array): void;
+  /** The bytes to send since the last call. */
+  take_outgoing(): Uint8Array<ArrayBuffer>;
+  /** The port is gone, and why. */
+  lost(why: string): void;
+  /** It is open again. */
+  back(): void;
+  /** Warns the page. */
+  warn(text: string): void;
+  /** Takes an order, as JSON. */
+  order(json: string): void;
+  /** One round. */
+  advance(): void;
+  /** The messages that are new to the page, as JSON. */
+  news(): string[];
+  /** When the session began [ms since 1970]. */
+  readonly began_ms: number;
+  /** Begins to write the session so far as a log, which began at this time in UTC. */
+  save(started: string): void;
+  /** Goes on writing for a few milliseconds; the log, once it is complete. */
+  saved(): { name: string, bytes: Uint8Array<ArrayBuffer> } | undefined;
+  /** Gives its memory back. */
+  free(): void;
+}
+
+/** Writes a program to an Arduino Mega at a serial port. */
+export class Flasher {
+  /** The program in a file of this name. */
+  constructor(file: string, content: Uint8Array);
+  /** These bytes arrived. */
+  receive(bytes: Uint8Array): void;
+  /** What to do with the port now; nothing of it: to wait for bytes, or some milliseconds. */
+  poll(): { lines?: boolean, send?: Uint8Array<ArrayBuffer>, done: boolean };
+  /** What is going on, in a word or two. */
+  readonly phase: string;
+  /** Which part of all is done, 0 to 1. */
+  readonly part: number;
+  /** What an end now leaves behind. */
+  readonly aftermath: string;
+  /** Gives its memory back. */
+  free(): void;
+}
+
 /** A recording to be shown; it is read apart from the lab, which goes on when the memory does not suffice. */
 export class Recording {
   constructor(file: string, bytes: Uint8Array);

@@ -1,31 +1,48 @@
 // @ts-check
 /**
- * The lab in a worker of the page: the simulator and its session as WebAssembly, in place of a station.
+ * The session in a worker of the page, as WebAssembly, in place of a station: with the simulated robot of the lab, or with a
+ * real one at a serial port. While there is a real one the lab waits: the heartbeat shares the worker with no simulation.
  *
  * Strings from the page are orders; null says that it has read what it was sent, and may be sent more: a slow page loses
- * samples of plots, and the lab does not wait for it. 'save' asks for the recording, a file `{ name, bytes }`; such a file
- * from the page is shown as a replay, as 'replay' shows the recording, and 'resume' shows the lab again. 'share' asks for the
- * run as a link carries it, `{ shared }`. To the page go arrays of the messages of the station's WebSocket, or `{ error }`
- * when the lab has ended.
+ * samples of plots, and the session does not wait for it. 'save' asks for the recording, a file `{ name, bytes }`; such a
+ * file from the page is shown as a replay, as 'replay' shows the recording, and 'resume' shows the lab again. 'share' asks
+ * for the run as a link carries it, `{ shared }`. `{ connect }` begins a session with the robot at a port, `{ choose }`
+ * looks for it at another one, and 'leave' goes back to the lab; `{ port }` is the port's name or null, `{ refused }` why
+ * there is none. `{ flash }` writes a program to a board, `{ flashed }` says how far that is. To the page go arrays of the messages of the station's WebSocket, or `{ error }` when the session has ended.
  */
 import { readLink } from '../src/run_link.js';
-import init, { Lab, Recording } from './rumbo.js';
+import { LOCK } from '../src/serial_ports.js';
+import { flash } from './flash.js';
+import init, { Flasher, Lab, Recording, Robot } from './rumbo.js';
+import { SerialLink, pause, wordsOf } from './serial_link.js';
+
+/** What the page asks for to drive a real robot. @typedef {{kind: string, name: string, baud: number, text: boolean}} Wanted */
+
+/** A program to be written, and the port of the board. @typedef {{kind: string, name: string, file: string, content: Uint8Array}} Program */
+/** How far that is: a phase and the part that is done, or why it has ended. @typedef {{phase: string, part: number} | {error: string}} Flashed */
+/** @typedef {{session: Robot, link: SerialLink, release: () => void, leaving: boolean}} Driven */
 
 /** Time between two rounds [ms]; a round takes at most 20 ms, so that orders do not wait. */
 const EVERY_MS = 10;
 const STOP = JSON.stringify({ type: 'stop' });
+/** A robot that is left has this long to acknowledge STOP [ms]; without heartbeats it stops by itself after 500. */
+const LEAVING_MS = 300;
 
 /** @type {Lab | null} */
 let lab = null;
+/** A real robot, which is driven in place of the lab. @type {Driven | null} */
+let real = null;
 let pageIsReady = true;
 
-/** Advances the lab by the time that has passed. */
+/** Advances the session by the time that has passed. */
 function round() {
-  if (!lab) return;
+  const session = real?.session ?? lab;
+  if (!session) return;
   try {
-    lab.advance();
+    session.advance();
+    if (real) advanceRobot(real.session, real.link);
     if (!pageIsReady) return;
-    const news = lab.news();
+    const news = session.news();
     if (news.length === 0) return;
     pageIsReady = false;
     self.postMessage(news);
@@ -34,18 +51,30 @@ function round() {
   }
 }
 
-/** The recording of the run so far, as a file. @param {Lab} lab */
-function recorded(lab) {
-  return lab.log(new Date(lab.began_ms).toISOString().replace(/\.\d+/, ''));
+/** @param {Robot} robot @param {SerialLink} link */
+function advanceRobot(robot, link) {
+  link.send(robot.take_outgoing());
+  const file = robot.saved();
+  if (file) give(file);
 }
 
-/** @param {Lab} lab */
-function save(lab) {
+/** @param {{name: string, bytes: Uint8Array<ArrayBuffer>}} file */
+function give({ name, bytes }) {
+  self.postMessage({ name, bytes }, { transfer: [bytes.buffer] });
+}
+
+/** When a session began, as its recording has it. @param {Lab | Robot} session */
+const started = (session) => new Date(session.began_ms).toISOString().replace(/\.\d+/, '');
+
+/** The recording of the run so far, as a file. @param {Lab} lab */
+const recorded = (lab) => lab.log(started(lab));
+
+/** Does it, or warns the page why not. @param {Lab | Robot} session @param {() => void} work */
+function orWarn(session, work) {
   try {
-    const { name, bytes } = recorded(lab);
-    self.postMessage({ name, bytes }, { transfer: [bytes.buffer] });
+    work();
   } catch (error) {
-    lab.warn(`not recording: ${error}`);
+    session.warn(`not recording: ${error}`);
   }
 }
 
@@ -58,22 +87,127 @@ function show(lab, { name, bytes }) {
   }
 }
 
+/** Takes the lock of those who drive a robot; gives what releases it, or null: another page has it. @returns {Promise<(() => void) | null>} */
+function takeLock() {
+  return new Promise((done, failed) => {
+    navigator.locks.request(LOCK, { ifAvailable: true }, (lock) => {
+      if (!lock) return done(null);
+      return new Promise((release) => done(() => release(null)));
+    }).catch(failed);
+  });
+}
+
+/** Begins a session with a real robot; the lab waits. @param {Wanted} wanted */
+async function connect({ kind, name, baud, text }) {
+  if (real) return;
+  const release = await takeLock();
+  if (!release) {
+    self.postMessage({ refused: 'another page of this browser drives a robot: go back to its lab first' });
+    return;
+  }
+  const link = new SerialLink(kind, baud, (bytes) => real?.session.arrived(bytes), (why) => {
+    if (why === null) real?.session.back();
+    else real?.session.lost(why);
+    self.postMessage({ gone: why !== null });
+  });
+  try {
+    await link.open();
+    real = { session: new Robot(name, baud, text), link, release, leaving: false };
+    self.postMessage({ port: name });
+    round();
+  } catch (error) {
+    release();
+    await link.close();
+    self.postMessage({ refused: `port ${name} cannot be opened (${wordsOf(error)}): is it in use by another program, is the robot switched on?` });
+  }
+}
+
+/** @param {Flashed} flashed */
+const report = (flashed) => self.postMessage({ flashed });
+
+/** Writes a program to the board at a port. @param {Program} program */
+async function write({ kind, name, file, content }) {
+  const release = await takeLock();
+  if (!release) return report({ error: 'another page of this browser drives a robot: go back to its lab first' });
+  /** @type {Flasher | null} */
+  let flasher = null;
+  try {
+    const made = new Flasher(file, content);
+    flasher = made;
+    let reported = -1;
+    await flash(kind, made, () => {
+      const percent = Math.floor(made.part * 100);
+      if (percent !== reported) report({ phase: made.phase, part: made.part });
+      reported = percent;
+    });
+    report({ phase: 'done', part: 1 });
+  } catch (error) {
+    report({ error: `${name}: ${wordsOf(error)}${flasher?.aftermath ?? ''}` });
+  }
+  flasher?.free();
+  return release();
+}
+
+/** Stops the robot and goes back to the lab; the page gets the recording. @param {Driven} robot */
+async function leave(robot) {
+  const { session, link, release } = robot;
+  robot.leaving = true;
+  session.order(STOP);
+  round();
+  await pause(LEAVING_MS);
+  real = null;
+  await link.close();
+  release();
+  try {
+    session.save(started(session));
+    let file = session.saved();
+    while (!file) file = session.saved();
+    give(file);
+  } catch (error) {
+    lab?.warn(`not recording: ${error}`);
+  }
+  session.free();
+  lab?.resume();
+  self.postMessage({ port: null });
+}
+
+/** What the page asks of a session with a real robot. @param {Driven} robot @param {any} data */
+function askRobot(robot, data) {
+  const { session, link, leaving } = robot;
+  if (data === 'leave') {
+    if (!leaving) leave(robot).catch(end);
+  } else if (data === 'save') orWarn(session, () => session.save(started(session)));
+  else if (data === STOP || (!leaving && typeof data === 'string' && data.startsWith('{'))) session.order(data);
+  else if (leaving) return;
+  else if (data.choose) link.choose(data.choose);
+  // To read a recording takes seconds, and the heartbeat would wait for it.
+  else session.warn('not while a real robot is driven: go back to the lab first');
+}
+
+/** What the page asks of the lab. @param {Lab} lab @param {any} data */
+function askLab(lab, data) {
+  if (data === 'save') orWarn(lab, () => give(recorded(lab)));
+  else if (data === 'replay') show(lab, recorded(lab));
+  else if (data === 'resume') lab.resume();
+  else if (data === 'share') self.postMessage({ shared: lab.share() });
+  else if (data.connect) connect(data.connect).catch(end);
+  else if (data.flash) write(data.flash).catch(end);
+  else if (data.bytes) show(lab, data);
+  else if (typeof data === 'string' && data.startsWith('{')) lab.order(data);
+}
+
 /** @param {unknown} error */
 function end(error) {
-  lab = null;
-  self.postMessage({ error: error instanceof Error ? error.message : String(error) });
+  lab = real = null;
+  self.postMessage({ error: wordsOf(error) });
   self.close();
 }
 
 self.addEventListener('message', ({ data }) => {
   if (data === null) pageIsReady = true;
   if (!lab || data === null) return;
-  if (data === 'save') save(lab);
-  else if (data === 'replay') show(lab, recorded(lab));
-  else if (data === 'resume') lab.resume();
-  else if (data === 'share') self.postMessage({ shared: lab.share() });
-  else if (typeof data === 'object') show(lab, data);
-  else lab.order(data);
+  if (real) askRobot(real, data);
+  else askLab(lab, data);
   // It does not wait for the next round.
   if (data === STOP) round();
 });

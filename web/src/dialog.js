@@ -1,7 +1,7 @@
 // @ts-check
 /** Dialogs over the page, and files to and from the reader's computer. */
 import { create } from './dom.js';
-import { t } from './text.js';
+import { said, t } from './text.js';
 
 /**
  * A dialog with a title and a button that closes it; Escape closes it too. The page around it stays active: STOP is never
@@ -41,6 +41,12 @@ export function complaint() {
   const line = create('output', { className: 'complaint' });
   line.setAttribute('role', 'alert');
   return line;
+}
+
+/** What went wrong, for such a line. @param {unknown} error */
+export function wordsOf(error) {
+  if (error instanceof DOMException && error.name === 'NotFoundError') return t('no port was chosen');
+  return error instanceof Error ? said(error.message) : String(error);
 }
 
 /**

@@ -30,6 +30,7 @@ import { ProfilePanel } from './profile.js';
 import { ProgramPanel, isOwn } from './program.js';
 import { Recordings } from './recordings.js';
 import { ReplayBar } from './replay.js';
+import { RobotPort } from './robot_port.js';
 import { Seat } from './seat.js';
 import { Share } from './share.js';
 import { isEmbedded, linkPages } from './site.js';
@@ -97,7 +98,7 @@ function complain(text) {
   events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text }]);
 }
 
-/** Asks the lab of the site. @param {'save' | 'replay' | 'resume'} what */
+/** Asks the session of the site. @param {Parameters<WorkerLink['ask']>[0]} what */
 function askLab(what) {
   if (link instanceof WorkerLink) link.ask(what);
 }
@@ -171,6 +172,7 @@ element('checkup', HTMLButtonElement).addEventListener('click', () => checkup.op
 const recordings = new Recordings(() => plots.modes, askLab, showRecording);
 const calibration = new CalibrationDialog(send);
 new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
+const robotPort = new RobotPort(askLab);
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
 makeEnlargeable();
 const tour = new Tour();
@@ -312,6 +314,8 @@ const link = new (isSite ? WorkerLink : Link)(receive, (now, why) => {
   header.setOpen(now === 'open');
   notice.show(now, why);
 });
+
+if (link instanceof WorkerLink) link.onPort = (news) => robotPort.show(news);
 
 Object.assign(window, {
   rumbo: {

@@ -47,7 +47,7 @@ export class ProgramPanel {
    * @param {(file: File) => void} showRecording
    */
   constructor(send, complain, showRecording) {
-    const carriesFile = (/** @type {DragEvent} */ event) => (isSite || !this.#panel.hidden) && event.dataTransfer?.types.includes('Files');
+    const carriesFile = (/** @type {DragEvent} */ event) => ((isSite && !document.body.classList.contains('at-port')) || !this.#panel.hidden) && event.dataTransfer?.types.includes('Files');
     const run = async (/** @type {File} */ file) => {
       if (file.size > LARGEST) complain(t('{}: not sent, a program has at most {} MB', file.name, LARGEST / 1e6));
       else send({ type: 'program', name: file.name, data: await base64(file) });
@@ -73,7 +73,7 @@ export class ProgramPanel {
   /** @param {State} state */
   show(state) {
     const { program } = state;
-    this.#panel.hidden = !program && !isSite;
+    this.#panel.hidden = !program && !(isSite && state.simulated);
     this.#name.hidden = this.#phase.hidden = !program;
     this.#panel.classList.toggle('idle', !program);
     if (!program) return;

@@ -48,6 +48,7 @@ export class Recordings {
       replays.addEventListener('click', () => close(() => ask('replay')));
       const opens = fileButton(t('Open a recording…'), '.mcap', (file) => close(() => show(file)));
       opens.title = t('Show a saved recording, .mcap, as a replay; dropping it on the page does the same');
+      for (const each of [replays, opens]) each.classList.add('lab-only');
       this.#dialog.body.append(create('p', { textContent: t('This page records the run until the next reset. A saved recording can be opened here again. Rumbo on a computer opens it too: rumbo replay shows it, rumbo rerun runs it again. It also keeps every session and compares two.') }), create('div', { className: 'row' }, saves, replays, opens));
       return;
     }

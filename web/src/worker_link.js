@@ -18,6 +18,12 @@ import { saveFile } from './dialog.js';
  * @property {string | null} hash
  */
 
+/**
+ * What the worker says of the port of a real robot: it is driven there, or no longer; it is gone, or back; why there is
+ * none; how far the writing of a program is.
+ * @typedef {{port: string | null} | {gone: boolean} | {refused: string} | {flashed: import('./flash_form.js').Flashed}} PortNews
+ */
+
 /** The session runs in the page, not in a station: the site's `index.html` says so. */
 export const isSite = document.querySelector('meta[name="rumbo-session"]')?.getAttribute('content') === 'page';
 
@@ -28,6 +34,8 @@ export class WorkerLink {
   #onChange;
   /** Those who wait for the run. @type {((shared: Shared) => void)[]} */
   #waiting = [];
+  /** @type {(news: PortNews) => void} */
+  onPort = () => {};
 
   /**
    * @param {(message: FromServer) => void} onMessage
@@ -45,12 +53,15 @@ export class WorkerLink {
     worker.addEventListener('message', ({ data }) => {
       if (data.bytes) return saveFile(data.name, new Blob([data.bytes], { type: 'application/octet-stream' }));
       if (data.shared) return this.#waiting.shift()?.(JSON.parse(data.shared));
+      if (['port', 'gone', 'refused', 'flashed'].some((name) => name in data)) return this.onPort(data);
       if (!Array.isArray(data)) return this.#end(data.error);
       if (!this.#open) onChange('open', null);
       this.#open = true;
       for (const text of data) onMessage(JSON.parse(text));
       return worker.postMessage(null);
     });
+    // A robot at a port stops by itself when its page is closed; so it does at once.
+    addEventListener('pagehide', () => worker.postMessage('leave'));
     worker.addEventListener('error', (event) => this.#end(event.message || 'its program could not be loaded'));
   }
 
@@ -62,7 +73,11 @@ export class WorkerLink {
     this.#onChange('ended', why);
   }
 
-  /** Saves the recording of the run so far as a file; shows it as a replay; shows the lab again. @param {'save' | 'replay' | 'resume'} what */
+  /**
+   * Saves the recording of the run so far as a file; shows it as a replay; shows the lab again; leaves the real robot for
+   * the lab; drives a real robot; looks for it at another port; writes a program to a board.
+   * @param {'save' | 'replay' | 'resume' | 'leave' | {connect: import('./robot_port.js').Wanted} | {choose: string} | {flash: import('./flash_form.js').Program}} what
+   */
   ask(what) {
     this.#worker?.postMessage(what);
   }

@@ -1,6 +1,6 @@
 // @ts-check
 /** The site from a plain static server, for the tests: SITE is its folder, as `cargo xtask site` builds it. */
-import { createReadStream, existsSync, statSync } from 'node:fs';
+import { createReadStream, existsSync, readFileSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
 import { chromium } from 'playwright-core';
@@ -13,16 +13,27 @@ if (skip && process.env['CI']) throw new Error(skip);
 
 /** Below a folder, as the pages of a project are. */
 const BELOW = '/rumbo/';
+/** The script of the worker, and what the tests with a robot put before it. */
+const WORKER = 'lab/worker.js';
+const STAND_IN = 'stand_in.js';
 /** @type {Record<string, string>} */
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.wasm': 'application/wasm', '.webmanifest': 'application/manifest+json' };
 
-/** Serves the site's files and nothing else. @returns {Promise<{url: string, close: () => void}>} */
-function serve() {
+/**
+ * Serves the site's files and nothing else, but for the port of a robot.
+ * @param {import('./serial_robot.mjs').SerialRobot} [robot]
+ * @returns {Promise<{url: string, close: () => void}>}
+ */
+function serve(robot) {
   const server = createServer((request, response) => {
     const { pathname } = new URL(request.url ?? '/', 'http://localhost');
+    if (robot?.answer(pathname.slice(BELOW.length), request, response)) return undefined;
+    if (robot && pathname.endsWith(STAND_IN)) return response.writeHead(200, { 'Content-Type': 'text/javascript' }).end(robot.script(`http://${request.headers.host}${BELOW}`));
     const path = join(FOLDER, normalize(pathname.slice(BELOW.length - 1)), pathname.endsWith('/') ? 'index.html' : '');
     if (!pathname.startsWith(BELOW) || !existsSync(path) || !statSync(path).isFile()) return response.writeHead(404).end();
     response.writeHead(200, { 'Content-Type': TYPES[extname(path)] ?? 'text/plain' });
+    // The worker has its own `navigator`; imports come first, so the stand-in is one.
+    if (robot && pathname.endsWith(WORKER)) return response.end(`import './${STAND_IN}';\n${readFileSync(path, 'utf8')}`);
     return createReadStream(path).pipe(response);
   });
   return new Promise((done) => {
@@ -43,14 +54,16 @@ function serve() {
  * @param {import('playwright-core').BrowserContextOptions} [options]
  * @param {string} [link] what follows the `#` of its address
  * @param {string} [path] of a page other than the lab
+ * @param {import('./serial_robot.mjs').SerialRobot} [robot] at a serial port of the browser
  */
-export async function open(options = {}, link = '', path = '') {
-  const server = await serve();
+export async function open(options = {}, link = '', path = '', robot = undefined) {
+  const server = await serve(robot);
   const browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, colorScheme: 'dark', locale: 'en-GB', ...options });
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE_MS);
   await page.addInitScript(() => localStorage.setItem('rumbo.tour', 'seen'));
+  if (robot) await page.addInitScript(robot.script(server.url));
   /** @type {string[]} */
   const complaints = [];
   /** @type {string[]} */
@@ -67,5 +80,5 @@ export async function open(options = {}, link = '', path = '') {
     await browser.close();
     server.close();
   };
-  return { page, complaints, abroad, url: server.url, unplug: server.close, close };
+  return { page, context, complaints, abroad, url: server.url, unplug: server.close, close };
 }

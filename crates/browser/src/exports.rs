@@ -1,7 +1,9 @@
 //! What JavaScript sees of it.
 
 use crate::lab::{Lab as Inner, Start};
+use crate::robot::Robot as Real;
 use crate::showing::Showing;
+use rumbo_flash::{Action, Programmer};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 #[wasm_bindgen]
@@ -14,6 +16,19 @@ extern "C" {
 
     #[wasm_bindgen(js_namespace = console)]
     fn error(text: &str);
+
+    #[wasm_bindgen(js_namespace = crypto, js_name = getRandomValues)]
+    fn fill_randomly(bytes: &mut [u8]);
+}
+
+fn wall_us() -> u64 {
+    (now_ms() * 1e3) as u64
+}
+
+fn random_id() -> u8 {
+    let mut id = [0];
+    fill_randomly(&mut id);
+    id[0]
 }
 
 /// A panic says why on the console before it ends the worker.
@@ -81,7 +96,6 @@ impl Lab {
 
     /// One round, of 20 ms at most.
     pub fn advance(&mut self) -> Result<(), String> {
-        let wall_us = || (now_ms() * 1e3) as u64;
         let done = self.0.advance(wall_us, day_ms());
         done.map_err(|error| error.to_string())
     }
@@ -89,6 +103,78 @@ impl Lab {
     /// The messages that are new to the page, as JSON.
     pub fn news(&mut self) -> Vec<String> {
         self.0.news()
+    }
+}
+
+/// A real robot at a serial port.
+#[wasm_bindgen]
+pub struct Robot(Real);
+
+#[wasm_bindgen]
+impl Robot {
+    /// A session with the robot at the port of this name. With `text` it runs the original program.
+    #[wasm_bindgen(constructor)]
+    pub fn new(port: String, baud: u32, text: bool) -> Result<Robot, String> {
+        let robot = Real::new(port, baud, text, random_id, wall_us(), day_ms());
+        robot.map(Robot).map_err(|error| error.to_string())
+    }
+
+    /// These bytes arrived.
+    pub fn arrived(&mut self, bytes: &[u8]) {
+        self.0.arrived(bytes);
+    }
+
+    /// The bytes to send since the last call.
+    pub fn take_outgoing(&mut self) -> Vec<u8> {
+        self.0.take_outgoing()
+    }
+
+    /// The port is gone, and why.
+    pub fn lost(&mut self, why: &str) {
+        self.0.lost(why);
+    }
+
+    /// It is open again.
+    pub fn back(&mut self) {
+        self.0.back();
+    }
+
+    /// Takes an order, as JSON.
+    pub fn order(&mut self, json: &str) {
+        self.0.order(json);
+    }
+
+    /// Warns the page.
+    pub fn warn(&mut self, text: String) {
+        self.0.warn(text);
+    }
+
+    /// One round.
+    pub fn advance(&mut self) -> Result<(), String> {
+        let done = self.0.advance(wall_us, day_ms());
+        done.map_err(|error| error.to_string())
+    }
+
+    /// The messages that are new to the page, as JSON.
+    pub fn news(&mut self) -> Vec<String> {
+        self.0.news()
+    }
+
+    /// When the session began \[ms since 1970\].
+    #[wasm_bindgen(getter)]
+    pub fn began_ms(&mut self) -> f64 {
+        self.0.began_ms()
+    }
+
+    /// Begins to write the session so far as a log, which began at `started`, the time in UTC.
+    pub fn save(&mut self, started: String) -> Result<(), String> {
+        self.0.save(started).map_err(|error| error.to_string())
+    }
+
+    /// Goes on writing for a few milliseconds; the log, once it is complete.
+    pub fn saved(&mut self) -> Result<Option<LogFile>, String> {
+        let saved = self.0.saved(wall_us).map_err(|error| error.to_string())?;
+        Ok(saved.map(|(name, bytes)| LogFile { name, bytes }))
     }
 }
 
@@ -102,6 +188,65 @@ impl Recording {
     #[wasm_bindgen(constructor)]
     pub fn new(file: &str, bytes: Vec<u8>) -> Result<Recording, String> {
         Showing::new(file, bytes).map(Recording)
+    }
+}
+
+/// Writes a program to an Arduino Mega at a serial port.
+#[wasm_bindgen]
+pub struct Flasher(Programmer);
+
+/// What is to be done with the port; nothing of it: to wait for bytes, or some milliseconds.
+#[wasm_bindgen(getter_with_clone)]
+pub struct Turn {
+    /// Pull DTR and RTS, or release them.
+    pub lines: Option<bool>,
+    /// Send these bytes.
+    pub send: Option<Vec<u8>>,
+    /// All is done.
+    pub done: bool,
+}
+
+#[wasm_bindgen]
+impl Flasher {
+    /// The program in a file of this name.
+    #[wasm_bindgen(constructor)]
+    pub fn new(file: &str, content: &[u8]) -> Result<Flasher, String> {
+        crate::programmer(file, content).map(Flasher)
+    }
+
+    /// These bytes arrived.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        self.0.receive(bytes);
+    }
+
+    /// What to do now.
+    pub fn poll(&mut self) -> Result<Turn, String> {
+        let action = self.0.poll(wall_us()).map_err(|error| error.to_string())?;
+        let done = action == Action::Done;
+        let (lines, send) = match action {
+            Action::Lines(pulled) => (Some(pulled), None),
+            Action::Send(bytes) => (None, Some(bytes)),
+            Action::Wait | Action::Done => (None, None),
+        };
+        Ok(Turn { lines, send, done })
+    }
+
+    /// What is going on, in a word or two.
+    #[wasm_bindgen(getter)]
+    pub fn phase(&self) -> String {
+        self.0.progress().0.to_string()
+    }
+
+    /// Which part of all is done, 0 to 1.
+    #[wasm_bindgen(getter)]
+    pub fn part(&self) -> f64 {
+        self.0.progress().1
+    }
+
+    /// What an end now leaves behind.
+    #[wasm_bindgen(getter)]
+    pub fn aftermath(&self) -> String {
+        self.0.aftermath().into()
     }
 }
 

@@ -9,6 +9,9 @@ const ROOM: usize = 200 << 20;
 /// About what an entry takes besides its bytes or rows \[bytes\].
 const ENTRY: usize = 500;
 
+/// Entries that are written without a look at the clock.
+pub(crate) const SOME: usize = 20;
+
 /// What has happened since the run began.
 pub(crate) struct Recording {
     manifest: Manifest,
@@ -46,16 +49,53 @@ impl Recording {
 
     /// The name of a file for it, and the file; `started` is when the run began, as in a manifest.
     pub(crate) fn log(&self, started: String) -> Result<(String, Vec<u8>), WriteError> {
+        let mut saving = self.save(started)?;
+        while !saving.advance(self, SOME)? {}
+        saving.finish()
+    }
+
+    /// Begins to write it as a file, a piece at a time.
+    pub(crate) fn save(&self, started: String) -> Result<Saving, WriteError> {
         let manifest = Manifest {
             started: Some(started),
             ..self.manifest.clone()
         };
-        let mut log = LogWriter::new(Cursor::new(Vec::new()), &manifest)?;
-        for entry in &self.entries {
-            log.record(entry)?;
+        Ok(Saving {
+            log: LogWriter::new(Cursor::new(Vec::new()), &manifest)?,
+            name: format!("{}.mcap", manifest.stem()),
+            written: 0,
+            until: self.entries.len(),
+        })
+    }
+}
+
+/// A file of a recording that is being written.
+pub(crate) struct Saving {
+    log: LogWriter<Cursor<Vec<u8>>>,
+    name: String,
+    written: usize,
+    /// What comes after it began is not in it.
+    until: usize,
+}
+
+impl Saving {
+    /// Writes some entries more of the recording that it is of; returns whether those were the last.
+    pub(crate) fn advance(
+        &mut self,
+        recording: &Recording,
+        some: usize,
+    ) -> Result<bool, WriteError> {
+        let until = self.until.min(self.written + some);
+        for entry in &recording.entries[self.written..until] {
+            self.log.record(entry)?;
         }
-        let name = format!("{}.mcap", manifest.stem());
-        Ok((name, log.finish()?.into_inner()))
+        self.written = until;
+        Ok(until == self.until)
+    }
+
+    /// The name of a file for it, and the file.
+    pub(crate) fn finish(self) -> Result<(String, Vec<u8>), WriteError> {
+        Ok((self.name, self.log.finish()?.into_inner()))
     }
 }
 

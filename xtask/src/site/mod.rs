@@ -4,13 +4,15 @@
 //! The crate `browser` is compiled to WebAssembly with the Rust of the firmware, which has the sources of the library:
 //! no further target need be installed. Beside it stand the files of `web/`; `index.html` gets a content policy, which
 //! the station sends as a header, and the note that its session runs in the page. [`pages`] are all the others; `api/` is
-//! what rustdoc makes of the crates that others can use.
+//! what rustdoc makes of the crates that others can use. The image for the Mega is part of the site if it has been built.
 
 mod pages;
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
 
 use crate::firmware::toolchain::Toolchain;
 use crate::project::{Project, find_program, output, run as run_command};
@@ -31,6 +33,8 @@ const FILES: [&str; 5] = [
 const OFFLINE: &str = "offline.js";
 const LIST: &str = "const FILES = [];\nconst VERSION = '';\n";
 const FOLDERS: [&str; 5] = ["src", "src/spanish", "lab", "vendor/uplot", "pages"];
+/// The program for the Mega, as `cargo xtask firmware` builds it, and how the page calls it.
+const IMAGE: [&str; 2] = ["firmware/rumbo.hex", "rumbo.hex"];
 /// Where the additions to `index.html` go.
 const MARK: &str = "<meta charset=\"utf-8\">\n";
 /// Everything comes from the site itself; blobs are pictures that the page made. Browsers count the compilation of
@@ -69,7 +73,8 @@ pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
     for file in FILES {
         copy(&web.join(file), &site.join(file))?;
     }
-    complete(&site.join("index.html"))?;
+    let head = format!("{HEAD}{}", carry_image(project, &site)?);
+    complete(&site.join("index.html"), &head)?;
     let lab = site.join("lab");
     let mut bindgen = project.cargo(&["run", "--quiet", "--locked", "-p", "rumbo-bindgen", "--"]);
     run_command(bindgen.arg(&wasm).arg(&lab).arg("rumbo"))?;
@@ -189,13 +194,32 @@ fn linker(project: &Project) -> Result<PathBuf, Stop> {
     )
 }
 
+/// Puts the image for the Mega into the site, if it has been built; returns what the page is to know of it.
+fn carry_image(project: &Project, site: &Path) -> Result<String, String> {
+    let [built, name] = IMAGE;
+    let built = project.target.join(built);
+    if !built.exists() {
+        println!("without the program for the Mega: `cargo xtask firmware` builds it");
+        return Ok(String::new());
+    }
+    copy(&built, &site.join(name))?;
+    let content = fs::read(&built).map_err(|error| wrong(&built, &error))?;
+    let digits = Sha256::digest(content)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect::<String>();
+    Ok(format!(
+        "  <meta name=\"rumbo-image\" content=\"{digits}\">\n"
+    ))
+}
+
 /// The additions to the page.
-fn complete(page: &Path) -> Result<(), String> {
+fn complete(page: &Path, head: &str) -> Result<(), String> {
     let text = fs::read_to_string(page).map_err(|error| wrong(page, &error))?;
     let Some((before, after)) = text.split_once(MARK) else {
         return Err(format!("{}: no line {}", page.display(), MARK.trim()));
     };
-    let text = format!("{before}{MARK}{HEAD}{after}");
+    let text = format!("{before}{MARK}{head}{after}");
     fs::write(page, text).map_err(|error| wrong(page, &error))
 }
 

@@ -9,12 +9,13 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 24] = [
+const ARROWS: [(&str, &[&str]); 25] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
     ("rumbo-plant", &[]),
     ("rumbo-emulator", &[]),
+    ("rumbo-flash", &[]),
     (
         "rumbo-sim",
         &["rumbo-robot", "rumbo-plant", "rumbo-emulator"],
@@ -30,10 +31,10 @@ const ARROWS: [(&str, &[&str]); 24] = [
     ("rumbo-session", &["rumbo-log"]),
     ("rumbo-ros", &["rumbo-log"]),
     ("rumbo-lab", &["rumbo-experiment", "rumbo-session"]),
-    ("rumbo-browser", &["rumbo-lab"]),
+    ("rumbo-browser", &["rumbo-lab", "rumbo-flash"]),
     ("rumbo-bindgen", &[]),
     ("rumbo-sketch", &[]),
-    ("rumbo-station", &["rumbo-session"]),
+    ("rumbo-station", &["rumbo-session", "rumbo-flash"]),
     ("rumbo-report", &["rumbo-experiment", "rumbo-identify"]),
     (
         "rumbo-cli",
@@ -61,7 +62,9 @@ const ARROWS: [(&str, &[&str]); 24] = [
 ];
 
 /// What tests may use besides, and why.
-const FOR_TESTS: [(&str, &str); 1] = [
+const FOR_TESTS: [(&str, &str); 2] = [
+    // Programs are written to an emulated chip with the real boot loader.
+    ("rumbo-flash", "rumbo-emulator"),
     // The session is tested against the real robot's side of the link.
     ("rumbo-session", "rumbo-robot"),
 ];

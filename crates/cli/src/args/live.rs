@@ -82,10 +82,10 @@ pub(crate) struct ConnectArgs {
 Examples:
   rumbo flash /dev/ttyACM0
   rumbo flash COM5 --image my_sketch.hex
-  rumbo flash /dev/ttyACM0 --print
 
-The board is asked for its signature before anything is written. Parameters saved on the robot stay. Needs avrdude; `rumbo list ports` shows the
-serial ports of this computer. Before the first run: docs/wiring.md.")]
+The board's own boot loader writes it, and no other program is needed. The board is asked for its signature before anything is written, and all of it is
+read back. Should the cable go meanwhile, the board stands still until it is written again. Parameters saved on the robot stay. `rumbo list ports` shows
+the serial ports of this computer. Before the first run: docs/wiring.md.")]
 pub(crate) struct FlashArgs {
     /// Serial port of the Mega's USB cable
     #[arg(value_name = "PORT", value_parser = clap::builder::NonEmptyStringValueParser::new())]
@@ -93,7 +93,4 @@ pub(crate) struct FlashArgs {
     /// Firmware to write, Intel HEX or ELF [default: the one that `cargo xtask firmware` built, target/firmware/rumbo.hex, or that of this release]
     #[arg(long, value_name = "FILE")]
     pub(crate) image: Option<PathBuf>,
-    /// Print the commands instead of running them
-    #[arg(long)]
-    pub(crate) print: bool,
 }

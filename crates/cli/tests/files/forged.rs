@@ -151,25 +151,3 @@ fn words_of_a_robot_are_no_formulas_in_a_table() {
     assert_eq!(cells.iter().find(computed), None);
     assert_eq!(cells.last(), Some(&"STOP: acknowledged"));
 }
-
-#[cfg(unix)]
-#[test]
-fn a_printed_command_is_what_a_shell_runs() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    let name = "it's; $(touch owned) `x`.hex";
-    std::fs::write(folder.join(name), ":02000000FFCF30\n:00000001FF\n").unwrap();
-    let output = rumbo_in(folder, &["flash", "/dev/null", "--print", "--image", name]);
-    assert_eq!(status(&output), 0, "{}", stderr(&output));
-    let printed = stdout(&output);
-    let write = printed.lines().last().unwrap();
-    // What a shell makes of it, with another program in avrdude's place.
-    let words = std::process::Command::new("sh")
-        .current_dir(folder)
-        .args(["-c", &write.replacen("avrdude", "printf '%s\\n'", 1)])
-        .output()
-        .unwrap();
-    let last = stdout(&words).lines().last().unwrap().to_owned();
-    assert_eq!(last, format!("flash:w:{name}:i"));
-    assert!(!folder.join("owned").exists());
-}

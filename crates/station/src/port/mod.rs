@@ -7,10 +7,12 @@
 mod error;
 #[cfg(unix)]
 mod pty;
+mod write;
 
 pub use error::PortError;
 #[cfg(unix)]
 pub use pty::Pty;
+pub use write::{WriteError, write_program};
 
 use rumbo_log::{Kind, Manifest};
 pub use rumbo_session::DEFAULT_BAUD;
