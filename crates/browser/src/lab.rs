@@ -181,7 +181,7 @@ impl Lab {
             .iter()
             .any(|order| matches!(order, Order::Velocity(_)))
         {
-            self.driver.host().unlike = Some("velocities, many a second, are not in a link");
+            self.desk.driver.host().unlike = Some("velocities, many a second, are not in a link");
         }
         if orders.iter().any(is_by_hand) && self.following.take().is_some() {
             let text = "the link drives no further: an order was given here";

@@ -1,4 +1,5 @@
 //! Velocities of mode 10: the newest one counts, none is driven late, and without one the wheels are released.
+#![allow(clippy::unwrap_used, reason = "a test helper")]
 
 mod support;
 
