@@ -103,6 +103,8 @@ test('without a network a lesson that was read opens again, with its lab', { ski
   const { page, url, complaints, abroad, unplug, close } = await open();
   await page.waitForSelector('#connection.good');
   await page.evaluate(() => navigator.serviceWorker.ready);
+  const answers = await page.locator('#pages a').evaluateAll((links) => Promise.all(links.map(async (link) => (await fetch(/** @type {HTMLAnchorElement} */ (link).href)).ok)));
+  assert.deepEqual(answers, [true, true, true]);
   await page.locator('#pages a').first().click();
   await page.locator('main a', { hasText: '2. ' }).click();
   await page.locator('a.run').first().waitFor();

@@ -25,12 +25,21 @@ const LAB: &str = "web/index.html";
 /// Everything comes from the site itself.
 const POLICY: &str = "default-src 'self'; base-uri 'none'; form-action 'none'; object-src 'none'";
 
-/// A place of the site in its header: the Markdown file, and its name in English and Spanish.
-const PLACES: [(&str, [&str; 2]); 4] = [
-    ("docs/lessons/en/README.md", ["Lessons", "Lecciones"]),
-    ("README.md", ["Guides", "Guías"]),
-    ("docs/theory/README.md", ["Theory", "Teoría"]),
-    ("docs/api.md", ["API", "API"]),
+/// The places in the header of each page, in English and Spanish: Markdown file, anchor, name.
+const PLACES: [[(&str, &str, &str); 2]; 4] = [
+    [
+        ("docs/lessons/en/README.md", "", "Lessons"),
+        ("docs/lessons/es/README.md", "", "Lecciones"),
+    ],
+    [
+        ("README.md", "#where-to-read-on", "Guides"),
+        ("README.es.md", "#para-seguir-leyendo", "Guías"),
+    ],
+    [
+        ("docs/theory/README.md", "", "Theory"),
+        ("docs/theory/README.md", "", "Teoría"),
+    ],
+    [("docs/api.md", "", "API"), ("docs/api.md", "", "API")],
 ];
 
 /// Writes the pages, their pictures and style into the site.
@@ -242,17 +251,16 @@ impl Page<'_> {
         };
         let root = self.root();
         let mut places = format!("<a href=\"{root}\">{}</a>", word(["Lab", "Laboratorio"]));
-        for (path, name) in PLACES {
-            let own = counterpart(path).filter(|own| spanish && self.sources.contains_key(&**own));
-            let own = own.unwrap_or_else(|| path.to_owned());
-            let folder = own
+        for place in PLACES {
+            let (path, anchor, name) = place[usize::from(spanish)];
+            let folder = path
                 .strip_suffix("README.md")
                 .filter(|folder| !folder.is_empty());
             let here =
-                own == self.path || folder.is_some_and(|folder| self.path.starts_with(folder));
+                path == self.path || folder.is_some_and(|folder| self.path.starts_with(folder));
             let current = if here { " aria-current=\"true\"" } else { "" };
-            let address = address_of(&own);
-            places += &format!("<a href=\"{root}{address}\"{current}>{}</a>", word(name));
+            let address = address_of(path);
+            places += &format!("<a href=\"{root}{address}{anchor}\"{current}>{name}</a>");
         }
         let other = counterpart(self.path).filter(|other| self.sources.contains_key(&**other));
         let language = other.map_or(String::new(), |other| {
