@@ -159,6 +159,7 @@ impl Page<'_> {
     fn content(&mut self, text: &str) -> String {
         let mut events: Vec<Event<'_>> = Parser::new_ext(text, Options::ENABLE_TABLES).collect();
         name_headings(&mut events);
+        self.name_pages(&mut events);
         let mut closing = Vec::new();
         let events = events.into_iter().filter_map(|event| match event {
             Event::Start(Tag::Link {
@@ -189,6 +190,31 @@ impl Page<'_> {
             )
             .replace("</table>", "</table></div>")
             .replace("style=\"text-align: right\"", "class=\"right\"")
+            .replace(" style=\"text-align: center\"", "")
+            .replace(" style=\"text-align: left\"", "")
+    }
+
+    /// A link whose text is the path of a page has the page's title in its place.
+    fn name_pages(&self, events: &mut [Event<'_>]) {
+        for index in 1..events.len() {
+            let (before, after) = events.split_at_mut(index);
+            let (Some(Event::Start(Tag::Link { dest_url, .. })), Some(Event::Text(text))) =
+                (before.last(), after.first_mut())
+            else {
+                continue;
+            };
+            let file = dest_url.split('#').next().unwrap_or_default();
+            let path = tidy::resolve(self.path, file);
+            let named = path == **text || path.strip_suffix("/README.md") == Some(text);
+            if let Some(title) = self
+                .sources
+                .get(&*path)
+                .filter(|_| named)
+                .and_then(|text| title(text))
+            {
+                *text = title.into();
+            }
+        }
     }
 
     fn link(&mut self, target: &str, title: &str) -> (String, &'static str) {
@@ -298,8 +324,7 @@ impl Page<'_> {
 
     fn title(&self) -> String {
         let text = self.sources.get(self.path).copied().unwrap_or_default();
-        let first = text.lines().find_map(|line| line.strip_prefix("# "));
-        escaped(&first.unwrap_or("Rumbo").replace('`', ""))
+        escaped(&title(text).unwrap_or_else(|| "Rumbo".to_owned()))
     }
 
     /// The lessons before and after this one.
@@ -343,6 +368,12 @@ impl Page<'_> {
             link(after, "next", ["", " →"])
         )
     }
+}
+
+/// The first heading.
+fn title(text: &str) -> Option<String> {
+    let first = text.lines().find_map(|line| line.strip_prefix("# "))?;
+    Some(first.replace('`', ""))
 }
 
 /// A text in an attribute or between tags.
@@ -419,5 +450,108 @@ pub(super) fn check(site: &Path) -> Result<(), String> {
     match lost.is_empty() {
         true => Ok(()),
         false => Err(lost.join("\n")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The content of `docs/a.md` with this text, beside `docs/lessons/en/README.md`.
+    fn content(text: &str) -> String {
+        let sources = BTreeMap::from([
+            ("docs/a.md", text),
+            ("docs/lessons/en/README.md", "# Lessons\n"),
+        ]);
+        let mut page = Page {
+            path: "docs/a.md",
+            sources: &sources,
+            source_address: None,
+            pictures: &mut BTreeSet::new(),
+            runs: false,
+        };
+        page.content(text)
+    }
+
+    #[test]
+    fn a_link_leads_to_the_page_of_its_file() {
+        for (link, expected) in [
+            (
+                "[x](lessons/en/README.md#b)",
+                "<a href=\"../docs/lessons/en/#b\">x</a>",
+            ),
+            ("[x](lessons/en)", "<a href=\"../docs/lessons/en/\">x</a>"),
+            (
+                "[docs/lessons/en](lessons/en/README.md)",
+                "<a href=\"../docs/lessons/en/\">Lessons</a>",
+            ),
+            ("[x](#b)", "<a href=\"#b\">x</a>"),
+            (
+                "[x](https://a.b/c.md)",
+                "<a href=\"https://a.b/c.md\">x</a>",
+            ),
+            (
+                "[x](../crates/plant/README.md)",
+                "<a href=\"../api/rumbo_plant/index.html\">x</a>",
+            ),
+            (
+                "[x](../crates/cli/src/main.rs)",
+                "<span class=\"file\">x</span>",
+            ),
+            (
+                "[x](../web/index.html#scenario=mode1&seed=1)",
+                "<a class=\"run\" href=\"../#scenario=mode1&amp;seed=1\">x</a>",
+            ),
+        ] {
+            assert_eq!(content(link), format!("<p>{expected}</p>\n"));
+        }
+    }
+
+    #[test]
+    fn headings_have_the_anchors_of_code_hosts_and_each_its_own() {
+        let html = content("# A `b`, c\n\n## Again\n\n## Again\n");
+        for id in ["a-b-c", "again", "again-1"] {
+            assert!(html.contains(&format!(" id=\"{id}\"")), "{html}");
+        }
+    }
+
+    #[test]
+    fn nothing_of_a_page_needs_a_style_that_the_policy_forbids() {
+        let html = content("| a | b | c |\n|--:|:-:|:--|\n| 1 | 2 | 3 |\n");
+        assert!(
+            html.contains("class=\"right\"") && !html.contains("style="),
+            "{html}"
+        );
+    }
+
+    #[test]
+    fn a_link_of_a_finished_page_that_leads_nowhere_is_found() {
+        let site = std::env::temp_dir().join(format!("rumbo-pages-{}", std::process::id()));
+        fs::create_dir_all(site.join("docs")).unwrap();
+        let page = |links: &str| fs::write(site.join("docs/a.html"), links).unwrap();
+        fs::write(site.join("index.html"), "").unwrap();
+        page("<h1 id=\"b\"> <a href=\"#b\"> <a href=\"../#scenario=x\"> <a href=\"a.html#b\">");
+        assert_eq!(check(&site), Ok(()));
+        for lost in ["b.html", "#c", "a.html#c", "../other/"] {
+            page(&format!("<a href=\"{lost}\">"));
+            let what = check(&site).unwrap_err();
+            assert_eq!(
+                what,
+                format!("site/docs/a.html: the link `{lost}` leads nowhere")
+            );
+        }
+        fs::remove_dir_all(&site).unwrap();
+    }
+
+    #[test]
+    fn a_page_and_its_translation_name_each_other() {
+        for (path, other) in [
+            ("README.md", "README.es.md"),
+            ("docs/lessons/en/README.md", "docs/lessons/es/README.md"),
+        ] {
+            assert_eq!(counterpart(path).as_deref(), Some(other));
+            assert_eq!(counterpart(other).as_deref(), Some(path));
+        }
+        assert_eq!(counterpart("docs/a.md"), None);
     }
 }
