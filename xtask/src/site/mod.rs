@@ -6,6 +6,7 @@
 //! the station sends as a header, and the note that its session runs in the page. [`pages`] are all the others; `api/` is
 //! what rustdoc makes of the crates that others can use.
 
+mod links;
 mod pages;
 
 use std::fs;
@@ -86,7 +87,7 @@ pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
     );
     document(project, &site.join("api"))?;
     list_files(&site, kept)?;
-    pages::check(&site)?;
+    links::check(&site)?;
     Ok(site)
 }
 

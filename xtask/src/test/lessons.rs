@@ -2,9 +2,8 @@
 //!
 //! A row whose first cell links to a run of the lab is checked in each column whose head links to a metric, named by the
 //! link's title: `[overshoot (cm)](../../scenarios.md#metrics "step1.overshoot_m")`. `rumbo run` drives that scenario
-//! with the link's seed and parameters. A figure is right to its last digit; a metric without a value is `never`, one that
-//! the run does not have `–`. Both
-//! languages have the same runs and figures. Scenarios in `toml` blocks run.
+//! with the link's seed and parameters. A figure is right to its last digit; a metric without a value is `never`, one
+//! that the run does not have `–`. Both languages have the same runs and figures. Scenarios in `toml` blocks run.
 
 use std::collections::BTreeMap;
 use std::path::Path;
