@@ -1,11 +1,11 @@
 // @ts-check
 /**
- * Service worker of the site: keeps the lab's files from the start, so that it opens without a network too, and every other
- * page from when it is opened first. A newer site is fetched beside the one in use, and taken when no page has that open
+ * Service worker of the site: keeps the lab and the lessons from the start, so that they open without a network too, and every
+ * other page from when it is opened first. A newer site is fetched beside the one in use, and taken when no page has that open
  * any more: a page never mixes two of them.
  */
 
-// Put in by `cargo xtask site`: the lab's files, and a number that changes with the contents of any file of the site.
+// Put in by `cargo xtask site`: the files kept from the start, and a number that changes with the contents of any file of the site.
 /** @type {string[]} */
 const FILES = [];
 const VERSION = '';

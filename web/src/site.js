@@ -12,7 +12,7 @@ export function linkPages() {
   if (isEmbedded) return;
   const pages = [
     [t('Lessons'), `docs/lessons/${language}/`],
-    [t('Guides'), language === 'es' ? 'README.es.html' : 'README.html'],
+    [t('Guides'), language === 'es' ? 'README.es.html#para-seguir-leyendo' : 'README.html#where-to-read-on'],
     [t('Theory'), 'docs/theory/'],
   ];
   const links = pages.map(([textContent, href]) => create('a', { textContent, href }));

@@ -33,11 +33,12 @@ Usage: cargo xtask <command> [options]
 
 Commands:
   test [--only STEP]...    every check, in order: format, tidy, dependencies, clippy, docs, sketches, tests, fuzz
-                           targets, figures, dashboard, browser, README
+                           targets, figures, dashboard, browser, README, lessons
   tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
   bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
   firmware                 the image for the Mega, target/firmware/rumbo.elf and .hex, with its sizes
-  site                     the lab as a static page, WebAssembly in place of a station, in site/
+  site                     the lab as a static page, WebAssembly in place of a station, with lessons and documents,
+                           in site/
   release                  what a version is published as, in dist/: archive, Debian package, image, licences, checksums
   sketches                 the Arduino sketches of examples and tests, compiled into target/sketches/*.elf
   memoria [--seeds N] [--only SCENARIO]...

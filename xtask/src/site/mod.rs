@@ -6,6 +6,7 @@
 //! the station sends as a header, and the note that its session runs in the page. [`pages`] are all the others; `api/` is
 //! what rustdoc makes of the crates that others can use. The image for the Mega is part of the site if it has been built.
 
+mod links;
 mod pages;
 
 use std::fs;
@@ -31,6 +32,8 @@ const FILES: [&str; 5] = [
 ];
 /// Keeps the files for use without a network, by their list.
 const OFFLINE: &str = "offline.js";
+/// Kept with the lab: a class reads them where the network is slow.
+const LESSONS: &str = "docs/lessons/";
 const LIST: &str = "const FILES = [];\nconst VERSION = '';\n";
 const FOLDERS: [&str; 5] = ["src", "src/spanish", "lab", "vendor/uplot", "pages"];
 /// The program for the Mega, as `cargo xtask firmware` builds it, and how the page calls it.
@@ -78,11 +81,18 @@ pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
     let lab = site.join("lab");
     let mut bindgen = project.cargo(&["run", "--quiet", "--locked", "-p", "rumbo-bindgen", "--"]);
     run_command(bindgen.arg(&wasm).arg(&lab).arg("rumbo"))?;
-    let lab_files = names_below(&site)?;
+    let mut kept = names_below(&site)?;
     pages::write(project, &site)?;
+    let lessons = names_below(&site.join(LESSONS))?;
+    // A folder's first page is asked for by the folder.
+    kept.extend(
+        lessons
+            .iter()
+            .map(|name| format!("{LESSONS}{}", name.trim_end_matches("index.html"))),
+    );
     document(project, &site.join("api"))?;
-    list_files(&site, lab_files)?;
-    pages::check(&site)?;
+    list_files(&site, kept)?;
+    links::check(&site)?;
     Ok(site)
 }
 
@@ -100,24 +110,24 @@ fn document(project: &Project, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Gives the service worker the list of the lab's files, which it keeps from the start, and a version that changes with
-/// what is in any file of the site.
-fn list_files(site: &Path, mut lab_files: Vec<String>) -> Result<(), String> {
+/// Gives the service worker the list of the files that it keeps from the start, and a version that changes with what is in
+/// any file of the site.
+fn list_files(site: &Path, mut kept: Vec<String>) -> Result<(), String> {
     let mut hasher = DefaultHasher::new();
     for name in names_below(site)? {
         let path = site.join(&name);
         let content = fs::read(&path).map_err(|error| wrong(&path, &error))?;
         (&name, content).hash(&mut hasher);
     }
-    lab_files.retain(|name| name != OFFLINE && !name.ends_with(".d.ts"));
+    kept.retain(|name| name != OFFLINE && !name.ends_with(".d.ts"));
     // The page itself is asked for by its folder.
-    lab_files.insert(0, "./".to_owned());
+    kept.insert(0, "./".to_owned());
     let offline = site.join(OFFLINE);
     let text = fs::read_to_string(&offline).map_err(|error| wrong(&offline, &error))?;
     let Some((before, after)) = text.split_once(LIST) else {
         return Err(format!("{}: no line {LIST:?}", offline.display()));
     };
-    let list = serde_json::json!(lab_files);
+    let list = serde_json::json!(kept);
     let version = hasher.finish();
     let text = format!("{before}const FILES = {list};\nconst VERSION = '{version:016x}';\n{after}");
     fs::write(&offline, text).map_err(|error| wrong(&offline, &error))

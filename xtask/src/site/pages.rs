@@ -11,7 +11,7 @@ use std::path::Path;
 
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd, html};
 
-use super::{copy, names_below, wrong};
+use super::{copy, wrong};
 use crate::markdown::anchor;
 use crate::project::Project;
 use crate::tidy::{self, Tree};
@@ -25,12 +25,21 @@ const LAB: &str = "web/index.html";
 /// Everything comes from the site itself.
 const POLICY: &str = "default-src 'self'; base-uri 'none'; form-action 'none'; object-src 'none'";
 
-/// A place of the site in its header: the Markdown file, and its name in English and Spanish.
-const PLACES: [(&str, [&str; 2]); 4] = [
-    ("docs/lessons/en/README.md", ["Lessons", "Lecciones"]),
-    ("README.md", ["Guides", "Guías"]),
-    ("docs/theory/README.md", ["Theory", "Teoría"]),
-    ("docs/api.md", ["API", "API"]),
+/// The places in the header of each page, in English and Spanish: Markdown file, anchor, name.
+const PLACES: [[(&str, &str, &str); 2]; 4] = [
+    [
+        ("docs/lessons/en/README.md", "", "Lessons"),
+        ("docs/lessons/es/README.md", "", "Lecciones"),
+    ],
+    [
+        ("README.md", "#where-to-read-on", "Guides"),
+        ("README.es.md", "#para-seguir-leyendo", "Guías"),
+    ],
+    [
+        ("docs/theory/README.md", "", "Theory"),
+        ("docs/theory/README.md", "", "Teoría"),
+    ],
+    [("docs/api.md", "", "API"), ("docs/api.md", "", "API")],
 ];
 
 /// Writes the pages, their pictures and style into the site.
@@ -150,6 +159,7 @@ impl Page<'_> {
     fn content(&mut self, text: &str) -> String {
         let mut events: Vec<Event<'_>> = Parser::new_ext(text, Options::ENABLE_TABLES).collect();
         name_headings(&mut events);
+        self.name_pages(&mut events);
         let mut closing = Vec::new();
         let events = events.into_iter().filter_map(|event| match event {
             Event::Start(Tag::Link {
@@ -180,6 +190,31 @@ impl Page<'_> {
             )
             .replace("</table>", "</table></div>")
             .replace("style=\"text-align: right\"", "class=\"right\"")
+            .replace(" style=\"text-align: center\"", "")
+            .replace(" style=\"text-align: left\"", "")
+    }
+
+    /// A link whose text is the path of a page has the page's title in its place.
+    fn name_pages(&self, events: &mut [Event<'_>]) {
+        for index in 1..events.len() {
+            let (before, after) = events.split_at_mut(index);
+            let (Some(Event::Start(Tag::Link { dest_url, .. })), Some(Event::Text(text))) =
+                (before.last(), after.first_mut())
+            else {
+                continue;
+            };
+            let file = dest_url.split('#').next().unwrap_or_default();
+            let path = tidy::resolve(self.path, file);
+            let named = path == **text || path.strip_suffix("/README.md") == Some(text);
+            if let Some(title) = self
+                .sources
+                .get(&*path)
+                .filter(|_| named)
+                .and_then(|text| title(text))
+            {
+                *text = title.into();
+            }
+        }
     }
 
     fn link(&mut self, target: &str, title: &str) -> (String, &'static str) {
@@ -242,17 +277,16 @@ impl Page<'_> {
         };
         let root = self.root();
         let mut places = format!("<a href=\"{root}\">{}</a>", word(["Lab", "Laboratorio"]));
-        for (path, name) in PLACES {
-            let own = counterpart(path).filter(|own| spanish && self.sources.contains_key(&**own));
-            let own = own.unwrap_or_else(|| path.to_owned());
-            let folder = own
+        for place in PLACES {
+            let (path, anchor, name) = place[usize::from(spanish)];
+            let folder = path
                 .strip_suffix("README.md")
                 .filter(|folder| !folder.is_empty());
             let here =
-                own == self.path || folder.is_some_and(|folder| self.path.starts_with(folder));
+                path == self.path || folder.is_some_and(|folder| self.path.starts_with(folder));
             let current = if here { " aria-current=\"true\"" } else { "" };
-            let address = address_of(&own);
-            places += &format!("<a href=\"{root}{address}\"{current}>{}</a>", word(name));
+            let address = address_of(path);
+            places += &format!("<a href=\"{root}{address}{anchor}\"{current}>{name}</a>");
         }
         let other = counterpart(self.path).filter(|other| self.sources.contains_key(&**other));
         let language = other.map_or(String::new(), |other| {
@@ -290,8 +324,7 @@ impl Page<'_> {
 
     fn title(&self) -> String {
         let text = self.sources.get(self.path).copied().unwrap_or_default();
-        let first = text.lines().find_map(|line| line.strip_prefix("# "));
-        escaped(&first.unwrap_or("Rumbo").replace('`', ""))
+        escaped(&title(text).unwrap_or_else(|| "Rumbo".to_owned()))
     }
 
     /// The lessons before and after this one.
@@ -337,6 +370,12 @@ impl Page<'_> {
     }
 }
 
+/// The first heading.
+fn title(text: &str) -> Option<String> {
+    let first = text.lines().find_map(|line| line.strip_prefix("# "))?;
+    Some(first.replace('`', ""))
+}
+
 /// A text in an attribute or between tags.
 fn escaped(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
@@ -370,46 +409,86 @@ fn name_headings(events: &mut [Event<'_>]) {
     }
 }
 
-/// The links of the finished pages that lead to no file of the site, or to no place in it.
-pub(super) fn check(site: &Path) -> Result<(), String> {
-    let mut lost = Vec::new();
-    let mut texts: BTreeMap<String, String> = BTreeMap::new();
-    for name in names_below(site)? {
-        let path = site.join(&name);
-        let text = match name.ends_with(".html") && !name.starts_with("api/") {
-            true => fs::read_to_string(&path).map_err(|error| wrong(&path, &error))?,
-            false => String::new(),
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The content of `docs/a.md` with this text, beside `docs/lessons/en/README.md`.
+    fn content(text: &str) -> String {
+        let sources = BTreeMap::from([
+            ("docs/a.md", text),
+            ("docs/lessons/en/README.md", "# Lessons\n"),
+        ]);
+        let mut page = Page {
+            path: "docs/a.md",
+            sources: &sources,
+            source_address: None,
+            pictures: &mut BTreeSet::new(),
+            runs: false,
         };
-        texts.insert(name, text);
+        page.content(text)
     }
-    for (name, text) in texts.iter().filter(|(name, _)| *name != "index.html") {
-        for target in [" href=\"", " src=\""]
-            .into_iter()
-            .flat_map(|attribute| text.split(attribute).skip(1))
-            .filter_map(|rest| rest.split('"').next())
-            .filter(|target| !target.contains("://"))
-        {
-            let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
-            let mut path = match file {
-                "" => name.clone(),
-                file => tidy::resolve(name, file),
-            };
-            if path.is_empty() || file.ends_with('/') {
-                path = format!("{path}/index.html")
-                    .trim_start_matches('/')
-                    .to_owned();
-            }
-            let found = texts.get(&path);
-            // After the `#` of the lab stands a run.
-            let without = anchor.is_empty() || path == "index.html";
-            let there = |text: &String| without || text.contains(&format!(" id=\"{anchor}\""));
-            if !found.is_some_and(there) {
-                lost.push(format!("site/{name}: the link `{target}` leads nowhere"));
-            }
+
+    #[test]
+    fn a_link_leads_to_the_page_of_its_file() {
+        for (link, expected) in [
+            (
+                "[x](lessons/en/README.md#b)",
+                "<a href=\"../docs/lessons/en/#b\">x</a>",
+            ),
+            ("[x](lessons/en)", "<a href=\"../docs/lessons/en/\">x</a>"),
+            (
+                "[docs/lessons/en](lessons/en/README.md)",
+                "<a href=\"../docs/lessons/en/\">Lessons</a>",
+            ),
+            ("[x](#b)", "<a href=\"#b\">x</a>"),
+            (
+                "[x](https://a.b/c.md)",
+                "<a href=\"https://a.b/c.md\">x</a>",
+            ),
+            (
+                "[x](../crates/plant/README.md)",
+                "<a href=\"../api/rumbo_plant/index.html\">x</a>",
+            ),
+            (
+                "[x](../crates/cli/src/main.rs)",
+                "<span class=\"file\">x</span>",
+            ),
+            (
+                "[x](../web/index.html#scenario=mode1&seed=1)",
+                "<a class=\"run\" href=\"../#scenario=mode1&amp;seed=1\">x</a>",
+            ),
+        ] {
+            assert_eq!(content(link), format!("<p>{expected}</p>\n"));
         }
     }
-    match lost.is_empty() {
-        true => Ok(()),
-        false => Err(lost.join("\n")),
+
+    #[test]
+    fn headings_have_the_anchors_of_code_hosts_and_each_its_own() {
+        let html = content("# A `b`, c\n\n## Again\n\n## Again\n");
+        for id in ["a-b-c", "again", "again-1"] {
+            assert!(html.contains(&format!(" id=\"{id}\"")), "{html}");
+        }
+    }
+
+    #[test]
+    fn nothing_of_a_page_needs_a_style_that_the_policy_forbids() {
+        let html = content("| a | b | c |\n|--:|:-:|:--|\n| 1 | 2 | 3 |\n");
+        assert!(
+            html.contains("class=\"right\"") && !html.contains("style="),
+            "{html}"
+        );
+    }
+
+    #[test]
+    fn a_page_and_its_translation_name_each_other() {
+        for (path, other) in [
+            ("README.md", "README.es.md"),
+            ("docs/lessons/en/README.md", "docs/lessons/es/README.md"),
+        ] {
+            assert_eq!(counterpart(path).as_deref(), Some(other));
+            assert_eq!(counterpart(other).as_deref(), Some(path));
+        }
+        assert_eq!(counterpart("docs/a.md"), None);
     }
 }

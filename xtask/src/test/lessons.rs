@@ -2,9 +2,8 @@
 //!
 //! A row whose first cell links to a run of the lab is checked in each column whose head links to a metric, named by the
 //! link's title: `[overshoot (cm)](../../scenarios.md#metrics "step1.overshoot_m")`. `rumbo run` drives that scenario
-//! with the link's seed and parameters. A figure is right to its last digit; a metric without a value is `never`, one that
-//! the run does not have `–`. Both
-//! languages have the same runs and figures.
+//! with the link's seed and parameters. A figure is right to its last digit; a metric without a value is `never`, one
+//! that the run does not have `–`. Both languages have the same runs and figures. Scenarios in `toml` blocks run.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -13,6 +12,7 @@ use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 use serde_json::Value;
 
 use super::Stop;
+use crate::markdown::Markdown;
 use crate::project::Project;
 
 const FOLDER: &str = "docs/lessons";
@@ -68,6 +68,15 @@ pub(crate) fn check(project: &Project) -> Result<(), Stop> {
             let text = std::fs::read_to_string(project.root.join(path(language)));
             text.map_err(|error| format!("{}: {error}", path(language)))
         };
+        for language in ["en", "es"] {
+            for block in Markdown::parse(&read(language)?).blocks {
+                if block.language == "toml" {
+                    let tried = try_scenario(project, &rumbo, &block.text);
+                    let place = format!("{}:{}", path(language), block.line);
+                    wrong.extend(tried.err().map(|what| format!("{place}: {what}")));
+                }
+            }
+        }
         let (english, spanish) = (figures(&read("en")?), figures(&read("es")?));
         wrong.extend(difference(&english, &spanish).map(|what| format!("{name}: {what}")));
         count += english.len();
@@ -163,22 +172,37 @@ fn difference(english: &[Figure], spanish: &[Figure]) -> Option<String> {
 
 /// The metrics of the run that a link opens.
 fn metrics(project: &Project, rumbo: &Path, run: &str) -> Result<Value, String> {
-    let mut command = project.command(rumbo);
-    command.args(["run", "--json", "--no-record"]);
+    let mut arguments = Vec::new();
     for field in run.split('&') {
         let (name, value) = field.split_once('=').unwrap_or((field, ""));
         match name {
-            "scenario" => command.arg(value),
-            "seed" | "world" | "rig" | "robot" => command.arg(format!("--{name}")).arg(value),
-            _ => command.arg("--param").arg(field),
-        };
+            "scenario" => arguments.push(value.to_owned()),
+            "seed" | "world" | "rig" | "robot" => {
+                arguments.extend([format!("--{name}"), value.to_owned()])
+            }
+            _ => arguments.extend(["--param".to_owned(), field.to_owned()]),
+        }
     }
-    // A run that misses a limit has exit status 1, and metrics.
-    let output = command
-        .output()
-        .map_err(|error| format!("{run}: {error}"))?;
+    result_of(project, rumbo, &arguments).map_err(|error| format!("{run}: {error}"))
+}
+
+/// Runs a scenario that a lesson lets its reader write.
+fn try_scenario(project: &Project, rumbo: &Path, text: &str) -> Result<(), String> {
+    let path = project.target.join("lesson.toml");
+    let wrong = |error: std::io::Error| format!("{}: {error}", path.display());
+    std::fs::write(&path, text).map_err(wrong)?;
+    result_of(project, rumbo, &[path.to_string_lossy().into_owned()]).map(|_| ())
+}
+
+/// The metrics of one run; one that misses a limit has them too.
+fn result_of(project: &Project, rumbo: &Path, arguments: &[String]) -> Result<Value, String> {
+    let mut command = project.command(rumbo);
+    command
+        .args(["run", "--json", "--no-record"])
+        .args(arguments);
+    let output = command.output().map_err(|error| error.to_string())?;
     let mut result: Value = serde_json::from_slice(&output.stdout)
-        .map_err(|_| format!("{run}: {}", String::from_utf8_lossy(&output.stderr)))?;
+        .map_err(|_| String::from_utf8_lossy(&output.stderr).into_owned())?;
     Ok(result["metrics"].take())
 }
 
