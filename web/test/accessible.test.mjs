@@ -2,24 +2,11 @@
 /** What axe finds on the pages: nothing serious, in both colour schemes. */
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
+import { violations } from './axe.mjs';
 import { folder, open, program } from './dashboard.mjs';
-
-const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-
-/** Serious violations, with the elements. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
-async function violations(page) {
-  await page.evaluate(AXE);
-  return page.evaluate(async () => {
-    const { violations } = await /** @type {any} */ (window).axe.run(document);
-    return violations.filter((/** @type {any} */ { impact }) => ['serious', 'critical'].includes(impact))
-      .flatMap((/** @type {any} */ { id, nodes }) => nodes.map((/** @type {any} */ node) => `${id}: ${node.html.slice(0, 140)} ${node.any[0]?.message ?? node.failureSummary ?? ''}`));
-  });
-}
 
 for (const colorScheme of /** @type {const} */ (['dark', 'light'])) {
   test(`dashboard, first steps, recordings and replay, ${colorScheme}`, async () => {
