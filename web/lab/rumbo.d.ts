@@ -35,8 +35,8 @@ export class Robot {
   take_outgoing(): Uint8Array<ArrayBuffer>;
   /** The port is gone, and why. */
   lost(why: string): void;
-  /** It is open again. */
-  back(): void;
+  /** It is open again, or another one of this name is in its place. */
+  back(name: string): void;
   /** Warns the page. */
   warn(text: string): void;
   /** Takes an order, as JSON. */

@@ -1,11 +1,13 @@
 // @ts-check
 /** A robot's port in the worker: moves its bytes, and opens it again when it was gone. */
-import { kindOf, serial } from '../src/serial_ports.js';
+import { kindOf, nameOf, serial } from '../src/serial_ports.js';
 
 /** @typedef {import('../src/serial_ports.js').SerialPort} SerialPort */
 
 /** Opening a port that is gone is tried this often [ms]. */
 const AGAIN_MS = 250;
+/** Room for what arrives while the worker is busy [bytes]: more than a page of flash. */
+const BUFFER = 4_096;
 /** A port that takes no bytes for this long loses those that come then: what needs an answer is sent again [ms]. */
 const PATIENCE_MS = 100;
 
@@ -19,7 +21,7 @@ export async function openPort(kind, baudRate) {
   const [port] = alike;
   // With two, a robot might be driven that nobody looks at.
   if (!port || alike.length > 1) throw new Error(port ? 'there are two of the kind: choose one again' : 'the browser does not offer it: plug it in, or choose it again');
-  await port.open({ baudRate });
+  await port.open({ baudRate, bufferSize: BUFFER });
   return port;
 }
 
@@ -52,7 +54,8 @@ export class SerialLink {
    * @param {string} kind of the port
    * @param {number} baud
    * @param {(bytes: Uint8Array) => void} arrived
-   * @param {(lost: string | null) => void} changed called when the port is gone, with the reason, and when it is back
+   * @param {(now: {lost: string} | {back: string}) => void} changed called when the port is gone, with the reason, and when
+   *   it is back, or another one, with its name
    */
   constructor(kind, baud, arrived, changed) {
     this.#kind = kind;
@@ -83,10 +86,10 @@ export class SerialLink {
     while (!this.#ended) {
       const why = await this.#read();
       await this.#closePort();
-      if (this.#ended) return;
-      this.#changed(why);
+      if (!this.#ended) this.#changed({ lost: why });
       await this.#reopen();
     }
+    await this.#closePort();
   }
 
   /** Reads until the port is gone. @returns {Promise<string>} why */
@@ -114,7 +117,8 @@ export class SerialLink {
       const port = await openPort(this.#kind, this.#baud).catch(() => null);
       if (!port) continue;
       this.#use(port);
-      return this.#changed(null);
+      if (!this.#ended) this.#changed({ back: nameOf(port) });
+      return;
     }
   }
 

@@ -7,8 +7,8 @@
  * samples of plots, and the session does not wait for it. 'save' asks for the recording, a file `{ name, bytes }`; such a
  * file from the page is shown as a replay, as 'replay' shows the recording, and 'resume' shows the lab again. 'share' asks
  * for the run as a link carries it, `{ shared }`. `{ connect }` begins a session with the robot at a port, `{ choose }`
- * looks for it at another one, and 'leave' goes back to the lab; `{ port }` is the port's name or null, `{ refused }` why
- * there is none. `{ flash }` writes a program to a board, `{ flashed }` says how far that is. To the page go arrays of the messages of the station's WebSocket, or `{ error }` when the session has ended.
+ * looks for it at another one, and 'leave' goes back to the lab; `{ port }` is the port's name or null, `{ back }` the
+ * name when it is there again or null when it is gone, `{ refused }` why there is none. `{ flash }` writes a program to a board, `{ flashed }` says how far that is. To the page go arrays of the messages of the station's WebSocket, or `{ error }` when the session has ended.
  */
 import { readLink } from '../src/run_link.js';
 import { LOCK } from '../src/serial_ports.js';
@@ -105,10 +105,10 @@ async function connect({ kind, name, baud, text }) {
     self.postMessage({ refused: 'another page of this browser drives a robot: go back to its lab first' });
     return;
   }
-  const link = new SerialLink(kind, baud, (bytes) => real?.session.arrived(bytes), (why) => {
-    if (why === null) real?.session.back();
-    else real?.session.lost(why);
-    self.postMessage({ gone: why !== null });
+  const link = new SerialLink(kind, baud, (bytes) => real?.session.arrived(bytes), (now) => {
+    if ('back' in now) real?.session.back(now.back);
+    else real?.session.lost(now.lost);
+    self.postMessage({ back: 'back' in now ? now.back : null });
   });
   try {
     await link.open();
@@ -156,8 +156,8 @@ async function leave(robot) {
   round();
   await pause(LEAVING_MS);
   real = null;
-  await link.close();
-  release();
+  // A port that is gone may take its time.
+  link.close().finally(release);
   try {
     session.save(started(session));
     let file = session.saved();

@@ -47,6 +47,11 @@ export class FlashForm {
     this.#take(null);
   }
 
+  /** Asks a person who closes the page in between. @param {BeforeUnloadEvent} event */
+  static #askFirst(event) {
+    event.preventDefault();
+  }
+
   /** @param {File | null} file */
   #take(file) {
     this.#file = file;
@@ -80,6 +85,8 @@ export class FlashForm {
     const writes = 'part' in flashed && flashed.phase !== 'done';
     this.#write.disabled = writes;
     this.#bar.hidden = !writes;
+    if (writes) addEventListener('beforeunload', FlashForm.#askFirst);
+    else removeEventListener('beforeunload', FlashForm.#askFirst);
     if ('error' in flashed) {
       setText(this.#phase, '');
       return setText(this.#complaint, said(flashed.error));

@@ -101,9 +101,10 @@ export class RobotPort {
     if ('flashed' in news) return this.#flash?.show(news.flashed);
     this.#connect.disabled = false;
     if ('refused' in news) return setText(this.#complaint, said(news.refused));
-    if ('gone' in news) {
-      this.#choose.hidden = !news.gone;
-      this.#name.classList.toggle('bad', news.gone);
+    if ('back' in news) {
+      this.#choose.hidden = news.back !== null;
+      this.#name.classList.toggle('bad', news.back === null);
+      if (news.back !== null) setText(this.#name, t('port {}', news.back));
       return undefined;
     }
     document.body.classList.toggle('at-port', news.port !== null);

@@ -11,7 +11,7 @@
  *
  * @typedef {object} SerialPort A port, as browsers give it.
  * @property {() => PortInfo} getInfo
- * @property {(options: {baudRate: number}) => Promise<void>} open
+ * @property {(options: {baudRate: number, bufferSize: number}) => Promise<void>} open
  * @property {() => Promise<void>} close
  * @property {() => Promise<void>} forget
  * @property {(signals: {dataTerminalReady?: boolean, requestToSend?: boolean}) => Promise<void>} setSignals

@@ -19,9 +19,9 @@ import { saveFile } from './dialog.js';
  */
 
 /**
- * What the worker says of the port of a real robot: it is driven there, or no longer; it is gone, or back; why there is
+ * What the worker says of the port of a real robot: it is driven there, or no longer; it is back, or gone; why there is
  * none; how far the writing of a program is.
- * @typedef {{port: string | null} | {gone: boolean} | {refused: string} | {flashed: import('./flash_form.js').Flashed}} PortNews
+ * @typedef {{port: string | null} | {back: string | null} | {refused: string} | {flashed: import('./flash_form.js').Flashed}} PortNews
  */
 
 /** The session runs in the page, not in a station: the site's `index.html` says so. */
@@ -53,7 +53,7 @@ export class WorkerLink {
     worker.addEventListener('message', ({ data }) => {
       if (data.bytes) return saveFile(data.name, new Blob([data.bytes], { type: 'application/octet-stream' }));
       if (data.shared) return this.#waiting.shift()?.(JSON.parse(data.shared));
-      if (['port', 'gone', 'refused', 'flashed'].some((name) => name in data)) return this.onPort(data);
+      if (['port', 'back', 'refused', 'flashed'].some((name) => name in data)) return this.onPort(data);
       if (!Array.isArray(data)) return this.#end(data.error);
       if (!this.#open) onChange('open', null);
       this.#open = true;

@@ -11,7 +11,6 @@ import { program } from './dashboard.mjs';
 
 /** Below the site's address. */
 const BELOW = 'fake/';
-const INFO = { usbVendorId: 0x2341, usbProductId: 0x42 };
 
 /** The stand-in for `navigator.serial`, run in page and worker. @param {string} base the address of the stand-in's server */
 function standIn(base) {
@@ -65,13 +64,16 @@ function standIn(base) {
       await ask('signals', { method: 'POST', body: JSON.stringify(signals) });
     }
   }
-  /** The same objects each time, as browsers give them. @type {Port[]} */
-  let ports = [];
+  /** The same objects each time, as browsers give them. @type {Map<string, Port>} */
+  const ports = new Map();
   const serial = {
     async getPorts() {
       const infos = await (await ask('ports')).json();
-      ports = infos.map((/** @type {any} */ info, /** @type {number} */ index) => ports[index] ?? new Port(info));
-      return ports;
+      return infos.map((/** @type {any} */ info) => {
+        const port = ports.get(JSON.stringify(info)) ?? new Port(info);
+        ports.set(JSON.stringify(info), port);
+        return port;
+      });
     },
     async requestPort() {
       if (!(await ask('grant', { method: 'POST' })).ok) throw new DOMException('No port selected by the user.', 'NotFoundError');
@@ -98,8 +100,11 @@ export class SerialRobot {
   sent = 0;
   /** The last speed at which it was opened [baud]. @type {number | null} */
   baud = null;
+  /** What its port says of itself. */
+  info = { usbVendorId: 0x2341, usbProductId: 0x42 };
   #plugged = true;
-  #granted = 0;
+  /** Those that a person has chosen. @type {Set<string>} */
+  #granted = new Set();
   /** @type {Set<import('node:http').ServerResponse>} */
   #readers = new Set();
   #end;
@@ -133,10 +138,10 @@ export class SerialRobot {
     if (!path.startsWith(BELOW)) return false;
     const what = path.slice(BELOW.length);
     if (what === 'grant') {
-      if (this.chooses) this.#granted = 1;
+      if (this.chooses) this.#granted.add(JSON.stringify(this.info));
       response.writeHead(this.chooses ? 204 : 403).end();
     } else if (what === 'ports') {
-      response.writeHead(200, { 'Content-Type': 'application/json' }).end(JSON.stringify(this.#plugged ? Array(this.#granted).fill(INFO) : []));
+      response.writeHead(200, { 'Content-Type': 'application/json' }).end(JSON.stringify(this.#plugged && this.#granted.has(JSON.stringify(this.info)) ? [this.info] : []));
     } else if (what === 'open' && this.#plugged) {
       this.baud = Number(new URL(request.url ?? '', 'http://localhost').searchParams.get('baud'));
       response.writeHead(200, { 'Content-Type': 'application/octet-stream' });

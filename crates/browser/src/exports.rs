@@ -134,9 +134,9 @@ impl Robot {
         self.0.lost(why);
     }
 
-    /// It is open again.
-    pub fn back(&mut self) {
-        self.0.back();
+    /// It is open again, or another one of this name is in its place.
+    pub fn back(&mut self, name: &str) {
+        self.0.back(name);
     }
 
     /// Takes an order, as JSON.

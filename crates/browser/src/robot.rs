@@ -65,9 +65,9 @@ impl Robot {
         self.desk.driver.target().lost(why);
     }
 
-    /// The port is open again.
-    pub fn back(&mut self) {
-        self.desk.driver.target().back();
+    /// The port is open again, or another one of this name is in its place.
+    pub fn back(&mut self, name: &str) {
+        self.desk.driver.target().back(name);
     }
 
     /// Takes an order of the page, to be executed in the next round; what is refused is reported with the next news.

@@ -66,9 +66,10 @@ impl SerialPort {
         }
     }
 
-    /// It is open again.
-    pub(crate) fn back(&mut self) {
+    /// It is open again, or another one of this name is in its place.
+    pub(crate) fn back(&mut self, name: &str) {
         if std::mem::take(&mut self.gone) {
+            self.name = name.into();
             let text = format!("port {} is back", self.name);
             self.news.push_back(LinkNews::Back(text));
         }

@@ -132,9 +132,9 @@ fn without_its_heartbeat_the_robot_stops_and_a_port_that_is_back_needs_a_new_on(
     bench.pass(1.0);
     assert_eq!(bench.to_robot.len(), lost, "nothing is queued for it");
     bench.plugged = true;
-    bench.page.back();
+    bench.page.back("USB 1a86:7523");
     let said = bench.pass(2.5);
-    assert!(said.contains("port USB 2341:0042 is back"), "{said}");
+    assert!(said.contains("port USB 1a86:7523 is back"), "{said}");
     assert!(said.contains("\"connected\":true"), "{said}");
     assert!(!bench.turns());
 }
@@ -148,7 +148,7 @@ fn a_stop_given_while_the_port_is_gone_is_the_only_order_sent_when_it_is_back() 
     bench.page.order(STOP);
     bench.pass(0.2);
     bench.plugged = true;
-    bench.page.back();
+    bench.page.back("USB 2341:0042");
     let said = bench.pass(2.0);
     assert!(said.contains("STOP: acknowledged"), "{said}");
     assert!(!said.contains("ON: acknowledged"), "{said}");
