@@ -156,8 +156,8 @@ fn files_below(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(files)
 }
 
-/// The lab as WebAssembly.
-fn compile(project: &Project) -> Result<PathBuf, Stop> {
+/// The lab as WebAssembly; with it the report, which no page has yet, so that it stays fit for one.
+pub(crate) fn compile(project: &Project) -> Result<PathBuf, Stop> {
     let toolchain = Toolchain::find(project)?;
     // Apart, so that this compiler and the usual one do not build each other's crates again.
     let target = project.target.join("wasm");
@@ -167,7 +167,9 @@ fn compile(project: &Project) -> Result<PathBuf, Stop> {
         "--quiet",
         "--locked",
         "--lib",
+        "--no-default-features",
         "--package=rumbo-browser",
+        "--package=rumbo-report",
         "-Zbuild-std=std,panic_abort",
     ]);
     build.args(["--profile", PROFILE, "--target", TARGET]);

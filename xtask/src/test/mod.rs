@@ -16,7 +16,6 @@ use std::time::{Duration, Instant};
 
 pub(crate) use tools::installed_chromium;
 
-use crate::firmware::toolchain::Toolchain;
 use crate::project::{Project, run as run_command};
 use crate::tidy;
 
@@ -279,28 +278,10 @@ fn fuzz(project: &Project) -> Result<(), Stop> {
     found_nothing(crate::fuzz::campaign(project, Some(5), &[])?)
 }
 
-/// With the firmware's Rust, which has the sources of the library: no further target need be installed.
+/// The step *browser* takes what this one builds.
 fn wasm(project: &Project) -> Result<(), Stop> {
-    let mut check = Toolchain::find(project)?.command("cargo");
-    check.current_dir(&project.root).args([
-        "check",
-        "--locked",
-        "-Zbuild-std=std,panic_abort",
-        "--target=wasm32-unknown-unknown",
-        "--no-default-features",
-    ]);
-    for package in [
-        "rumbo-sim",
-        "rumbo-experiment",
-        "rumbo-report",
-        "rumbo-session",
-        "rumbo-browser",
-    ] {
-        check.args(["--package", package]);
-    }
-    // Apart, so that this compiler and the usual one do not build each other's crates again.
-    check.arg("--target-dir").arg(project.target.join("wasm"));
-    Ok(run_command(&mut check)?)
+    crate::site::compile(project)?;
+    Ok(())
 }
 
 fn build(project: &Project) -> Result<(), Stop> {
