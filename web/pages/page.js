@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * Links of a page that open the lab set to an experiment: beside the text where there is room, else in place of the page.
- * The lab is loaded when the first of them is used, and anew for each.
+ * The lab is loaded when one of them is used, again for each.
  */
 
 /** Text and lab side by side, both readable. */
