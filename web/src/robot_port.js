@@ -49,7 +49,7 @@ export class RobotPort {
     element('port-end', HTMLButtonElement).addEventListener('click', () => this.#ask('leave'));
     const hints = [
       t('Drives a robot at a serial port of this computer: its Bluetooth module, once the computer is paired with it, or a cable. The simulated robot waits meanwhile.'),
-      t('Connecting does not switch the robot on: ON does. It stops by itself within half a second when the port is gone or this page is closed.'),
+      t('Connecting does not switch the robot on: ON does. Rumbo\'s program stops it within half a second when the port is gone or this page is closed.'),
     ];
     this.#dialog.body.append(...hints.map((textContent) => create('p', { textContent })));
     const why = whyNot();
@@ -58,7 +58,7 @@ export class RobotPort {
       return;
     }
     this.#dialog.body.append(
-      create('div', { className: 'row' }, create('label', {}, `${t('speed of the line')} `, this.#speed, ' baud'), create('label', {}, this.#text, ` ${t('it runs the original program, which is silent until ON')}`)),
+      create('div', { className: 'row' }, create('label', {}, `${t('speed of the line')} `, this.#speed, ' baud'), create('label', {}, this.#text, ` ${t('it runs the original program, which is silent until ON, and drives on when the port is gone')}`)),
       create('div', { className: 'row' }, this.#connect), this.#complaint);
     this.#flash = new FlashForm((program) => ask({ flash: program }));
     this.#dialog.body.append(this.#flash.body);
