@@ -68,11 +68,13 @@ pub(crate) fn shell(language: Language, title: &str, subtitle: &str, body: &str)
 }
 
 /// A heading of a page without numbers.
+#[cfg(feature = "host")]
 pub(crate) fn heading(text: &str) -> String {
     format!("<h2 class=\"on\">{}</h2>\n", escape(text))
 }
 
 /// A figure without a number; `label` is for screen readers.
+#[cfg(feature = "host")]
 pub(crate) fn figure(svg: &str, label: &str) -> String {
     let label = format!("<svg role=\"img\" aria-label=\"{}\"", escape(label));
     let svg = svg.replacen("<svg", &label, 1);

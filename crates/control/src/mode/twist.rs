@@ -1,6 +1,6 @@
 //! Mode 10: a forward speed and a yaw rate from outside, such as those of ROS 2 or a joystick.
 //!
-//! The sender repeats its velocity while it wants the robot to move; the newest one counts. After [`LIFE_TICKS`] without
+//! The sender repeats its velocity while it wants the robot to move; the newest one counts. Half a second without
 //! one the wheels are released: a sender that is gone drives nothing. ON begins without a velocity.
 //!
 //! Both wheels follow their speed loops ([`crate::drive`]), ramps included. Where a wheel would have to turn faster than
