@@ -487,8 +487,8 @@ def check_two(peer, first):
     odometry = peer.listen(Odometry, "/second/odom")
     clock = peer.listen(Clock, "/second/clock")
     wait_for("the second robot", lambda: odometry and clock)
-    nodes = peer.node.get_node_names_and_namespaces()
-    assert {("rumbo", "/"), ("rumbo", "/second")} <= set(nodes), nodes
+    nodes = {("rumbo", "/"), ("rumbo", "/second")}
+    wait_for("both nodes", lambda: nodes <= set(peer.node.get_node_names_and_namespaces()))
     peer.must("/second/rumbo/mode/twist")
     peer.must("/second/rumbo/arm")
     old = moved_m(odometry, lambda: peer.drive("/second/cmd_vel", lambda: stamped(clock, 2), 0.7))
