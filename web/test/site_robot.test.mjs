@@ -191,7 +191,7 @@ test('back in the lab the robot is stopped, its recording is saved, and the lab 
 
 test('dialog and port line speak Spanish, and are accessible', { skip }, async () => {
   const robot = await startRobot();
-  const here = await open({ locale: 'es-ES' }, '', robot);
+  const here = await open({ locale: 'es-ES' }, '', '', robot);
   const { page } = here;
   const says = (/** @type {RegExp} */ text) => page.locator('#events li', { hasText: text }).first().waitFor();
   try {
