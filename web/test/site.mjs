@@ -3,6 +3,7 @@
 import { createReadStream, existsSync, readFileSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
+import { after } from 'node:test';
 import { chromium } from 'playwright-core';
 import { BROWSER_ARGS, PATIENCE_MS } from './dashboard.mjs';
 
@@ -49,6 +50,10 @@ function serve(robot) {
   });
 }
 
+/** What a test that has failed leaves open, which would keep its file from ending. @type {Set<() => Promise<void>>} */
+const left = new Set();
+after(() => Promise.all([...left].map((close) => close())));
+
 /**
  * Opens the site. What its scripts complain of is in `complaints`, and requests that leave it are in `abroad`.
  * @param {import('playwright-core').BrowserContextOptions} [options]
@@ -75,10 +80,12 @@ export async function open(options = {}, link = '', path = '', robot = undefined
   context.on('request', (request) => {
     if (!request.url().startsWith(server.url) && !/^(blob|data):/.test(request.url())) abroad.push(request.url());
   });
-  await page.goto(server.url + path + (link && `#${link}`));
   const close = async () => {
+    left.delete(close);
     await browser.close();
     server.close();
   };
+  left.add(close);
+  await page.goto(server.url + path + (link && `#${link}`));
   return { page, context, complaints, abroad, url: server.url, unplug: server.close, close };
 }

@@ -189,8 +189,9 @@ test('back in the lab the robot is stopped, its recording is saved, and the lab 
   robot.plug();
 });
 
-test('dialog and port line speak Spanish, and are accessible', { skip }, async () => {
+test('dialog and port line speak Spanish, and are accessible', { skip }, async (context) => {
   const robot = await startRobot();
+  context.after(() => robot.close());
   const here = await open({ locale: 'es-ES' }, '', '', robot);
   const { page } = here;
   const says = (/** @type {RegExp} */ text) => page.locator('#events li', { hasText: text }).first().waitFor();
@@ -215,7 +216,6 @@ test('dialog and port line speak Spanish, and are accessible', { skip }, async (
     assert.deepEqual(left, []);
   } finally {
     await here.close();
-    robot.close();
   }
 });
 
