@@ -269,3 +269,14 @@ test('nothing is loaded from elsewhere, and no script complains', { skip }, () =
   assert.deepEqual(site.abroad, []);
   assert.deepEqual(site.complaints, []);
 });
+
+test('STOP is whole at each width, beside the links to the other pages too', { skip }, async () => {
+  const here = await open({ locale: 'es-ES' });
+  await here.page.locator('#pages a').first().waitFor();
+  for (const width of [390, 900, 1100, 1280, 1400, 1500]) {
+    await here.page.setViewportSize({ width, height: 800 });
+    const { x, width: wide } = await here.page.locator('#stop').boundingBox() ?? { x: NaN, width: NaN };
+    assert.ok(x >= 0 && x + wide <= width, `${width}: ${x} to ${x + wide}`);
+  }
+  await here.close();
+});
