@@ -22,7 +22,9 @@ export const PATIENCE_MS = 30_000;
 
 /**
  * Repeats a check of what the page shows until it holds: the page draws when the robot's next message comes, not when a click returns.
- * @param {() => Promise<void>} check throws while it does not hold
+ * @template T
+ * @param {() => Promise<T>} check throws while it does not hold
+ * @returns {Promise<T>} what it gives
  */
 export async function eventually(check) {
   for (const end = Date.now() + PATIENCE_MS; ;) {
