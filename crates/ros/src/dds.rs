@@ -6,7 +6,7 @@
 //! the node               ros_discovery_info: its name, and which writers and readers are its own
 //! ```
 //!
-//! A request is told from another by what Fast DDS sends beside the data (the related sample identity of DDS-RPC), or by
+//! A request is identified by what Fast DDS sends beside the data (the related sample identity of DDS-RPC), or by
 //! what Cyclone puts before them: half the client's GUID and a number. Which of both it is, the client's GUID says: it
 //! begins with the number of its vendor. Names and types: the design pages of ROS 2 on topic and service names;
 //! `rmw_dds_common/msg/ParticipantEntitiesInfo`.

@@ -36,7 +36,7 @@ const AT_ONCE: usize = 64;
 const ALTERNATING: Duration = Duration::from_millis(500);
 /// The session has certainly taken an order after this time.
 const TAKEN: Duration = Duration::from_millis(50);
-/// The clock of a simulation is told this often at least: a pause has a time too.
+/// The clock of a simulation is published this often at least: a pause has a time too.
 const CLOCK: Duration = Duration::from_millis(200);
 
 /// What a service is for.
@@ -108,7 +108,7 @@ pub(super) struct Live {
     scene: Option<Scene>,
     parameters: BTreeMap<&'static str, f32>,
     state: State,
-    /// The time of a simulation [ms], and when it was told last.
+    /// The time of a simulation [ms], and when it was published last.
     clock_ms: i64,
     clocked: Instant,
     /// The last trouble with others, and when it was said.
