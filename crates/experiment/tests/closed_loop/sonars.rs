@@ -28,3 +28,26 @@ fn a_front_sonar_that_lies_drives_the_robot_into_nothing() {
     assert_eq!(verdict.hard, 0);
     assert!(verdict.touches <= verdict.runs / 20);
 }
+
+/// Drives in which a sonar's silence led to a fast touch: of a side sonar beside an obstacle, and of the front sonar
+/// where only walls far beside the robot can test it.
+#[test]
+fn a_sonar_that_falls_silent_lets_the_robot_touch_gently_at_most() {
+    let silent = [
+        ("mode8-obstacles", 23, "right sonar: nothing in reach"),
+        ("mode8-random", 1, "left sonar: nothing in reach"),
+        ("mode8-random", 65, "front sonar: nothing in reach"),
+    ];
+    for (scenario, seed, fails) in silent {
+        let drives = drive_all(
+            &Overrides::default(),
+            seed..seed + 1,
+            4,
+            |drive, failure| drive == scenario && failure.to_string().starts_with(fails),
+        );
+        let verdict = Verdict::of(&drives.unwrap());
+        println!("{scenario}, seed {seed}, {fails}: {verdict:?}");
+        assert!(verdict.runs >= 3);
+        assert_eq!(verdict.hard, 0);
+    }
+}

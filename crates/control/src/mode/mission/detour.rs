@@ -127,7 +127,7 @@ impl Mission<'_> {
             let speed_m_s = min(self.free_m_s(state), min(self.around_m_s, careful_m_s));
             if speed_m_s >= CREEP_M_S {
                 let drive = self.line.steer(speed_m_s, error_rad);
-                return if state.near_m < CLOSE_M || state.watch.doubts() {
+                return if state.near_m < CLOSE_M || state.doubts() {
                     slow_corners(drive)
                 } else {
                     drive
@@ -141,12 +141,8 @@ impl Mission<'_> {
 
     /// The state of an advance: what the sonar towards the obstacle sees.
     fn beside(&self, state: &mut State, estimate: &Estimate, side: Side) -> Phase {
-        let towards = match side {
-            Side::Left => SonarId::Right,
-            Side::Right => SonarId::Left,
-        };
-        let sees =
-            matches!(estimate.range(towards).range, Range::Valid(range_m) if range_m < BESIDE_M);
+        let range = estimate.range(towards(side)).range;
+        let sees = matches!(range, Range::Valid(range_m) if range_m < BESIDE_M);
         match state.phase {
             _ if sees => {
                 state.lost_m = 0.0;
@@ -158,6 +154,14 @@ impl Mission<'_> {
             }
             _ => Phase::Seek,
         }
+    }
+}
+
+/// The sonar towards an obstacle that is passed on a side.
+pub(super) fn towards(side: Side) -> SonarId {
+    match side {
+        Side::Left => SonarId::Right,
+        Side::Right => SonarId::Left,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Reach a point around obstacles: the states on the straight line to the goal; around an obstacle: `detour.rs`.
 
-use super::detour::following;
+use super::detour::{following, towards};
 use super::gaze::{SWEEP_RAD, look};
 use super::obstacle::Among;
 use super::{
@@ -9,7 +9,7 @@ use super::{
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
 use crate::motion::{LineState, TurnState, TurnStep};
-use crate::types::{Fault, TICK_S};
+use crate::types::{Fault, Range, TICK_S};
 use core::f32::consts::TAU;
 
 /// An obstacle this near on the way is looked at [m].
@@ -176,7 +176,7 @@ impl Mission<'_> {
         let mut turn = Turn::new(self.params);
         let rate_rad_s = (min(state.near_m, 1.0) - TIGHT_M) * TIGHT_SLOPE;
         turn.rate_rad_s = min(turn.rate_rad_s, max(rate_rad_s, TIGHT_RAD_S));
-        if state.watch.doubts() {
+        if state.doubts() {
             turn.rate_rad_s = min(turn.rate_rad_s, TIGHT_RAD_S);
         }
         turn.step(&mut state.turn, estimate, heading_rad)
@@ -236,7 +236,7 @@ impl Mission<'_> {
     pub(super) fn free_m_s(&self, state: &State) -> f32 {
         let room_m = max(state.gap_m - KEEP_M, 0.0);
         let free_m_s = sqrt(2.0 * self.params.get(ParamId::LineBrake) * room_m);
-        if state.watch.doubts() {
+        if state.doubts() {
             min(free_m_s, DOUBT_M_S)
         } else {
             free_m_s
@@ -301,6 +301,13 @@ fn count(state: &mut State, estimate: &Estimate, way: &Way) {
     if let Some((_, way_m)) = &mut state.last {
         *way_m += rolled_m;
     }
+    state.unseen_m = match &state.detour {
+        Some(detour) => match estimate.range(towards(detour.side)).range {
+            Range::Valid(_) => 0.0,
+            _ => state.unseen_m + rolled_m,
+        },
+        None => 0.0,
+    };
     if let Some(detour) = &mut state.detour {
         detour.way_m += rolled_m;
         // Seen from the goal the robot moves along its own bearing, half a turn off.

@@ -41,6 +41,8 @@ use plan::Plan;
 use proof::Proof;
 use watch::{Watch, Worth};
 
+/// Way around an obstacle without an echo of the sonar towards it, after which that may be silent for ever [m].
+const UNSEEN_M: f32 = 0.25;
 /// Time between two fades of the memory [s].
 const FADE_S: f32 = 1.0;
 
@@ -255,6 +257,8 @@ pub struct State {
     last: Option<(Side, f32)>,
     /// Way since the obstacle beside was lost [m].
     lost_m: f32,
+    /// Way of a detour since the sonar towards the obstacle had an echo [m].
+    unseen_m: f32,
     /// Times once around something.
     laps: u8,
 
@@ -268,6 +272,12 @@ impl State {
     /// A task has been commanded.
     pub fn renew(&mut self) {
         self.fresh = true;
+    }
+
+    /// Whether a sonar may be wrong: the robot should be slow. That at the obstacle's side is one if it has long been
+    /// silent.
+    fn doubts(&self) -> bool {
+        self.watch.doubts() || self.unseen_m > UNSEEN_M
     }
 
     /// The state for display.

@@ -12,6 +12,7 @@
 //! | face | stands, the servo looks ahead and to both sides | nothing answers in [`DIRECTIONS`] | deaf: a fault |
 
 use super::gaze::{SWEEP_RAD, Swing};
+use super::watch::far_wall;
 use super::{Drive, Mission, State};
 use crate::estimate::Estimate;
 use crate::math::{abs, atan2, clamp, wrap_angle};
@@ -125,11 +126,13 @@ impl Mission<'_> {
     }
 }
 
-/// A proof by what is beside the robot, or else by the face that answered last or what is remembered; none where there
-/// is nothing.
+/// A proof by what is near beside the robot, or else by the face that answered last, what is remembered, or a wall that
+/// a sonar at the side sees farther away; none where there is nothing.
 fn begin(state: &mut State, estimate: &Estimate) -> Option<Proof> {
     let known = state.watch.towards(estimate);
-    let (towards_rad, range_m) = known.or_else(|| remembered(state, estimate))?;
+    let (towards_rad, range_m) = known
+        .or_else(|| remembered(state, estimate))
+        .or_else(|| far_wall(estimate))?;
     let servo_rad = wrap_angle(towards_rad - estimate.pose.heading_rad);
     state.gaze.turn_to(clamp(servo_rad, -SWEEP_RAD, SWEEP_RAD));
     state.watch.ask();

@@ -43,8 +43,10 @@ const ARM_M: f32 = 0.1;
 const WALLS_SILENT: u8 = 2;
 /// The servo looks aside beyond this [rad].
 const LOOKS_ASIDE_RAD: f32 = 1.4;
-/// Farthest wall that is taken for one [m].
+/// Farthest wall beside the robot that tests the front sonar first [m].
 const WALL_M: f32 = 0.5;
+/// Farthest one that tests it where nothing else can [m].
+const FAR_WALL_M: f32 = 2.0;
 
 /// Something beside the robot is near within this [m].
 const NEAR_M: f32 = 0.35;
@@ -297,18 +299,10 @@ impl Watch {
     /// Where something is that must answer: the nearer wall beside the robot, and how near it is; or the face that
     /// answered last [rad, m].
     pub(super) fn towards(&self, estimate: &Estimate) -> Option<(f32, f32)> {
-        let heading_rad = estimate.pose.heading_rad;
-        let left = |range_m| Some((heading_rad + FRAC_PI_2, range_m));
-        let right = |range_m| Some((heading_rad - FRAC_PI_2, range_m));
-        match walls_m(estimate, WALL_M) {
-            [None, None] => {
-                let newest_rad = self.landmarks.newest_rad(&estimate.pose)?;
-                Some((newest_rad, WALL_M))
-            }
-            [Some(left_m), Some(right_m)] if right_m < left_m => right(right_m),
-            [Some(left_m), _] => left(left_m),
-            [None, Some(right_m)] => right(right_m),
-        }
+        wall_beside(estimate, WALL_M).or_else(|| {
+            let newest_rad = self.landmarks.newest_rad(&estimate.pose)?;
+            Some((newest_rad, WALL_M))
+        })
     }
 
     /// Whether some sonar may be wrong: the robot should be slow.
@@ -316,6 +310,24 @@ impl Watch {
         self.walls_silent > 0
             || self.landmarks.doubts()
             || self.sonars.iter().any(|sonar| sonar.outliers >= UNEASY)
+    }
+}
+
+/// Direction and distance of a wall beside the robot that is farther, but must answer too [rad, m].
+pub(super) fn far_wall(estimate: &Estimate) -> Option<(f32, f32)> {
+    wall_beside(estimate, FAR_WALL_M)
+}
+
+/// Direction and distance of the nearer wall within a distance beside the robot [rad, m].
+fn wall_beside(estimate: &Estimate, within_m: f32) -> Option<(f32, f32)> {
+    let heading_rad = estimate.pose.heading_rad;
+    match walls_m(estimate, within_m) {
+        [Some(left_m), Some(right_m)] if right_m < left_m => {
+            Some((heading_rad - FRAC_PI_2, right_m))
+        }
+        [Some(left_m), _] => Some((heading_rad + FRAC_PI_2, left_m)),
+        [None, Some(right_m)] => Some((heading_rad - FRAC_PI_2, right_m)),
+        [None, None] => None,
     }
 }
 
