@@ -249,7 +249,8 @@ impl Plant {
         queue: &mut Queue,
         events: &mut impl FnMut(Event),
     ) {
-        if motion.forward_m == 0.0 && motion.yaw_rad == 0.0 {
+        let at_rest = motion.forward_m == 0.0 && motion.yaw_rad == 0.0;
+        if at_rest && (self.world.bodies().is_empty() || self.wheels_in_air) {
             state.speed = [0.0; 2];
             return;
         }
@@ -261,9 +262,14 @@ impl Plant {
             y_m: before.y_m + motion.forward_m * across,
             heading_rad: before.heading_rad + motion.yaw_rad,
         };
-        let impact =
-            self.footprint
-                .settle(&self.world, &mut state.contact, &before, &mut pose, dt_s);
+        let step = contact::Step {
+            world: &self.world,
+            until_us: state.now_us,
+            dt_s,
+        };
+        let impact = self
+            .footprint
+            .settle(&step, &mut state.contact, &before, &mut pose);
         let moved_m = (pose.x_m - before.x_m) * ahead + (pose.y_m - before.y_m) * across;
         state.speed = [
             moved_m / dt_s,
@@ -310,7 +316,7 @@ impl Plant {
     pub fn truth(&self, state: &State) -> Truth {
         let range_m = SonarId::ALL.map(|sonar| {
             self.view(state, sonar)
-                .and_then(|view| self.sonar.true_range_m(&self.world, &view))
+                .and_then(|view| self.sonar.true_range_m(&self.world, state.now_us, &view))
         });
         let [left, right] = &state.drivetrain.wheels;
         Truth {
@@ -325,7 +331,7 @@ impl Plant {
             battery_a: state.drivetrain.battery.current_a,
             servo_rad: state.servo.angle_rad,
             contacts: state.contact.contacts,
-            touching: state.contact.touching,
+            touching: state.contact.touching(),
         }
     }
 
