@@ -187,6 +187,12 @@ impl Obstacle {
         if best.is_finite() { sqrt(best) } else { 0.0 }
     }
 
+    /// True if both have room in common.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        crate::contact::separation_m(self, other) < 0.0
+    }
+
     /// Distance from another outline, 0 if they overlap.
     #[must_use]
     pub fn apart_m(&self, other: &Self) -> f64 {
@@ -195,7 +201,7 @@ impl Obstacle {
                 .map(|corner| to.distance_m(corner))
                 .fold(f64::INFINITY, f64::min)
         };
-        if crate::contact::separation_m(self, other) < 0.0 {
+        if self.overlaps(other) {
             0.0
         } else {
             from_corners(self, other).min(from_corners(other, self))
