@@ -13,11 +13,12 @@ use crate::contact::{self, Footprint, Pose};
 use crate::drivetrain::{self, Bridge, Drivetrain, Motion, Side};
 use crate::encoder::{self, Encoder};
 use crate::event::Queue;
+use crate::moving::{Body, Course, Motion as BodyMotion, Velocity};
 use crate::noise::Noise;
 use crate::params::{self, Params};
 use crate::servo;
 use crate::sonar::{self, Sonar, SonarId, View};
-use crate::world::World;
+use crate::world::{ShapeError, World};
 
 /// Longest physical step, and the grid it keeps to.
 const STEP_US: u64 = 1000;
@@ -141,6 +142,34 @@ impl Plant {
     #[must_use]
     pub const fn world(&self) -> &World {
         &self.world
+    }
+
+    /// Puts a body that moves into the world.
+    ///
+    /// # Errors
+    /// There is no room for another one.
+    pub fn add_body(&mut self, state: &mut State, body: Body) -> Result<(), ShapeError> {
+        state.contact.clearance_m = 0.0;
+        self.world.add_body(body)
+    }
+
+    /// Sets the course of a body of the world, by its index, from now on.
+    pub fn set_course(&mut self, state: &mut State, body: usize, course: Course) {
+        state.contact.clearance_m -= self.world.set_course(body, state.now_us, course);
+    }
+
+    /// Where the body is, and how fast it moves.
+    #[must_use]
+    pub fn motion(&self, state: &State) -> BodyMotion {
+        let [forward_m_s, yaw_rad_s] = state.speed;
+        let (s, c) = sincos(state.pose.heading_rad);
+        BodyMotion {
+            pose: state.pose,
+            velocity: Velocity {
+                m_s: [forward_m_s * c, forward_m_s * s],
+                yaw_rad_s,
+            },
+        }
     }
 
     /// Footprint of the body.

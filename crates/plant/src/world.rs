@@ -7,7 +7,7 @@
 
 use libm::{sincos, sqrt};
 
-use crate::moving::{Body, MOST_BODIES};
+use crate::moving::{Body, Course, MOST_BODIES};
 
 /// A point or a vector on the floor: `[x, y]`, metres.
 pub type Point = [f64; 2];
@@ -335,6 +335,27 @@ impl World {
     #[must_use]
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
+    }
+
+    /// Sets the course of a body; returns how far at most a point of it jumps now \[m\].
+    pub(crate) fn set_course(&mut self, index: usize, now_us: u64, course: Course) -> f64 {
+        let Some(body) = self.bodies.get_mut(index) else {
+            return 0.0;
+        };
+        let was = body.at(now_us).pose;
+        body.follow(course);
+        let is = body.at(now_us).pose;
+        let turn_rad = (is.heading_rad - was.heading_rad).abs();
+        // By the shorter way, if a heading was wrapped.
+        let turn_rad = turn_rad.min((core::f64::consts::TAU - turn_rad).abs());
+        let jump_m = (is.x_m - was.x_m).abs() + (is.y_m - was.y_m).abs();
+        let jump_m = jump_m + turn_rad * body.radius_m();
+        self.fastest_m_s = self
+            .bodies
+            .iter()
+            .map(Body::fastest_m_s)
+            .fold(0.0, f64::max);
+        jump_m
     }
 
     /// No point of a body is faster.
