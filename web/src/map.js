@@ -150,7 +150,7 @@ export class WorldMap {
     sketch.context.setTransform(scale, 0, 0, -scale, width / 2 - view.x_m * scale, height / 2 + view.y_m * scale);
     const px = ratio / scale;
     sketch.drawGrid(view, px);
-    sketch.drawWorld(px);
+    sketch.drawWorld(px, this.#store.latest?.t_s ?? 0);
     sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
     sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
     sketch.drawTrail(this.#store.trails.ghost, colours.goal, px);
@@ -250,6 +250,7 @@ export class WorldMap {
         const next = corners_m[index + 1] ?? (closed ? corners_m[0] : undefined);
         return next ? nextTo(corner, next, [start.x_m, start.y_m], ALONG_M) : [];
       })) ?? []),
+      ...(this.#sketch.scene?.movers?.flatMap(({ waypoints }) => waypoints.map(({ at }) => /** @type {Point} */ ([at.x_m, at.y_m]))) ?? []),
       [start.x_m - around_m, start.y_m - around_m], [start.x_m + around_m, start.y_m + around_m],
       ...[[robot.x_m, robot.y_m], ...this.#trailCorners(), ...(goal ? [place(frame, goal)] : []), ...(route?.waypoints.map(({ x_m, y_m }) => place(frame, [x_m, y_m])) ?? [])]
         .map((point) => point.map((each) => Math.round(each / GROWTH_M) * GROWTH_M)),

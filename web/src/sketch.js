@@ -1,6 +1,7 @@
 // @ts-check
 /** What the map shows, drawn on a canvas in metres: world, trails, robot, the sonars' cones with their readings, goal and route. */
-import { compose, likelyArea } from './geometry.js';
+import { compose, likelyArea, place } from './geometry.js';
+import { poseOf } from './movers.js';
 import { colours } from './theme.js';
 import { formatShort } from './units.js';
 
@@ -92,22 +93,30 @@ export class Sketch {
     context.restore();
   }
 
-  /** @param {number} px */
-  drawWorld(px) {
+  /** @param {number} px @param {number} t_s Simulated time. */
+  drawWorld(px, t_s) {
     const context = this.context;
     context.strokeStyle = colours.wall;
     context.fillStyle = colours.wall;
     context.lineWidth = 2.5 * px;
     context.lineJoin = 'round';
-    for (const { corners_m, closed } of this.scene?.obstacles ?? []) {
-      tracePath(context, corners_m, closed);
-      if (closed) {
-        context.globalAlpha = 0.25;
-        context.fill();
-        context.globalAlpha = 1;
-      }
-      context.stroke();
+    for (const { corners_m, closed } of this.scene?.obstacles ?? []) this.#drawOutline(corners_m, closed);
+    for (const mover of this.scene?.movers ?? []) {
+      const at = poseOf(mover, t_s);
+      this.#drawOutline(mover.corners_m.map((corner) => place(at, corner)), true);
     }
+  }
+
+  /** @param {[number, number][]} corners_m @param {boolean} closed */
+  #drawOutline(corners_m, closed) {
+    const context = this.context;
+    tracePath(context, corners_m, closed);
+    if (closed) {
+      context.globalAlpha = 0.25;
+      context.fill();
+      context.globalAlpha = 1;
+    }
+    context.stroke();
   }
 
   /**

@@ -32,6 +32,7 @@
  * @typedef {{x_m: number, y_m: number, correlation: number, heading_rad: number}} Spread Standard deviations of a pose, from its origin.
  * @typedef {{id: number, at: Pose, half_angle_rad: number, reach_m: number, on_servo: boolean}} SonarMount
  * @typedef {{corners_m: [number, number][], closed: boolean}} Obstacle
+ * @typedef {{corners_m: [number, number][], waypoints: {t_s: number, at: Pose}[], repeat: 'once' | 'loop' | 'back_and_forth', start_s: number}} Mover Corners in its own frame; times of the waypoints from its start.
  *
  * @typedef {{x_m: number, y_m: number, heading_rad: number | null}} Place
  * @typedef {{repeat: boolean, relative: boolean, waypoints: Place[]}} Route From the robot's origin, or from where it starts.
@@ -48,6 +49,7 @@
  * @property {string} robot
  * @property {Pose} start Origin of the odometry in the world.
  * @property {Obstacle[]} obstacles
+ * @property {Mover[]} [movers] What moves, whatever the robot does.
  * @property {[number, number][]} footprint_m
  * @property {number} base_m
  * @property {number} wheel_radius_m

@@ -422,6 +422,99 @@ fn errors_in_worlds_and_robots_are_reported() {
 }
 
 #[test]
+fn errors_of_what_moves_are_reported() {
+    let mover = |keys: &str| {
+        let text = format!(
+            "title = \"t\"\n[[box]]\ncentre_m = [1, 0]\nsize_m = [0.4, 0.4]\n[[mover]]\n{keys}"
+        );
+        match WorldFile::parse("x", "x.toml", &text) {
+            Ok(world) => panic!("{:?}", world.movers),
+            Err(error) => error.to_string(),
+        }
+    };
+    let round = "diameter_m = 0.3\nspeed_m_s = 0.4\n";
+    for (keys, error) in [
+        (
+            format!("{round}path_m = [[0, 0]]\n"),
+            "x.toml:8: mover[1].path_m = 1 point: a path has 2 to 100 points [x, y] in m",
+        ),
+        (
+            format!("{round}path_m = [[0, 0], [0, 1], [0, 1]]\n"),
+            "x.toml:8: mover[1].path_m[3] = [0, 1]: is the point before; pause_s makes it wait there",
+        ),
+        (
+            "diameter_m = 0.3\nspeed_m_s = -0.4\npath_m = [[0, 0], [0, 1]]\n".to_owned(),
+            "x.toml:7: mover[1].speed_m_s = -0.4: must be within 0.01..3 m/s",
+        ),
+        (
+            "diameter_m = 0.3\npath_m = [[0, 0], [0, 1]]\n".to_owned(),
+            "x.toml:5: mover[1].speed_m_s is missing: must be within 0.01..3 m/s",
+        ),
+        (
+            format!("{round}path_m = [[0, 0], [0, 1]]\nrepaet = \"loop\"\n"),
+            "x.toml:9: mover[1].repaet = \"loop\": unknown key; did you mean `repeat`?",
+        ),
+        (
+            format!("{round}path_m = [[0, 0], [0, 1]]\nrepeat = \"twice\"\n"),
+            "x.toml:9: mover[1].repeat = \"twice\": write \"once\", \"loop\" or \"back_and_forth\"",
+        ),
+        (
+            format!("{round}path_m = [[1, 0.3], [0, 1]]\n"),
+            "x.toml:5: [mover[1]] starts inside a wall or box; move the first point of its path_m",
+        ),
+        (
+            "speed_m_s = 0.4\npath_m = [[0, 0], [0, 1]]\n".to_owned(),
+            "x.toml:5: [mover[1]] needs either size_m = [length, width] or diameter_m, in m",
+        ),
+        (
+            "size_m = [0.8, 0.04]\nhinge_m = [0, 0]\nangles_deg = [30, 30]\nspeed_deg_s = 45\n"
+                .to_owned(),
+            "x.toml:5: [mover[1]] angles_deg are the same: a door needs two different ones",
+        ),
+    ] {
+        assert_eq!(mover(&keys), error);
+    }
+}
+
+#[test]
+fn what_moves_is_where_its_file_says() {
+    let text = "title = \"t\"\n\
+        [[mover]]\nsize_m = [0.8, 0.04]\nhinge_m = [2, 1]\nangles_deg = [0, 90]\nspeed_deg_s = 45\nrepeat = \"back_and_forth\"\npause_s = 1\n\
+        [[mover]]\ndiameter_m = 0.3\npath_m = [[0, 0], [3, 0], [3, 4]]\nspeed_m_s = 0.5\nrepeat = \"loop\"\nstart_s = 2\n";
+    let world = WorldFile::parse("x", "x.toml", text)
+        .unwrap()
+        .world()
+        .unwrap();
+    let [door, person] = world.bodies() else {
+        panic!("{:?}", world.bodies());
+    };
+    let tip = |t_us| {
+        door.outline(&door.at(t_us).pose)
+            .corners()
+            .map(|[x, y]| [x - 2.0, y - 1.0])
+            .fold([0.0_f64; 2], |most, [x, y]| {
+                [most[0].max(x), most[1].max(y)]
+            })
+    };
+    let near = |one: [f64; 2], other: [f64; 2]| {
+        assert!(
+            (one[0] - other[0]).abs() < 1e-9 && (one[1] - other[1]).abs() < 1e-9,
+            "{one:?} {other:?}"
+        );
+    };
+    near(tip(500_000), [0.8, 0.02]);
+    near(tip(3_500_000), [0.02, 0.8]);
+    let middle = |t_us| {
+        let pose = person.at(t_us).pose;
+        [pose.x_m, pose.y_m]
+    };
+    near(middle(1_000_000), [0.0, 0.0]);
+    near(middle(10_000_000), [3.0, 1.0]);
+    near(middle(21_000_000), [1.5, 2.0]);
+    near(middle(26_000_000), [0.0, 0.0]);
+}
+
+#[test]
 fn a_random_world_is_checked_and_a_fixed_one_has_no_goal_to_give() {
     let text = "title = \"t\"\n[random]\ngroups = [6, 2]\ngoal_away_m = [0, 4]\nblocked = 2\n";
     assert_eq!(
@@ -492,6 +585,23 @@ fn a_robot_cannot_start_inside_a_box() {
     assert_eq!(
         error,
         "scenario inside: its start x_m = 1.6, y_m = 0 is inside a wall or box of world room; move [start] or choose another world"
+    );
+}
+
+#[test]
+fn a_robot_cannot_start_inside_what_moves() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let world = "title = \"t\"\n[[mover]]\nname = \"cat\"\ndiameter_m = 0.3\npath_m = [[0.2, 0], [2, 0]]\nspeed_m_s = 0.3\n";
+    std::fs::write(folder.join("cat.toml"), world).unwrap();
+    let path = folder.join("inside_cat.toml");
+    std::fs::write(&path, SCENARIO.replace("\"open\"", "\"cat.toml\"")).unwrap();
+    let error = Library::new()
+        .setup(path.to_str().unwrap(), &Overrides::default())
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "scenario inside_cat: its start x_m = 0, y_m = 0 is inside mover \"cat\" of world cat; move [start] or choose another world"
     );
 }
 

@@ -3,8 +3,11 @@
 use rumbo_control::SonarId;
 use rumbo_experiment::files::TimedCommand;
 use rumbo_experiment::files::{FileError, Kind, Library, ScenarioFile, Setup};
-use rumbo_log::{Choice, Experiment, MapPose, Obstacle, RoutePlan, Scene, SonarMount};
+use rumbo_log::{
+    Choice, Experiment, MapPose, Mover, Obstacle, Repeat, RoutePlan, Scene, SonarMount, TimedPose,
+};
 use rumbo_plant::contact::{Footprint, Pose};
+use rumbo_plant::moving;
 use rumbo_plant::plant::Mount;
 use rumbo_wire::Command;
 use std::collections::BTreeMap;
@@ -64,6 +67,7 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
             heading_rad: scenario.start.heading_rad,
         },
         obstacles: obstacles.collect(),
+        movers: world.movers.iter().map(mover).collect(),
         footprint_m: footprint.corners(&Pose::default()).to_vec(),
         base_m: plant.body.base_m,
         wheel_radius_m: (plant.wheels.left.radius_m + plant.wheels.right.radius_m) / 2.0,
@@ -74,6 +78,31 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
         of_ghost: false,
         choice,
     })
+}
+
+/// Something that moves, as the map needs it.
+fn mover(mover: &rumbo_experiment::files::Mover) -> Mover {
+    let seconds = |us: u64| us as f64 * 1e-6;
+    let waypoints = mover.route.waypoints().iter();
+    Mover {
+        corners_m: mover.corners_m.clone(),
+        waypoints: waypoints
+            .map(|waypoint| TimedPose {
+                t_s: seconds(waypoint.at_us),
+                at: MapPose {
+                    x_m: waypoint.pose.x_m,
+                    y_m: waypoint.pose.y_m,
+                    heading_rad: waypoint.pose.heading_rad,
+                },
+            })
+            .collect(),
+        repeat: match mover.route.repeat() {
+            moving::Repeat::Once => Repeat::Once,
+            moving::Repeat::Loop => Repeat::Loop,
+            moving::Repeat::BackAndForth => Repeat::BackAndForth,
+        },
+        start_s: seconds(mover.route.start_us()),
+    }
 }
 
 /// What the built-in worlds are, and the one of a file.

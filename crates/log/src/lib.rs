@@ -52,7 +52,8 @@ pub use parameters::{Parameter, ParameterState, parameter, parameters};
 pub use reading::{Names, Reading, Source};
 pub use recorded::{CSV, recorded_csv};
 pub use scene::{
-    Choice, Experiment, MapPose, Obstacle, Place, RoutePlan, Scene, SonarMount, Truth, compose,
+    Choice, Experiment, MapPose, Mover, Obstacle, Place, Repeat, RoutePlan, Scene, SonarMount,
+    TimedPose, Truth, compose,
 };
 pub use schema::Topic;
 pub use signals::{Cell, EARLIER_MS, Row, Sample, Spread};

@@ -72,6 +72,9 @@ pub struct Scene {
     pub start: MapPose,
     /// Walls and boxes.
     pub obstacles: Vec<Obstacle>,
+    /// What moves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub movers: Vec<Mover>,
     /// Outline of the robot in its own frame \[m\], closed by itself.
     pub footprint_m: Vec<[f64; 2]>,
     /// Distance between the wheels \[m\].
@@ -145,6 +148,41 @@ pub struct Obstacle {
     pub corners_m: Vec<[f64; 2]>,
     /// The last corner joins the first: a box. Otherwise a wall along the corners.
     pub closed: bool,
+}
+
+/// An outline that moves, whatever the robot does.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Mover {
+    /// Corners in its own frame \[m\], closed by itself.
+    pub corners_m: Vec<[f64; 2]>,
+    /// Poses and when they are reached, from its start, with even motion between them.
+    pub waypoints: Vec<TimedPose>,
+    /// What follows the last one.
+    pub repeat: Repeat,
+    /// When it starts \[s\].
+    pub start_s: f64,
+}
+
+/// A pose with its time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TimedPose {
+    /// When \[s\].
+    pub t_s: f64,
+    /// Where.
+    pub at: MapPose,
+}
+
+/// What follows the last waypoint of a mover.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Repeat {
+    /// It stays there.
+    #[default]
+    Once,
+    /// The first one, at the same place.
+    Loop,
+    /// The way back.
+    BackAndForth,
 }
 
 /// Where a sonar sits and what it can see.

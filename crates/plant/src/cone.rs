@@ -78,9 +78,9 @@ struct Candidate {
     corner: bool,
 }
 
-/// The nearest echo in the cone, `None` without one.
+/// The nearest echo in the cone at an instant, `None` without one.
 #[must_use]
-pub fn nearest(world: &World, cone: &Cone, hearing: &Hearing) -> Option<Return> {
+pub fn nearest(world: &World, now_us: u64, cone: &Cone, hearing: &Hearing) -> Option<Return> {
     let edge = |angle: f64| [cos(angle), sin(angle)];
     let query = Query {
         apex: cone.apex,
@@ -91,7 +91,9 @@ pub fn nearest(world: &World, cone: &Cone, hearing: &Hearing) -> Option<Return> 
     };
     let mut best: Option<Candidate> = None;
     let mut limit_m = hearing.reach_m;
-    for (index, obstacle) in world.obstacles().iter().enumerate() {
+    let moving = world.outlines_within(now_us, cone.apex, hearing.reach_m);
+    let obstacles = world.obstacles().iter().chain(&moving);
+    for (index, obstacle) in obstacles.clone().enumerate() {
         if !query.may_detect(obstacle, limit_m) {
             continue;
         }
@@ -111,7 +113,7 @@ pub fn nearest(world: &World, cone: &Cone, hearing: &Hearing) -> Option<Return> 
             if better
                 && candidate.range_m <= limit_m
                 && query.hears(&candidate)
-                && !hidden(world, index, cone.apex, &candidate)
+                && !hidden(obstacles.clone(), index, cone.apex, &candidate)
             {
                 limit_m = candidate.range_m;
                 best = Some(candidate);
@@ -193,34 +195,35 @@ impl Query {
 }
 
 /// True if another obstacle crosses the way from the apex to the candidate.
-fn hidden(world: &World, own: usize, apex: Point, candidate: &Candidate) -> bool {
+fn hidden<'a>(
+    obstacles: impl Iterator<Item = &'a Obstacle>,
+    own: usize,
+    apex: Point,
+    candidate: &Candidate,
+) -> bool {
     let way = sub(candidate.at, apex);
     let length_m = candidate.range_m;
-    world
-        .obstacles()
-        .iter()
-        .enumerate()
-        .any(|(index, obstacle)| {
-            if index == own || length_m <= 0.0 {
+    obstacles.enumerate().any(|(index, obstacle)| {
+        if index == own || length_m <= 0.0 {
+            return false;
+        }
+        let d = sub(obstacle.center, apex);
+        let off_line = cross(way, d);
+        let reach = length_m + obstacle.radius_m;
+        let widest = obstacle.radius_m * length_m;
+        if off_line * off_line > widest * widest || dot(d, d) > reach * reach {
+            return false;
+        }
+        obstacle.faces.iter().any(|face| {
+            let height_m = face.height_m(apex);
+            let closing = -dot(way, face.normal);
+            // The point itself may touch the other obstacle: only what is clearly nearer hides it.
+            if height_m < 0.0 || closing <= 0.0 || height_m >= closing * (1.0 - 1e-9) {
                 return false;
             }
-            let d = sub(obstacle.center, apex);
-            let off_line = cross(way, d);
-            let reach = length_m + obstacle.radius_m;
-            let widest = obstacle.radius_m * length_m;
-            if off_line * off_line > widest * widest || dot(d, d) > reach * reach {
-                return false;
-            }
-            obstacle.faces.iter().any(|face| {
-                let height_m = face.height_m(apex);
-                let closing = -dot(way, face.normal);
-                // The point itself may touch the other obstacle: only what is clearly nearer hides it.
-                if height_m < 0.0 || closing <= 0.0 || height_m >= closing * (1.0 - 1e-9) {
-                    return false;
-                }
-                let along = dot(sub(apex, face.start), face.along)
-                    + height_m / closing * dot(way, face.along);
-                (0.0..=face.length_m).contains(&along)
-            })
+            let along =
+                dot(sub(apex, face.start), face.along) + height_m / closing * dot(way, face.along);
+            (0.0..=face.length_m).contains(&along)
         })
+    })
 }

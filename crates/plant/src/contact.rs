@@ -5,8 +5,11 @@
 //! an angle. What cannot be undone that way (a wedge) undoes the step. Touching wheels feel the drag of their own
 //! slipping tyres.
 //!
+//! A body that moves is not stopped: it pushes the robot away, as an obstacle does that the robot enters. Between it and
+//! a wall the robot stays where it is, and the body goes over it. Closing speeds are relative to the body's surface.
+//!
 //! A clearance, the distance to the nearest obstacle less the way gone since it was measured, spares all of this while
-//! nothing is near.
+//! nothing is near. Where bodies move, so does the way that the fastest of them can have come.
 
 use libm::sqrt;
 
@@ -21,6 +24,8 @@ const GRAVITY: f64 = 9.81;
 const LEAVE_M: f64 = 0.003;
 /// Corners within this of the deepest share the push, so that a face that lands flat does not turn.
 const FLAT_M: f64 = 2e-4;
+/// A moving body pushes no farther at once: what it jams against a wall is not thrown through it.
+const PUSH_M: f64 = 0.005;
 /// Iterations that resolve overlaps, the deepest in each.
 const ROUNDS: usize = 8;
 
@@ -54,8 +59,9 @@ pub struct Footprint {
 pub struct State {
     /// At least this far from any obstacle.
     pub clearance_m: f64,
-    /// True from a touch until the body has left by a few millimetres.
-    pub touching: bool,
+    /// A bit for what stands (the lowest) and for each moving body, from a touch until the body has left it by a few
+    /// millimetres.
+    touched: u64,
     /// Touches so far.
     pub contacts: u32,
     /// Share of each wheel's motion (left, right) that the last step undid: 0 free, 1 blocked.
@@ -65,10 +71,29 @@ pub struct State {
 /// The beginning of a touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// Index of the obstacle in the world.
+    /// Index of the obstacle in the world; those of moving bodies follow those of obstacles that stand.
     pub obstacle: usize,
-    /// Closing speed of the body's point that met it.
+    /// Closing speed of the body's point that met it, relative to its surface.
     pub speed_m_s: f64,
+}
+
+impl State {
+    /// True from a touch until the body has left by a few millimetres.
+    #[must_use]
+    pub const fn touching(&self) -> bool {
+        self.touched != 0
+    }
+}
+
+/// A step to settle.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a> {
+    /// Where.
+    pub world: &'a World,
+    /// Its end.
+    pub until_us: u64,
+    /// How long it took.
+    pub dt_s: f64,
 }
 
 /// Two convex outlines along the axis that separates them most.
@@ -79,6 +104,15 @@ struct Gap {
     normal: Point,
     /// Where they are nearest (or deepest).
     at: Point,
+}
+
+/// What is nearest to the body.
+struct Near {
+    /// Index in the world, as in [`Impact`].
+    obstacle: usize,
+    gap: Gap,
+    /// Velocity of the obstacle there.
+    surface_m_s: Point,
 }
 
 impl Footprint {
@@ -120,108 +154,159 @@ impl Footprint {
         ]
     }
 
-    /// Distance from a body at `pose` to the nearest obstacle, at least; negative if it overlaps one.
+    /// Distance from a body at `pose` to the nearest obstacle at an instant, at least; negative if it overlaps one.
     #[must_use]
-    pub fn clearance_m(&self, world: &World, pose: &Pose) -> f64 {
-        self.nearest(world, pose)
-            .map_or(f64::INFINITY, |(_, gap)| gap.distance_m)
+    pub fn clearance_m(&self, world: &World, now_us: u64, pose: &Pose) -> f64 {
+        self.nearest(world, now_us, pose)
+            .map_or(f64::INFINITY, |near| near.gap.distance_m)
     }
 
-    /// Settles a step from `before` to `pose` that took `dt_s`; returns the impact if a touch begins.
+    /// Settles a step from `before` to `pose`; returns the impact if a touch begins.
     pub fn settle(
         &self,
-        world: &World,
+        step: &Step<'_>,
         state: &mut State,
         before: &Pose,
         pose: &mut Pose,
-        dt_s: f64,
     ) -> Option<Impact> {
         let way = [pose.x_m - before.x_m, pose.y_m - before.y_m];
         let turn_rad = pose.heading_rad - before.heading_rad;
         state.clearance_m -= way[0].abs() + way[1].abs() + self.reach_m * turn_rad.abs();
+        state.clearance_m -= step.world.fastest_m_s() * step.dt_s;
         if state.clearance_m > 0.0 {
             return None;
         }
-        self.settle_near(world, state, before, pose, dt_s)
+        self.settle_near(step, state, before, pose)
     }
 
     #[cold]
     fn settle_near(
         &self,
-        world: &World,
+        step: &Step<'_>,
         state: &mut State,
         before: &Pose,
         pose: &mut Pose,
-        dt_s: f64,
     ) -> Option<Impact> {
+        let &Step {
+            world, until_us, ..
+        } = step;
         let wanted = *pose;
         let mut impact = None;
+        let mut met = 0;
         for _ in 0..ROUNDS {
-            match self.nearest(world, pose) {
-                Some((obstacle, gap)) if gap.distance_m < 0.0 => {
-                    if impact.is_none() {
-                        let speed_m_s = self.closing_m(before, &wanted, &gap) / dt_s;
-                        impact = Some(Impact {
-                            obstacle,
-                            speed_m_s,
+            match self.nearest(world, until_us, pose) {
+                Some(near) if near.gap.distance_m < 0.0 => {
+                    let bit = bit(world, near.obstacle);
+                    let begins = state.touched & bit == 0;
+                    if met == 0 || (begins && impact.is_none()) {
+                        let closing_m = self.closing_m(before, &wanted, &near, step.dt_s);
+                        impact = begins.then_some(Impact {
+                            obstacle: near.obstacle,
+                            speed_m_s: closing_m / step.dt_s,
                         });
                     }
-                    self.push(pose, &gap);
+                    met |= bit;
+                    let depth_m = match bit {
+                        1 => -near.gap.distance_m,
+                        _ => PUSH_M.min(-near.gap.distance_m),
+                    };
+                    self.push(pose, &near.gap, depth_m + 1e-9);
                 }
                 _ => break,
             }
         }
-        let mut clearance_m = self.clearance_m(world, pose);
+        let mut clearance_m = self.clearance_m(world, until_us, pose);
         if clearance_m < 0.0 {
             *pose = *before;
             clearance_m = 0.0;
         }
         state.clearance_m = clearance_m;
         state.blocked = self.blocked(before, &wanted, pose);
-        let begins = impact.is_some() && !state.touching;
-        if impact.is_some() {
-            state.touching = true;
-        } else if clearance_m > LEAVE_M {
-            state.touching = false;
+        // Another touch that begins in the same step is reported in the next one.
+        let known = impact.map_or(0, |impact| bit(world, impact.obstacle));
+        state.touched |= known;
+        if met == 0 && clearance_m > LEAVE_M {
+            state.touched = 0;
+        } else if !world.bodies().is_empty() {
+            state.touched &= met | self.still_touched(world, until_us, pose, state.touched);
         }
-        state.contacts += u32::from(begins);
-        impact.filter(|_| begins)
+        state.contacts += u32::from(impact.is_some());
+        impact
     }
 
-    fn nearest(&self, world: &World, pose: &Pose) -> Option<(usize, Gap)> {
+    /// Which of these touches the body has not left.
+    fn still_touched(&self, world: &World, now_us: u64, pose: &Pose, touched: u64) -> u64 {
         let corners = self.corners(pose);
-        let mut best: Option<(usize, Gap)> = None;
+        let near = |obstacle: &Obstacle| gap(&corners, obstacle).distance_m <= LEAVE_M;
+        let standing = touched & 1 != 0 && world.obstacles().iter().any(near);
+        let bodies = world.bodies().iter().enumerate();
+        bodies.fold(u64::from(standing), |still, (index, body)| {
+            let bit = 2 << index;
+            let touches = touched & bit != 0 && near(&body.outline(&body.at(now_us).pose));
+            if touches { still | bit } else { still }
+        })
+    }
+
+    fn nearest(&self, world: &World, now_us: u64, pose: &Pose) -> Option<Near> {
+        let corners = self.corners(pose);
+        let at = [pose.x_m, pose.y_m];
+        // Farther than this without a look at faces.
+        let bound_m = |center: Point, radius_m: f64| {
+            let d = sub(center, at);
+            sqrt(dot(d, d)) - radius_m - self.reach_m
+        };
+        let mut best: Option<Near> = None;
+        let limit_m = |best: &Option<Near>| {
+            best.as_ref()
+                .map_or(f64::INFINITY, |near| near.gap.distance_m)
+        };
         for (index, obstacle) in world.obstacles().iter().enumerate() {
-            let limit_m = best
-                .as_ref()
-                .map_or(f64::INFINITY, |(_, gap)| gap.distance_m);
-            let d = sub(obstacle.center, [pose.x_m, pose.y_m]);
-            if sqrt(dot(d, d)) - obstacle.radius_m - self.reach_m < limit_m {
+            if bound_m(obstacle.center, obstacle.radius_m) < limit_m(&best) {
                 let gap = gap(&corners, obstacle);
-                if gap.distance_m < limit_m {
-                    best = Some((index, gap));
+                if gap.distance_m < limit_m(&best) {
+                    best = Some(Near {
+                        obstacle: index,
+                        gap,
+                        surface_m_s: [0.0; 2],
+                    });
+                }
+            }
+        }
+        for (index, body) in world.bodies().iter().enumerate() {
+            let motion = body.at(now_us);
+            let center = [motion.pose.x_m, motion.pose.y_m];
+            if bound_m(center, body.radius_m()) < limit_m(&best) {
+                let gap = gap(&corners, &body.outline(&motion.pose));
+                if gap.distance_m < limit_m(&best) {
+                    best = Some(Near {
+                        obstacle: world.obstacles().len() + index,
+                        surface_m_s: motion.surface_m_s(gap.at),
+                        gap,
+                    });
                 }
             }
         }
         best
     }
 
-    /// How far the body's point at the gap moved towards the obstacle.
-    fn closing_m(&self, before: &Pose, after: &Pose, gap: &Gap) -> f64 {
+    /// How far the body's point at the gap and the obstacle moved towards each other.
+    fn closing_m(&self, before: &Pose, after: &Pose, near: &Near, dt_s: f64) -> f64 {
+        let Near {
+            gap, surface_m_s, ..
+        } = near;
         let arm = sub(gap.at, [after.x_m, after.y_m]);
         let turn_rad = after.heading_rad - before.heading_rad;
         let moved = [
-            after.x_m - before.x_m - turn_rad * arm[1],
-            after.y_m - before.y_m + turn_rad * arm[0],
+            after.x_m - before.x_m - turn_rad * arm[1] - surface_m_s[0] * dt_s,
+            after.y_m - before.y_m + turn_rad * arm[0] - surface_m_s[1] * dt_s,
         ];
         let closing_m = -dot(moved, gap.normal);
         if closing_m > 0.0 { closing_m } else { 0.0 }
     }
 
-    /// Undoes an overlap as an impulse at its point would.
-    fn push(&self, pose: &mut Pose, gap: &Gap) {
+    /// Undoes so much of an overlap as an impulse at its point would.
+    fn push(&self, pose: &mut Pose, gap: &Gap, depth_m: f64) {
         let arm = cross(sub(gap.at, [pose.x_m, pose.y_m]), gap.normal);
-        let depth_m = -gap.distance_m + 1e-9;
         let impulse = depth_m / (self.inverse_mass + arm * arm * self.inverse_inertia);
         pose.x_m += impulse * self.inverse_mass * gap.normal[0];
         pose.y_m += impulse * self.inverse_mass * gap.normal[1];
@@ -246,8 +331,22 @@ impl Footprint {
     }
 }
 
+/// The bit of an obstacle in [`State`].
+fn bit(world: &World, obstacle: usize) -> u64 {
+    match obstacle.checked_sub(world.obstacles().len()) {
+        None => 1,
+        Some(body) => 2 << body,
+    }
+}
+
+/// How far two outlines are apart along the axis that separates them most; negative is the depth of an overlap.
+pub(crate) fn separation_m(one: &Obstacle, other: &Obstacle) -> f64 {
+    let corners: Vec<Point> = one.corners().collect();
+    gap(&corners, other).distance_m
+}
+
 /// The axis, among all face normals of both, along which body and obstacle are farthest apart.
-fn gap(body: &[Point; 4], obstacle: &Obstacle) -> Gap {
+fn gap(body: &[Point], obstacle: &Obstacle) -> Gap {
     let mut best = Gap {
         distance_m: f64::NEG_INFINITY,
         normal: [1.0, 0.0],
@@ -264,7 +363,7 @@ fn gap(body: &[Point; 4], obstacle: &Obstacle) -> Gap {
         }
     }
     for (i, &start) in body.iter().enumerate() {
-        let along = sub(body[(i + 1) % 4], start);
+        let along = sub(body[(i + 1) % body.len()], start);
         let length_m = sqrt(dot(along, along));
         let normal = [along[1] / length_m, -along[0] / length_m];
         let (distance_m, at) = lowest(obstacle.corners(), start, normal);

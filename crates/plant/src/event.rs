@@ -33,9 +33,10 @@ pub enum Event {
     Contact {
         /// When, to the step.
         at_us: u64,
-        /// Index in [`World::obstacles`](crate::world::World::obstacles).
+        /// Index in [`World::obstacles`](crate::world::World::obstacles), followed by
+        /// [`World::bodies`](crate::world::World::bodies).
         obstacle: usize,
-        /// Closing speed of the point that touched.
+        /// Closing speed of the point that touched, relative to the surface that it met.
         speed_m_s: f64,
     },
 }

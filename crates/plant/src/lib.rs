@@ -21,6 +21,7 @@ pub mod drivetrain;
 pub mod encoder;
 pub mod event;
 pub mod link;
+pub mod moving;
 pub mod noise;
 pub mod params;
 pub mod plant;

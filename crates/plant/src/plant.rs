@@ -13,11 +13,12 @@ use crate::contact::{self, Footprint, Pose};
 use crate::drivetrain::{self, Bridge, Drivetrain, Motion, Side};
 use crate::encoder::{self, Encoder};
 use crate::event::Queue;
+use crate::moving::{Body, Course, Motion as BodyMotion, Velocity};
 use crate::noise::Noise;
 use crate::params::{self, Params};
 use crate::servo;
 use crate::sonar::{self, Sonar, SonarId, View};
-use crate::world::World;
+use crate::world::{ShapeError, World};
 
 /// Longest physical step, and the grid it keeps to.
 const STEP_US: u64 = 1000;
@@ -143,6 +144,34 @@ impl Plant {
         &self.world
     }
 
+    /// Puts a body that moves into the world.
+    ///
+    /// # Errors
+    /// There is no room for another one.
+    pub fn add_body(&mut self, state: &mut State, body: Body) -> Result<(), ShapeError> {
+        state.contact.clearance_m = 0.0;
+        self.world.add_body(body)
+    }
+
+    /// Sets the course of a body of the world, by its index, from now on.
+    pub fn set_course(&mut self, state: &mut State, body: usize, course: Course) {
+        state.contact.clearance_m -= self.world.set_course(body, state.now_us, course);
+    }
+
+    /// Where the body is, and how fast it moves.
+    #[must_use]
+    pub fn motion(&self, state: &State) -> BodyMotion {
+        let [forward_m_s, yaw_rad_s] = state.speed;
+        let (s, c) = sincos(state.pose.heading_rad);
+        BodyMotion {
+            pose: state.pose,
+            velocity: Velocity {
+                m_s: [forward_m_s * c, forward_m_s * s],
+                yaw_rad_s,
+            },
+        }
+    }
+
     /// Footprint of the body.
     #[must_use]
     pub const fn footprint(&self) -> &Footprint {
@@ -249,7 +278,8 @@ impl Plant {
         queue: &mut Queue,
         events: &mut impl FnMut(Event),
     ) {
-        if motion.forward_m == 0.0 && motion.yaw_rad == 0.0 {
+        let at_rest = motion.forward_m == 0.0 && motion.yaw_rad == 0.0;
+        if at_rest && (self.world.bodies().is_empty() || self.wheels_in_air) {
             state.speed = [0.0; 2];
             return;
         }
@@ -261,9 +291,14 @@ impl Plant {
             y_m: before.y_m + motion.forward_m * across,
             heading_rad: before.heading_rad + motion.yaw_rad,
         };
-        let impact =
-            self.footprint
-                .settle(&self.world, &mut state.contact, &before, &mut pose, dt_s);
+        let step = contact::Step {
+            world: &self.world,
+            until_us: state.now_us,
+            dt_s,
+        };
+        let impact = self
+            .footprint
+            .settle(&step, &mut state.contact, &before, &mut pose);
         let moved_m = (pose.x_m - before.x_m) * ahead + (pose.y_m - before.y_m) * across;
         state.speed = [
             moved_m / dt_s,
@@ -310,7 +345,7 @@ impl Plant {
     pub fn truth(&self, state: &State) -> Truth {
         let range_m = SonarId::ALL.map(|sonar| {
             self.view(state, sonar)
-                .and_then(|view| self.sonar.true_range_m(&self.world, &view))
+                .and_then(|view| self.sonar.true_range_m(&self.world, state.now_us, &view))
         });
         let [left, right] = &state.drivetrain.wheels;
         Truth {
@@ -325,7 +360,7 @@ impl Plant {
             battery_a: state.drivetrain.battery.current_a,
             servo_rad: state.servo.angle_rad,
             contacts: state.contact.contacts,
-            touching: state.contact.touching,
+            touching: state.contact.touching(),
         }
     }
 

@@ -126,13 +126,19 @@ impl Sonar {
         }
     }
 
-    /// Range from the transducer without any noise; `None` when nothing returns an echo.
+    /// Range from the transducer at an instant, without any noise; `None` when nothing returns an echo.
     #[must_use]
-    pub fn true_range_m(&self, world: &World, view: &View) -> Option<f64> {
-        self.heard_m(world, view, self.params.incidence_limit_rad)
+    pub fn true_range_m(&self, world: &World, now_us: u64, view: &View) -> Option<f64> {
+        self.heard_m(world, now_us, view, self.params.incidence_limit_rad)
     }
 
-    fn heard_m(&self, world: &World, view: &View, incidence_limit_rad: f64) -> Option<f64> {
+    fn heard_m(
+        &self,
+        world: &World,
+        now_us: u64,
+        view: &View,
+        incidence_limit_rad: f64,
+    ) -> Option<f64> {
         let cone = Cone {
             apex: view.at,
             axis_rad: view.axis_rad,
@@ -143,7 +149,7 @@ impl Sonar {
             incidence_limit_rad,
             corner_reach_m: self.params.corner_reach_m,
         };
-        cone::nearest(world, &cone, &hearing).map(|echo| echo.range_m)
+        cone::nearest(world, now_us, &cone, &hearing).map(|echo| echo.range_m)
     }
 
     /// Triggers sonar `id` now. False if its line is not low: the trigger is then ignored.
@@ -162,7 +168,7 @@ impl Sonar {
         let ping = states[own].pings;
         let limit_rad = self.params.incidence_limit_rad
             + self.params.incidence_soft_rad * self.draw(own, 0).normal(ping);
-        let heard_m = self.heard_m(world, view, limit_rad);
+        let heard_m = self.heard_m(world, now_us, view, limit_rad);
         let rise_us = now_us + micros(self.params.trigger_to_rise_s);
         let unsteady = self.unsteadiness(view.speed_m_s)
             * self.disturbance(states, own, rise_us, view.axis_rad);

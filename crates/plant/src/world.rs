@@ -1,10 +1,13 @@
 //! The world: walls and boxes as convex outlines on the floor.
 //!
-//! A [`World`] is built from plain shapes and never changes during a run. Each outline keeps its faces with their
-//! outward normals, and a bounding circle, so that most of a query ends after a few multiplications.
+//! A [`World`] is built from plain shapes, and what stands in it never changes during a run. Each outline keeps its faces
+//! with their outward normals, and a bounding circle, so that most of a query ends after a few multiplications. What
+//! moves ([`crate::moving`]) has an outline for each instant.
 //! [`crate::cone`] asks it what a sonar sees, [`crate::contact`] what the robot touches.
 
 use libm::{sincos, sqrt};
+
+use crate::moving::{Body, Course, MOST_BODIES};
 
 /// A point or a vector on the floor: `[x, y]`, metres.
 pub type Point = [f64; 2];
@@ -40,6 +43,10 @@ pub enum ShapeError {
     NotPositive,
     /// Fewer than three corners, or corners that are not convex and counter-clockwise.
     NotConvex,
+    /// Waypoints that are no route.
+    NoRoute,
+    /// More moving bodies than a world has room for.
+    TooMany,
 }
 
 impl core::fmt::Display for ShapeError {
@@ -52,6 +59,10 @@ impl core::fmt::Display for ShapeError {
             Self::NotConvex => {
                 "an outline needs at least three corners, convex and counter-clockwise"
             }
+            Self::NoRoute => {
+                "a route needs at least two waypoints, at times that grow from 0; a loop ends where it begins"
+            }
+            Self::TooMany => "a world has room for 63 bodies that move",
         })
     }
 }
@@ -110,7 +121,26 @@ pub struct Obstacle {
 }
 
 impl Obstacle {
-    fn from_corners(corners: &[Point]) -> Self {
+    /// A convex outline, corners counter-clockwise.
+    ///
+    /// # Errors
+    /// If it is not finite, or not convex and counter-clockwise.
+    pub fn convex(corners: &[Point]) -> Result<Self, ShapeError> {
+        for corner in corners {
+            finite(corner)?;
+        }
+        let n = corners.len();
+        let turns_left = |i: usize| {
+            let (a, b, c) = (corners[i], corners[(i + 1) % n], corners[(i + 2) % n]);
+            cross(sub(b, a), sub(c, b)) > 0.0
+        };
+        if n < 3 || !(0..n).all(turns_left) {
+            return Err(ShapeError::NotConvex);
+        }
+        Ok(Self::from_corners(corners))
+    }
+
+    pub(crate) fn from_corners(corners: &[Point]) -> Self {
         let faces: Vec<Face> = corners
             .iter()
             .zip(corners.iter().cycle().skip(1))
@@ -156,12 +186,36 @@ impl Obstacle {
         }
         if best.is_finite() { sqrt(best) } else { 0.0 }
     }
+
+    /// True if both have room in common.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        crate::contact::separation_m(self, other) < 0.0
+    }
+
+    /// Distance from another outline, 0 if they overlap.
+    #[must_use]
+    pub fn apart_m(&self, other: &Self) -> f64 {
+        let from_corners = |of: &Self, to: &Self| {
+            of.corners()
+                .map(|corner| to.distance_m(corner))
+                .fold(f64::INFINITY, f64::min)
+        };
+        if self.overlaps(other) {
+            0.0
+        } else {
+            from_corners(self, other).min(from_corners(other, self))
+        }
+    }
 }
 
-/// Everything that stands on the floor.
+/// Everything that stands on the floor or moves over it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct World {
     obstacles: Vec<Obstacle>,
+    bodies: Vec<Body>,
+    /// No point of a body is faster.
+    fastest_m_s: f64,
 }
 
 impl World {
@@ -170,6 +224,8 @@ impl World {
     pub const fn empty() -> Self {
         Self {
             obstacles: Vec::new(),
+            bodies: Vec::new(),
+            fastest_m_s: 0.0,
         }
     }
 
@@ -252,25 +308,70 @@ impl World {
     /// # Errors
     /// If it is not finite, or not convex and counter-clockwise.
     pub fn add_convex(&mut self, corners: &[Point]) -> Result<(), ShapeError> {
-        for corner in corners {
-            finite(corner)?;
-        }
-        let n = corners.len();
-        let turns_left = |i: usize| {
-            let (a, b, c) = (corners[i], corners[(i + 1) % n], corners[(i + 2) % n]);
-            cross(sub(b, a), sub(c, b)) > 0.0
-        };
-        if n < 3 || !(0..n).all(turns_left) {
-            return Err(ShapeError::NotConvex);
-        }
-        self.obstacles.push(Obstacle::from_corners(corners));
+        self.obstacles.push(Obstacle::convex(corners)?);
         Ok(())
     }
 
-    /// All obstacles, in the order they were added.
+    /// Adds a body that moves.
+    ///
+    /// # Errors
+    /// There is no room for another one.
+    pub fn add_body(&mut self, body: Body) -> Result<(), ShapeError> {
+        if self.bodies.len() == MOST_BODIES {
+            return Err(ShapeError::TooMany);
+        }
+        self.fastest_m_s = self.fastest_m_s.max(body.fastest_m_s());
+        self.bodies.push(body);
+        Ok(())
+    }
+
+    /// All obstacles that stand, in the order they were added.
     #[must_use]
     pub fn obstacles(&self) -> &[Obstacle] {
         &self.obstacles
+    }
+
+    /// All bodies that move, in the order they were added.
+    #[must_use]
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// Sets the course of a body; returns how far at most a point of it jumps now \[m\].
+    pub(crate) fn set_course(&mut self, index: usize, now_us: u64, course: Course) -> f64 {
+        let Some(body) = self.bodies.get_mut(index) else {
+            return 0.0;
+        };
+        let was = body.at(now_us).pose;
+        body.follow(course);
+        let is = body.at(now_us).pose;
+        let turn_rad = (is.heading_rad - was.heading_rad).abs();
+        // By the shorter way, if a heading was wrapped.
+        let turn_rad = turn_rad.min((core::f64::consts::TAU - turn_rad).abs());
+        let jump_m = (is.x_m - was.x_m).abs() + (is.y_m - was.y_m).abs();
+        let jump_m = jump_m + turn_rad * body.radius_m();
+        self.fastest_m_s = self
+            .bodies
+            .iter()
+            .map(Body::fastest_m_s)
+            .fold(0.0, f64::max);
+        jump_m
+    }
+
+    /// No point of a body is faster.
+    pub(crate) const fn fastest_m_s(&self) -> f64 {
+        self.fastest_m_s
+    }
+
+    /// Outlines of the bodies within `reach_m` of a point.
+    pub(crate) fn outlines_within(&self, now_us: u64, at: Point, reach_m: f64) -> Vec<Obstacle> {
+        let near = |body: &Body| {
+            let pose = body.at(now_us).pose;
+            let d = sub([pose.x_m, pose.y_m], at);
+            let far = reach_m + body.radius_m();
+            (dot(d, d) <= far * far).then(|| body.outline(&pose))
+        };
+        self.bodies.iter().filter_map(near).collect()
     }
 }
 

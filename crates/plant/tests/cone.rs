@@ -74,7 +74,7 @@ proptest! {
         let apex = [0.0, 0.0];
         prop_assume!(world.obstacles().iter().all(|obstacle| obstacle.distance_m(apex) > 0.01));
         let cone = Cone { apex, axis_rad, half_angle_rad };
-        let exact = nearest(&world, &cone, &Hearing::geometric(4.0)).map(|echo| echo.range_m);
+        let exact = nearest(&world, 0, &cone, &Hearing::geometric(4.0)).map(|echo| echo.range_m);
         // Between two rays a corner may reach out: a sharp one takes many of them.
         let comes_near = |rays| match (exact, sampled(&world, &cone, 4.0, rays)) {
             (Some(exact), Some(dense)) => dense - exact < 0.02,
@@ -125,7 +125,7 @@ fn slanted(angle_rad: f64) -> World {
 #[test]
 fn a_wall_turned_within_the_beam_reads_its_perpendicular_distance() {
     for angle_rad in [0.0, 0.1, -0.29] {
-        let echo = nearest(&slanted(angle_rad), &ahead(0.3), &HEARING).unwrap();
+        let echo = nearest(&slanted(angle_rad), 0, &ahead(0.3), &HEARING).unwrap();
         assert!((echo.range_m - 1.0).abs() < 1e-12);
         assert!(echo.incidence_rad < 1e-6);
         assert!(!echo.corner);
@@ -134,20 +134,20 @@ fn a_wall_turned_within_the_beam_reads_its_perpendicular_distance() {
 
 #[test]
 fn a_wall_turned_further_reads_along_the_beams_edge_until_it_mirrors_the_sound_away() {
-    let echo = nearest(&slanted(0.7), &ahead(0.3), &HEARING).unwrap();
+    let echo = nearest(&slanted(0.7), 0, &ahead(0.3), &HEARING).unwrap();
     assert!((echo.incidence_rad - 0.4).abs() < 1e-9);
     assert!((echo.range_m - 1.0 / 0.4_f64.cos()).abs() < 1e-9);
-    assert_eq!(nearest(&slanted(0.81), &ahead(0.3), &HEARING), None);
-    assert_eq!(nearest(&slanted(-0.81), &ahead(0.3), &HEARING), None);
+    assert_eq!(nearest(&slanted(0.81), 0, &ahead(0.3), &HEARING), None);
+    assert_eq!(nearest(&slanted(-0.81), 0, &ahead(0.3), &HEARING), None);
 }
 
 #[test]
 fn a_silent_wall_hides_what_is_behind_it() {
     let mut world = slanted(0.9);
     world.add_wall(&screen([2.0, -1.0], [2.0, 1.0])).unwrap();
-    assert_eq!(nearest(&world, &ahead(0.3), &HEARING), None);
+    assert_eq!(nearest(&world, 0, &ahead(0.3), &HEARING), None);
     let open = World::new(&[screen([2.0, -1.0], [2.0, 1.0])], &[]).unwrap();
-    assert!((nearest(&open, &ahead(0.3), &HEARING).unwrap().range_m - 2.0).abs() < 1e-12);
+    assert!((nearest(&open, 0, &ahead(0.3), &HEARING).unwrap().range_m - 2.0).abs() < 1e-12);
 }
 
 #[test]
@@ -158,7 +158,12 @@ fn a_box_seen_corner_on_echoes_only_from_near() {
             size_m: [0.4, 0.4],
             heading_rad: std::f64::consts::FRAC_PI_4,
         };
-        nearest(&World::new(&[], &[block]).unwrap(), &ahead(0.2), &HEARING)
+        nearest(
+            &World::new(&[], &[block]).unwrap(),
+            0,
+            &ahead(0.2),
+            &HEARING,
+        )
     };
     let near = corner_at(0.5).unwrap();
     assert!(near.corner && (near.range_m - 0.5).abs() < 1e-12);
@@ -174,8 +179,9 @@ fn the_nearer_of_two_boxes_echoes() {
     };
     let world = World::new(&[], &[block(1.5, 0.0), block(1.0, 0.2)]).unwrap();
     assert!(
-        (nearest(&world, &ahead(0.3), &HEARING).unwrap().range_m - (0.9_f64.powi(2) + 0.01).sqrt())
-            .abs()
+        (nearest(&world, 0, &ahead(0.3), &HEARING).unwrap().range_m
+            - (0.9_f64.powi(2) + 0.01).sqrt())
+        .abs()
             < 1e-12
     );
     let only_far = Cone {
@@ -183,7 +189,7 @@ fn the_nearer_of_two_boxes_echoes() {
         half_angle_rad: 0.1,
         ..ahead(0.1)
     };
-    assert!((nearest(&world, &only_far, &HEARING).unwrap().range_m - 1.4).abs() < 1e-12);
+    assert!((nearest(&world, 0, &only_far, &HEARING).unwrap().range_m - 1.4).abs() < 1e-12);
 }
 
 #[test]
@@ -196,5 +202,5 @@ fn nothing_beyond_the_reach_or_behind_the_transducer_echoes() {
         &[],
     )
     .unwrap();
-    assert_eq!(nearest(&world, &ahead(0.3), &HEARING), None);
+    assert_eq!(nearest(&world, 0, &ahead(0.3), &HEARING), None);
 }

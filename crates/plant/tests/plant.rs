@@ -288,7 +288,10 @@ fn a_robot_that_blunders_about_a_cluttered_room_never_overlaps_anything() {
             }
             plant.advance(&mut state, (tick + 1) * 10_000, &mut |_| {});
             let truth = plant.truth(&state);
-            let clearance_m = plant.footprint().clearance_m(plant.world(), &truth.pose);
+            let clearance_m =
+                plant
+                    .footprint()
+                    .clearance_m(plant.world(), truth.now_us, &truth.pose);
             assert!(
                 clearance_m > -1e-8,
                 "seed {seed}, tick {tick}: {clearance_m}"

@@ -1,6 +1,7 @@
 //! Rumbo's simulator: robot, plant and emulator on one clock.
 //!
-//! A [`Sim`] is made from a [`Config`]: which robot in which world, and which program is at its pins. It knows no
+//! A [`Sim`] is made from a [`Config`]: which robot in which world, and which program is at its pins; a [`fleet`] has
+//! several in one world. It knows no
 //! files, no command line and no threads; `rumbo-experiment` makes a configuration from files.
 
 mod baseline;
@@ -9,6 +10,7 @@ pub mod boards;
 mod config;
 pub mod debugging;
 mod error;
+pub mod fleet;
 mod instruments;
 pub mod mega;
 mod sim;
@@ -20,4 +22,4 @@ pub mod wiring;
 pub use config::{Config, Program};
 pub use error::SimError;
 pub use instruments::{READING_US, loop_signals};
-pub use sim::{Burst, Latched, Sim};
+pub use sim::{Burst, Latched, Sim, Touch};

@@ -54,6 +54,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/map.js": SCRIPT,
     "src/mounts.js": SCRIPT,
     "src/movements.js": SCRIPT,
+    "src/movers.js": SCRIPT,
     "src/notice.js": SCRIPT,
     "src/panel.js": SCRIPT,
     "src/parameters.js": SCRIPT,

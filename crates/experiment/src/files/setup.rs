@@ -10,7 +10,7 @@ use rumbo_control::params::ParamId;
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
-use rumbo_plant::world::Point;
+use rumbo_plant::world::{Obstacle, Point};
 use rumbo_sim::mega::firmware::{Firmware, Language};
 use rumbo_sim::wiring::Divider;
 use rumbo_sim::{Config, Program, Sim};
@@ -388,7 +388,7 @@ fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileEr
     )))
 }
 
-/// Reports a start inside a wall or a box.
+/// Reports a start inside a wall, a box or something that moves.
 fn stands_free(
     scenario: &ScenarioFile,
     robot: &RobotFile,
@@ -402,21 +402,29 @@ fn stands_free(
         y_m,
         heading_rad,
     } = scenario.start;
-    let footprint = Footprint::new(&robot.plant.body, &robot.plant.wheels);
-    if footprint.clearance_m(
-        &obstacles,
-        &Pose {
-            x_m,
-            y_m,
-            heading_rad,
-        },
-    ) >= 0.0
-        || scenario.wheels_in_air
-    {
+    if scenario.wheels_in_air {
         return Ok(());
     }
+    let footprint = Footprint::new(&robot.plant.body, &robot.plant.wheels);
+    let pose = Pose {
+        x_m,
+        y_m,
+        heading_rad,
+    };
+    let corners = footprint.corners(&pose);
+    let within =
+        |outline: &Obstacle| Obstacle::convex(&corners).is_ok_and(|own| own.overlaps(outline));
+    let inside = if obstacles.obstacles().iter().any(within) {
+        "a wall or box".to_owned()
+    } else {
+        let mut bodies = obstacles.bodies().iter();
+        let Some(index) = bodies.position(|body| within(&body.outline(&body.at(0).pose))) else {
+            return Ok(());
+        };
+        world.movers[index].called(index)
+    };
     Err(FileError::Setting(format!(
-        "scenario {}: its start x_m = {x_m}, y_m = {y_m} is inside a wall or box of world {}; move [start] or choose another world",
+        "scenario {}: its start x_m = {x_m}, y_m = {y_m} is inside {inside} of world {}; move [start] or choose another world",
         scenario.name, world.name
     )))
 }

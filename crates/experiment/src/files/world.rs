@@ -12,6 +12,10 @@
 //! centre_m = [0.5, 0.6]
 //! size_m = [0.4, 0.3]
 //! angle_deg = 20
+//! [[mover]]              # bodies that move: see `mover.rs`
+//! diameter_m = 0.3
+//! path_m = [[0.8, -0.9], [0.8, 0.9]]
+//! speed_m_s = 0.3
 //! [random]               # groups of boxes and a goal besides, others for each seed; each key has a default
 //! groups = [2, 6]
 //! goal_away_m = [2, 4]
@@ -20,6 +24,7 @@
 //! ```
 
 use super::error::FileError;
+use super::mover::{MOST_MOVERS, Mover, read_mover};
 use super::read::{Allowed, Source, Table};
 use crate::random_world::{Journey, RandomWorld};
 use rumbo_plant::world::{Block, ShapeError, Wall, World};
@@ -28,7 +33,7 @@ use rumbo_plant::world::{Block, ShapeError, Wall, World};
 pub(crate) const PLACE: Allowed = Allowed::new(-50.0, 50.0, "m");
 /// Each ray of a sonar meets all of them.
 const MOST_SHAPES: usize = 1_000;
-const SIDE: Allowed = Allowed::new(0.01, 50.0, "m");
+pub(crate) const SIDE: Allowed = Allowed::new(0.01, 50.0, "m");
 const GROUPS: Allowed = Allowed::new(0.0, 20.0, "count");
 const AWAY: Allowed = Allowed::new(0.5, 15.0, "m");
 const SHARE: Allowed = Allowed::new(0.0, 1.0, "");
@@ -50,6 +55,8 @@ pub struct WorldFile {
     pub walls: Vec<Wall>,
     /// Boxes, solid.
     pub boxes: Vec<Block>,
+    /// What moves.
+    pub movers: Vec<Mover>,
     /// What every seed adds at random.
     pub random: Option<RandomWorld>,
     /// The goal of a seed's random world, and the true shortest path to it.
@@ -79,10 +86,19 @@ impl WorldFile {
             .value;
         let (arena, mut walls) = read_arena(&root.table("arena"));
         walls.extend(root.tables("wall", MOST_SHAPES).into_iter().map(read_wall));
-        let boxes = root
+        let boxes: Vec<Block> = root
             .tables("box", MOST_SHAPES)
             .into_iter()
             .map(read_box)
+            .collect();
+        let movers = root
+            .tables("mover", MOST_MOVERS)
+            .iter()
+            .filter_map(|table| {
+                let mover = read_mover(table)?;
+                begins_free(table, &mover, &walls, &boxes);
+                Some(mover)
+            })
             .collect();
         let random = root
             .has("random")
@@ -96,17 +112,33 @@ impl WorldFile {
             arena,
             walls,
             boxes,
+            movers,
             random,
             journey: None,
         })
     }
 
-    /// The obstacles in the plant's form.
+    /// The obstacles and what moves in the plant's form.
     ///
     /// # Errors
     /// A shape without size; a parsed file has none.
     pub fn world(&self) -> Result<World, ShapeError> {
-        World::new(&self.walls, &self.boxes)
+        let mut world = World::new(&self.walls, &self.boxes)?;
+        for mover in &self.movers {
+            world.add_body(mover.body()?)?;
+        }
+        Ok(world)
+    }
+}
+
+/// Reports a mover that starts in a wall or a box; the hinge of a door may be in one.
+fn begins_free(table: &Table<'_, '_>, mover: &Mover, walls: &[Wall], boxes: &[Block]) {
+    let (Ok(body), Ok(world)) = (mover.body(), World::new(walls, boxes)) else {
+        return;
+    };
+    let outline = body.outline(&body.at(0).pose);
+    if !mover.is_door && world.obstacles().iter().any(|each| each.overlaps(&outline)) {
+        table.complain_here("starts inside a wall or box; move the first point of its path_m");
     }
 }
 

@@ -5,10 +5,10 @@
 //! good, takes it in, and looks ahead again: what was announced for later is taken back, none of it has reached the chip.
 
 use super::Sim;
+use super::touches::Touches;
 use crate::mega::{Action, Faults, Mega, Pause};
 use rumbo_control::{Duty, SonarId};
 use rumbo_plant::drivetrain::{Bridge, Side};
-use rumbo_plant::plant::Event;
 
 /// How far the plant looks ahead, and the grid it keeps to [us].
 const AHEAD_US: u64 = 1_000;
@@ -57,11 +57,9 @@ impl Sim {
         loop {
             mega.look_ahead();
             let mut ahead = self.state;
-            let mut contact_m_s: f64 = 0.0;
+            let mut touches = Touches::default();
             self.plant.advance(&mut ahead, end_us, &mut |event| {
-                if let Event::Contact { speed_m_s, .. } = event {
-                    contact_m_s = contact_m_s.max(speed_m_s);
-                }
+                touches.note(&event);
                 mega.expect(event);
             });
             let pause = mega.run(
@@ -75,7 +73,7 @@ impl Sim {
             let at_us = match pause {
                 Pause::Reached => {
                     self.state = ahead;
-                    self.worst_contact_m_s = self.worst_contact_m_s.max(contact_m_s);
+                    self.touches.0.append(&mut touches.0);
                     self.watch_reverse();
                     return false;
                 }
@@ -99,11 +97,9 @@ impl Sim {
             wires: &mut self.wire_faults,
             noise: &self.noise,
         };
-        let worst_contact_m_s = &mut self.worst_contact_m_s;
+        let touches = &mut self.touches;
         self.plant.advance(&mut self.state, at_us, &mut |event| {
-            if let Event::Contact { speed_m_s, .. } = event {
-                *worst_contact_m_s = worst_contact_m_s.max(speed_m_s);
-            }
+            touches.note(&event);
             mega.correct(event, &mut faults);
         });
     }

@@ -12,6 +12,7 @@
 mod baseline;
 mod emulated;
 mod native;
+mod touches;
 mod unlinked;
 
 use crate::baseline::Baseline;
@@ -27,11 +28,14 @@ use rumbo_control::{Duty, SIDES, SonarId, Wheels};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::link::{Direction, Link, LinkParams};
+use rumbo_plant::moving::{Body, Course, Motion};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Event, Plant, State, Truth};
-use rumbo_plant::world::World;
+use rumbo_plant::world::{ShapeError, World};
 use rumbo_wire::{Command, FromRobot};
+pub use touches::Touch;
+use touches::Touches;
 
 /// What is at the robot's pins.
 #[derive(Clone, Debug)]
@@ -66,7 +70,7 @@ pub struct Sim {
     baud: u32,
     duty: Wheels<Duty>,
     worst_reverse_rad_s: f64,
-    worst_contact_m_s: f64,
+    touches: Touches,
     sonar_faults: SonarFaults,
     wire_faults: WireFaults,
     noise: Noise,
@@ -150,7 +154,7 @@ impl Sim {
             downlink: Link::new(link, noise, Direction::ToStation),
             duty: Wheels::default(),
             worst_reverse_rad_s: 0.0,
-            worst_contact_m_s: 0.0,
+            touches: Touches::default(),
             sonar_faults,
             wire_faults,
             noise,
@@ -192,7 +196,12 @@ impl Sim {
 
     /// Fastest that a point of the body met an obstacle [m/s]; 0 without a contact.
     pub fn worst_contact_m_s(&self) -> f64 {
-        self.worst_contact_m_s
+        self.touches.worst_m_s()
+    }
+
+    /// What the body has met, in order.
+    pub fn touches(&self) -> &[Touch] {
+        &self.touches.0
     }
 
     /// Mean time between two settings of the bridges [s].
@@ -295,6 +304,29 @@ impl Sim {
         self.plant.world()
     }
 
+    /// Where the body is, and how fast it moves.
+    pub(crate) fn motion(&self) -> Motion {
+        self.plant.motion(&self.state)
+    }
+
+    /// The body as another robot meets it, where it stands now.
+    pub(crate) fn body(&self) -> Result<Body, ShapeError> {
+        let corners = self.plant.footprint().corners(&Pose::default());
+        let at_us = self.now_us();
+        let from = self.motion();
+        Body::new(corners.to_vec(), Course::Straight { at_us, from })
+    }
+
+    /// Puts a body into the world.
+    pub(crate) fn join(&mut self, body: Body) -> Result<(), ShapeError> {
+        self.plant.add_body(&mut self.state, body)
+    }
+
+    /// Sets the course of a body from now on.
+    pub(crate) fn meet(&mut self, body: usize, course: Course) {
+        self.plant.set_course(&mut self.state, body, course);
+    }
+
     /// Drains the messages of the report's native program; empty for other programs, which send over the link.
     pub fn drain_messages(&mut self) -> Vec<FromRobot> {
         match &mut self.controller {
@@ -385,7 +417,7 @@ impl Sim {
             Direction::ToStation,
         );
         self.worst_reverse_rad_s = 0.0;
-        self.worst_contact_m_s = 0.0;
+        self.touches = Touches::default();
         self.outputs_us = (0, 0, 0);
         let encoders = self.plant.encoder_levels(&self.state);
         if let Some(mega) = self.mega_mut() {
@@ -407,11 +439,9 @@ impl Sim {
     }
 
     fn advance_plant(&mut self, until_us: u64, take: &mut impl FnMut(Event)) {
-        let worst_contact_m_s = &mut self.worst_contact_m_s;
+        let touches = &mut self.touches;
         self.plant.advance(&mut self.state, until_us, &mut |event| {
-            if let Event::Contact { speed_m_s, .. } = event {
-                *worst_contact_m_s = worst_contact_m_s.max(speed_m_s);
-            }
+            touches.note(&event);
             take(event);
         });
         self.watch_reverse();

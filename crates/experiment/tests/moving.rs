@@ -1,0 +1,146 @@
+//! Robots among what moves: movers of a world, and other robots.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use rumbo_control::Wheels;
+use rumbo_experiment::files::{Library, NativeProgram, Overrides, Setup};
+use rumbo_experiment::run::{RunResult, run, run_all_on};
+use rumbo_plant::contact::Pose;
+use rumbo_sim::Sim;
+use rumbo_sim::fleet::{Fleet, FleetError, Met};
+use rumbo_wire::Command;
+
+fn setup(scenario: &str, program: NativeProgram) -> Setup {
+    let overrides = Overrides {
+        program,
+        ..Overrides::default()
+    };
+    Library::new().setup(scenario, &overrides).unwrap()
+}
+
+fn runs_on(threads: usize, setup: &Setup, seeds: std::ops::Range<u64>) -> Vec<RunResult> {
+    let jobs: Vec<_> = seeds.map(|seed| (setup, seed)).collect();
+    let mut results = Vec::new();
+    run_all_on::<rumbo_experiment::files::FileError>(threads, &jobs, |_, result| {
+        results.push(result);
+        Ok(())
+    })
+    .unwrap();
+    results
+}
+
+#[test]
+fn movers_are_met_alike_on_any_number_of_threads_and_by_a_repetition() {
+    let mut setup = setup("mode8-crossing", NativeProgram::Rumbo);
+    setup.scenario.duration_s = 15.0;
+    let one = runs_on(1, &setup, 1..4);
+    // Metrics may be no numbers, which are not equal.
+    let same = |one: &RunResult, other: &RunResult| one.trace == other.trace;
+    let three = runs_on(3, &setup, 1..4);
+    assert!(std::iter::zip(&one, &three).all(|(one, other)| same(one, other)));
+    assert!(same(&one[2], &run(&setup, 3).unwrap()));
+    // The world is empty but for them: what a sonar sees is one of the two.
+    let sees = |run: &RunResult| {
+        let mut samples = run.trace.samples.iter();
+        samples.any(|sample| sample.range_m[2] < 1.0)
+    };
+    assert!(one.iter().all(sees));
+}
+
+/// The report's robot on its way ahead, from a pose.
+fn ahead(seed: u64, x_m: f64, heading_rad: f64) -> Sim {
+    let setup = setup("mode5", NativeProgram::Baseline);
+    let mut config = setup.config(seed).unwrap();
+    config.start = Pose {
+        x_m,
+        y_m: 0.0,
+        heading_rad,
+    };
+    Sim::new(config).unwrap()
+}
+
+fn drive(robot: &mut Sim) {
+    for command in [
+        Command::WheelReference(Wheels {
+            left: 6.0,
+            right: 6.0,
+        }),
+        Command::Arm,
+    ] {
+        assert!(robot.order(command));
+    }
+}
+
+#[test]
+fn a_fleet_of_one_is_the_single_run() {
+    let mut single = ahead(3, 0.0, 0.0);
+    let mut fleet = Fleet::new(vec![ahead(3, 0.0, 0.0)]).unwrap();
+    drive(&mut single);
+    drive(fleet.robot_mut(0).unwrap());
+    for tick in 1..=500 {
+        single.advance(tick * 10_000);
+        fleet.advance(tick * 10_000);
+        assert_eq!(single.truth(), fleet.robots()[0].truth());
+    }
+    assert!(single.truth().pose.x_m > 0.5, "{:?}", single.truth());
+}
+
+#[test]
+fn two_that_meet_head_on_touch_each_other_and_do_not_overlap() {
+    let pi = std::f64::consts::PI;
+    let mut fleet = Fleet::new(vec![ahead(1, 0.0, 0.0), ahead(2, 1.0, pi)]).unwrap();
+    for robot in 0..2 {
+        drive(fleet.robot_mut(robot).unwrap());
+    }
+    let front_m = |fleet: &Fleet| fleet.robots()[0].truth().range_m[2];
+    let before_m = front_m(&fleet);
+    fleet.advance(6_000_000);
+    for robot in 0..2 {
+        let encounters = fleet.encounters(robot);
+        let first = encounters.first().unwrap();
+        assert_eq!(first.met, Met::Robot(1 - robot));
+        assert!(first.speed_m_s > 0.1, "both drive: {encounters:?}");
+    }
+    assert!(fleet.closest_m(0, 1) < 1e-3);
+    let [one, other] = fleet.robots() else {
+        panic!()
+    };
+    let apart_m = other.truth().pose.x_m - one.truth().pose.x_m;
+    assert!(
+        apart_m > 0.255,
+        "each is 0.13 m long ahead of its axis: {apart_m}"
+    );
+    assert!(before_m.is_none_or(|before_m| before_m < 1.0));
+}
+
+#[test]
+fn the_order_of_the_robots_makes_no_difference() {
+    let pi = std::f64::consts::PI;
+    let places = [(1, 0.0, 0.0), (2, 0.7, pi), (3, -0.6, 0.0)];
+    let truths = |order: [usize; 3]| {
+        let robots = order.map(|index| {
+            let (seed, x_m, heading_rad) = places[index];
+            ahead(seed, x_m, heading_rad)
+        });
+        let mut fleet = Fleet::new(robots.to_vec()).unwrap();
+        for robot in 0..3 {
+            drive(fleet.robot_mut(robot).unwrap());
+        }
+        fleet.advance(4_000_000);
+        let place = |robot: usize| order.iter().position(|index| *index == robot).unwrap();
+        [0, 1, 2].map(|robot| fleet.robots()[place(robot)].truth())
+    };
+    let forth = truths([0, 1, 2]);
+    assert_eq!(forth, truths([2, 0, 1]));
+    assert!(forth.iter().all(|truth| truth.contacts > 0), "{forth:?}");
+}
+
+#[test]
+fn robots_inside_each_other_are_refused() {
+    let error = Fleet::new(vec![
+        ahead(1, 0.0, 0.0),
+        ahead(2, 3.0, 0.0),
+        ahead(3, 0.1, 1.0),
+    ]);
+    assert_eq!(error.map(drop), Err(FleetError::Inside(0, 2)));
+}

@@ -1,0 +1,220 @@
+//! Several robots in one world, in lockstep.
+//!
+//! Each robot is a [`Sim`] with its own program, and a body in the worlds of all others. The robots are advanced by at most
+//! a millisecond. At the beginning of each step every robot gets the poses and velocities that the others have then; what
+//! they do within the step it meets in the next one. So the order in which they are advanced makes no difference. A fleet
+//! of one is bit for bit the single run.
+
+use crate::sim::Sim;
+use rumbo_plant::contact::Pose;
+use rumbo_plant::moving::{Body, Course, Motion};
+use rumbo_plant::world::{Obstacle, ShapeError};
+
+/// Longest step, and the grid it keeps to [us].
+const STEP_US: u64 = 1_000;
+
+/// Robots in one world.
+#[derive(Clone, Debug)]
+pub struct Fleet {
+    robots: Vec<Sim>,
+    /// The outline of each, for distances.
+    bodies: Vec<Body>,
+    /// Bodies of the world that are no robots.
+    movers: usize,
+    /// Of each pair, the second before the first in the list: by `pair`.
+    closest_m: Vec<f64>,
+}
+
+/// Why robots cannot be in one world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FleetError {
+    /// These two would stand inside each other.
+    Inside(usize, usize),
+    /// There are more than a world has room for.
+    TooMany,
+}
+
+impl std::fmt::Display for FleetError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Inside(one, other) => {
+                let (one, other) = (one + 1, other + 1);
+                write!(
+                    f,
+                    "robots {one} and {other} stand inside each other; move one of them"
+                )
+            }
+            Self::TooMany => {
+                f.write_str("there are more robots and movers than the 63 that fit; leave some out")
+            }
+        }
+    }
+}
+
+impl std::error::Error for FleetError {}
+
+/// What a robot met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Met {
+    /// A wall or a box, by its index in the world.
+    Obstacle(usize),
+    /// A mover, by its index in the world.
+    Mover(usize),
+    /// Another robot, by its index in the fleet.
+    Robot(usize),
+}
+
+/// A contact of a robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Encounter {
+    /// Its end of the step in which it began [us].
+    pub at_us: u64,
+    /// With what.
+    pub met: Met,
+    /// Closing speed of the points that met [m/s].
+    pub speed_m_s: f64,
+}
+
+impl Fleet {
+    /// Robots that stand in the same world at the same time.
+    ///
+    /// # Errors
+    /// Two of them inside each other, or too many.
+    pub fn new(mut robots: Vec<Sim>) -> Result<Self, FleetError> {
+        let bodies = robots.iter().map(Sim::body).collect::<Result<Vec<_>, _>>();
+        let bodies = bodies.map_err(|_: ShapeError| FleetError::TooMany)?;
+        let outlines: Vec<Obstacle> = std::iter::zip(&robots, &bodies)
+            .map(|(robot, body)| body.outline(&robot.motion().pose))
+            .collect();
+        for (second, outline) in outlines.iter().enumerate() {
+            let within = |first: &Obstacle| first.overlaps(outline);
+            if let Some(first) = outlines[..second].iter().position(within) {
+                return Err(FleetError::Inside(first, second));
+            }
+        }
+        let movers = robots
+            .first()
+            .map_or(0, |robot| robot.world().bodies().len());
+        for (own, robot) in robots.iter_mut().enumerate() {
+            for (_, body) in bodies.iter().enumerate().filter(|(other, _)| *other != own) {
+                robot.join(body.clone()).map_err(|_| FleetError::TooMany)?;
+            }
+        }
+        let pairs = robots.len() * robots.len().saturating_sub(1) / 2;
+        let mut fleet = Self {
+            robots,
+            bodies,
+            movers,
+            closest_m: vec![f64::INFINITY; pairs],
+        };
+        fleet.measure();
+        Ok(fleet)
+    }
+
+    /// The robots.
+    pub fn robots(&self) -> &[Sim] {
+        &self.robots
+    }
+
+    /// One of them, to send it bytes or to receive some; only [`Fleet::advance`] passes time.
+    pub fn robot_mut(&mut self, index: usize) -> Option<&mut Sim> {
+        self.robots.get_mut(index)
+    }
+
+    /// Advances all robots to this time [us].
+    pub fn advance(&mut self, until_us: u64) {
+        if let [only] = &mut self.robots[..] {
+            only.advance(until_us);
+            return;
+        }
+        while let Some(now_us) = self.robots.first().map(Sim::now_us)
+            && now_us < until_us
+        {
+            let end_us = ((now_us / STEP_US + 1) * STEP_US).min(until_us);
+            self.meet(now_us);
+            for robot in &mut self.robots {
+                robot.advance(end_us);
+            }
+            self.measure();
+            if self.robots.iter().any(|robot| robot.now_us() < end_us) {
+                // At a breakpoint.
+                return;
+            }
+        }
+    }
+
+    /// Each robot gets the poses and velocities of the others.
+    fn meet(&mut self, now_us: u64) {
+        let motions: Vec<Motion> = self.robots.iter().map(Sim::motion).collect();
+        for (own, robot) in self.robots.iter_mut().enumerate() {
+            let others = motions
+                .iter()
+                .enumerate()
+                .filter(|(other, _)| *other != own);
+            for (body, (_, &from)) in others.enumerate() {
+                let course = Course::Straight {
+                    at_us: now_us,
+                    from,
+                };
+                robot.meet(self.movers + body, course);
+            }
+        }
+    }
+
+    /// Keeps the closest approach of each pair.
+    fn measure(&mut self) {
+        let poses: Vec<Pose> = self
+            .robots
+            .iter()
+            .map(|robot| robot.motion().pose)
+            .collect();
+        for second in 1..poses.len() {
+            for first in 0..second {
+                let closest_m = &mut self.closest_m[pair(first, second)];
+                let (one, other) = (&poses[first], &poses[second]);
+                let bound_m = (one.x_m - other.x_m).hypot(one.y_m - other.y_m)
+                    - self.bodies[first].radius_m()
+                    - self.bodies[second].radius_m();
+                if bound_m < *closest_m {
+                    let outline = |index: usize| self.bodies[index].outline(&poses[index]);
+                    *closest_m = closest_m.min(outline(first).apart_m(&outline(second)));
+                }
+            }
+        }
+    }
+
+    /// The least distance that two robots have had [m]; infinite for one that is none.
+    pub fn closest_m(&self, one: usize, other: usize) -> f64 {
+        let pair = pair(one.min(other), one.max(other));
+        let known = (one != other).then(|| self.closest_m.get(pair)).flatten();
+        known.copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// The contacts of a robot so far, in order.
+    pub fn encounters(&self, robot: usize) -> Vec<Encounter> {
+        let Some(sim) = self.robots.get(robot) else {
+            return Vec::new();
+        };
+        let standing = sim.world().obstacles().len();
+        let met = |index: usize| match index.checked_sub(standing) {
+            None => Met::Obstacle(index),
+            Some(body) => match body.checked_sub(self.movers) {
+                None => Met::Mover(body),
+                Some(other) => Met::Robot(other + usize::from(other >= robot)),
+            },
+        };
+        let touches = sim.touches().iter();
+        touches
+            .map(|touch| Encounter {
+                at_us: touch.at_us,
+                met: met(touch.obstacle),
+                speed_m_s: touch.speed_m_s,
+            })
+            .collect()
+    }
+}
+
+/// Index of a pair, the first before the second.
+fn pair(first: usize, second: usize) -> usize {
+    second * second.saturating_sub(1) / 2 + first
+}
