@@ -1,7 +1,7 @@
 //! What is known of a robot as messages of ROS 2, by topic: of a log, or as it happens.
 
 use crate::geometry::{
-    BASE, Geometry, MAP, ODOM, SONARS, WHEELS, pose, seen_from, stamped, transform,
+    BASE, Geometry, MAP, ODOM, Origin, SONARS, WHEELS, pose, seen_from, stamped, transform,
 };
 use crate::messages::{
     BatteryState, Clock, DiagnosticStatus, Diagnostics, Event, Header, JointState, KeyValue,
@@ -126,29 +126,6 @@ pub struct Converter {
     sent: Vec<Sent>,
 }
 
-/// The robot's origin in the frame `odom`, in which its pose never jumps (REP 105): it does when the robot begins to count
-/// from somewhere else, as at each goal.
-#[derive(Debug, Default)]
-struct Origin {
-    in_odom: MapPose,
-    /// Where the log has it, and the last pose.
-    last: Option<(Option<MapPose>, MapPose)>,
-}
-
-impl Origin {
-    /// The pose in `odom` of a pose from the robot's origin, which the log has there.
-    fn pose(&mut self, logged: Option<MapPose>, from_origin: MapPose) -> MapPose {
-        if let Some((before, at)) = self.last
-            && before != logged
-        {
-            self.in_odom = compose(at, seen_from(from_origin, MapPose::default()));
-        }
-        let at = compose(self.in_odom, from_origin);
-        self.last = Some((logged, at));
-        at
-    }
-}
-
 impl Converter {
     /// For the robot of this name; `speaker` is the node, `started_ns` the time of its time 0 \[ns\].
     #[must_use]
@@ -172,6 +149,41 @@ impl Converter {
     pub fn know(&mut self, geometry: Geometry) {
         self.is_new |= self.geometry.as_ref() != Some(&geometry);
         self.geometry = Some(geometry);
+    }
+
+    /// The robot's pose in `odom`, as it was last reported.
+    #[must_use]
+    pub fn pose_in_odom(&self) -> Option<MapPose> {
+        self.origin.last_pose()
+    }
+
+    /// A pose of a frame in `odom`: of `map` in simulation, of `base_link`, of `odom` itself (or of no frame).
+    ///
+    /// # Errors
+    /// Why it is nowhere, for a person.
+    pub fn in_odom(&self, frame: &str, at: MapPose) -> Result<MapPose, String> {
+        match frame.trim_start_matches('/') {
+            "" | ODOM => Ok(at),
+            BASE => {
+                let robot = self.pose_in_odom().ok_or("the robot has no pose yet")?;
+                Ok(compose(robot, at))
+            }
+            MAP => {
+                let odom = self.odom_in_map.flatten();
+                let odom =
+                    odom.ok_or("only a simulated robot knows where it is in map; use odom")?;
+                Ok(seen_from(odom, at))
+            }
+            other => Err(format!(
+                "there is no frame `{other}`; use odom or base_link"
+            )),
+        }
+    }
+
+    /// A pose in `odom` as the robot counts it: from its own origin, which moves.
+    #[must_use]
+    pub fn from_origin(&self, in_odom: MapPose) -> MapPose {
+        seen_from(self.origin.in_odom(), in_odom)
     }
 
     /// The messages since the last call.
@@ -255,7 +267,7 @@ impl Converter {
         let mut frames = Vec::new();
         if let Some(at) = row.pose("") {
             let at = self.origin.pose(row.pose("origin_"), at);
-            let turned_rad = self.origin.in_odom.heading_rad;
+            let turned_rad = self.origin.in_odom().heading_rad;
             let velocity = geometry.velocity(now);
             let odometry = self.odometry(t_ns, ODOM, at, velocity, covariance(row, turned_rad));
             self.put(Topic::Odometry, t_ns, &odometry)?;
@@ -455,7 +467,9 @@ fn speeds_before(row: &Row) -> [f64; 2] {
     ["left_before_rad_s", "right_before_rad_s"].map(|name| row.signal(name).unwrap_or(0.0))
 }
 
-fn stamp(t_ns: u64) -> Time {
+/// A time in the terms of ROS 2.
+#[must_use]
+pub fn stamp(t_ns: u64) -> Time {
     Time {
         sec: i32::try_from(t_ns / 1_000_000_000).unwrap_or(i32::MAX),
         nanosec: (t_ns % 1_000_000_000) as u32,

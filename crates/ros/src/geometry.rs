@@ -1,7 +1,7 @@
 //! Frames and body of a robot, and its URDF.
 
 use crate::messages::{Header, Pose, Quaternion, Time, Transform, TransformStamped, Vector3};
-use rumbo_log::{MapPose, Scene, SonarMount};
+use rumbo_log::{MapPose, Scene, SonarMount, compose};
 use std::fmt::Write;
 
 /// The world, of a simulation.
@@ -229,5 +229,39 @@ pub fn seen_from(frame: MapPose, at: MapPose) -> MapPose {
         x_m: cos * x_m + sin * y_m,
         y_m: cos * y_m - sin * x_m,
         heading_rad: at.heading_rad - frame.heading_rad,
+    }
+}
+
+/// The robot's origin in the frame `odom`, in which its pose never jumps (REP 105): it does when the robot begins to count
+/// from somewhere else, as at each goal.
+#[derive(Debug, Default)]
+pub(crate) struct Origin {
+    in_odom: MapPose,
+    /// Where the log has it, and the last pose.
+    last: Option<(Option<MapPose>, MapPose)>,
+}
+
+impl Origin {
+    /// The pose in `odom` of a pose from the robot's origin, which the log has there.
+    pub(crate) fn pose(&mut self, logged: Option<MapPose>, from_origin: MapPose) -> MapPose {
+        if let Some((before, at)) = self.last
+            && before != logged
+        {
+            self.in_odom = compose(at, seen_from(from_origin, MapPose::default()));
+        }
+        let at = compose(self.in_odom, from_origin);
+        self.last = Some((logged, at));
+        at
+    }
+
+    /// Where it is.
+    pub(crate) fn in_odom(&self) -> MapPose {
+        self.in_odom
+    }
+
+    /// The last pose in `odom`.
+    pub(crate) fn last_pose(&self) -> Option<MapPose> {
+        let (_, at) = self.last?;
+        Some(at)
     }
 }

@@ -7,7 +7,8 @@
 //! topics     the topics of a robot: names, types, quality of service
 //! convert    a log, or what happens, as messages by topic
 //! bag        the bag: an MCAP file and its metadata
-//! node       a robot as a node: topics and services on a bridge
+//! service_messages, parameters, navigate   parameters and *go to goal*, by the services that ROS 2 has for them
+//! node       a robot as a node: topics, services and an action on a bridge
 //! bridge     what a node asks of a middleware; dds: over DDS (feature `dds`)
 //! ```
 //!
@@ -21,6 +22,9 @@ pub mod convert;
 pub mod dds;
 pub mod geometry;
 pub mod messages;
+pub mod navigate;
 pub mod node;
+pub mod parameters;
+pub mod service_messages;
 pub mod topics;
 pub mod types;

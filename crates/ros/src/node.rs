@@ -3,6 +3,8 @@
 use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming, ServiceType};
 use crate::convert::Sent;
 use crate::messages::{Triggered, Twist, TwistStamped};
+use crate::navigate;
+use crate::parameters;
 use crate::topics::{Quality, Topic};
 use crate::types::{Message, decode, encode};
 use std::collections::BTreeMap;
@@ -19,9 +21,19 @@ pub struct Node<B> {
     bridge: B,
     namespace: String,
     topics: BTreeMap<Topic, Channel>,
-    services: BTreeMap<Channel, usize>,
+    services: BTreeMap<Channel, Service>,
+    /// Services of [`Service::Call`].
+    calls: usize,
     /// Where velocities come from, and whether they are stamped.
     velocities: Option<(Channel, bool)>,
+}
+
+/// What a service is for; its number among those.
+#[derive(Clone, Copy, Debug)]
+enum Service {
+    Call(usize),
+    Parameters(usize),
+    Navigate(usize),
 }
 
 /// What others want.
@@ -29,6 +41,10 @@ pub struct Node<B> {
 pub enum Wish {
     /// A service is called.
     Call(Call),
+    /// Something of the robot's parameters.
+    Parameters(Caller, parameters::Question),
+    /// Something of *go to goal*.
+    Navigate(Caller, navigate::Question),
     /// The robot is to drive.
     Drive(Result<Velocity, BadVelocity>),
 }
@@ -69,6 +85,7 @@ impl<B: Bridge> Node<B> {
             namespace: namespace.to_owned(),
             topics: BTreeMap::new(),
             services: BTreeMap::new(),
+            calls: 0,
             velocities: None,
         }
     }
@@ -85,9 +102,39 @@ impl<B: Bridge> Node<B> {
     /// # Errors
     /// If the middleware refuses.
     pub fn offer(&mut self, service: &str) -> Result<(), BridgeError> {
-        let name = format!("/{}/{service}", self.speaker());
-        let channel = self.bridge.serve(&name, TRIGGER)?;
-        self.services.insert(channel, self.services.len());
+        self.serve(service, TRIGGER, Service::Call(self.calls))?;
+        self.calls += 1;
+        Ok(())
+    }
+
+    /// Offers the robot's parameters.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    pub fn offer_parameters(&mut self) -> Result<(), BridgeError> {
+        for (number, (name, of)) in parameters::SERVICES.into_iter().enumerate() {
+            self.serve(name, of, Service::Parameters(number))?;
+        }
+        self.announce(Topic::ParameterEvents).map(drop)
+    }
+
+    /// Offers *go to goal*.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    pub fn offer_navigation(&mut self) -> Result<(), BridgeError> {
+        for (number, (name, of)) in navigate::SERVICES.into_iter().enumerate() {
+            let name = format!("{}/_action/{name}", navigate::NAME);
+            self.serve(&name, of, Service::Navigate(number))?;
+        }
+        self.announce(Topic::GoalFeedback)?;
+        self.announce(Topic::GoalStatus).map(drop)
+    }
+
+    fn serve(&mut self, name: &str, of: ServiceType, is: Service) -> Result<(), BridgeError> {
+        let name = format!("/{}/{name}", self.speaker());
+        let channel = self.bridge.serve(&name, of)?;
+        self.services.insert(channel, is);
         Ok(())
     }
 
@@ -141,10 +188,18 @@ impl<B: Bridge> Node<B> {
     pub fn wish(&mut self) -> Option<Wish> {
         while let Some(incoming) = self.bridge.receive() {
             match incoming {
-                Incoming::Request { caller, .. } => {
-                    if let Some(service) = self.services.get(&caller.service) {
-                        let service = *service;
-                        return Some(Wish::Call(Call { service, caller }));
+                Incoming::Request { caller, data } => {
+                    // What cannot be decoded is not answered: who sent it is no client of ours.
+                    let wish = match self.services.get(&caller.service) {
+                        Some(&Service::Call(service)) => Some(Wish::Call(Call { service, caller })),
+                        Some(&Service::Parameters(number)) => parameters::question(number, &data)
+                            .map(|question| Wish::Parameters(caller, question)),
+                        Some(&Service::Navigate(number)) => navigate::question(number, &data)
+                            .map(|question| Wish::Navigate(caller, question)),
+                        None => None,
+                    };
+                    if wish.is_some() {
+                        return wish;
                     }
                 }
                 Incoming::Message {
@@ -174,8 +229,34 @@ impl<B: Bridge> Node<B> {
             success: done.is_ok(),
             message: done.err().unwrap_or_default(),
         };
-        let data = encode(&answer).map_err(|error| BridgeError::Send(error.to_string()))?;
-        self.bridge.answer(call.caller, &data)
+        self.reply(call.caller, &answer)
+    }
+
+    /// Answers somebody.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    pub fn reply<M: Message>(&mut self, caller: Caller, answer: &M) -> Result<(), BridgeError> {
+        let data = encode(answer).map_err(|error| BridgeError::Send(error.to_string()))?;
+        self.reply_bytes(caller, &data)
+    }
+
+    /// The same with an answer that is encoded already.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    pub fn reply_bytes(&mut self, caller: Caller, data: &[u8]) -> Result<(), BridgeError> {
+        self.bridge.answer(caller, data)
+    }
+
+    /// Publishes a message that is not encoded yet.
+    ///
+    /// # Errors
+    /// If the middleware refuses.
+    pub fn tell<M: Message>(&mut self, topic: Topic, message: &M) -> Result<(), BridgeError> {
+        let data = encode(message).map_err(|error| BridgeError::Send(error.to_string()))?;
+        let channel = self.announce(topic)?;
+        self.bridge.publish(channel, &data)
     }
 
     /// What a person should know of the others since the last call.

@@ -3,6 +3,7 @@
 use crate::messages::{
     BatteryState, Clock, Diagnostics, Event, JointState, Odometry, Range, Text, Transforms,
 };
+use crate::service_messages::{FeedbackMessage, GoalStatusArray, ParameterEvent};
 use crate::types::{Definition, Message};
 
 /// A topic.
@@ -30,6 +31,12 @@ pub enum Topic {
     Description,
     /// The time of a simulation; no part of a bag, which has its own times.
     Clock,
+    /// Changes of parameters; live only.
+    ParameterEvents,
+    /// How far the robot is on its way to a goal; live only.
+    GoalFeedback,
+    /// How the goals stand; live only.
+    GoalStatus,
 }
 
 /// How a topic is carried.
@@ -61,6 +68,9 @@ impl Topic {
             Self::Truth => "/ground_truth/odom",
             Self::Description => "/robot_description",
             Self::Clock => "/clock",
+            Self::ParameterEvents => "/parameter_events",
+            Self::GoalFeedback => "/rumbo/navigate_to_pose/_action/feedback",
+            Self::GoalStatus => "/rumbo/navigate_to_pose/_action/status",
         }
     }
 
@@ -68,7 +78,7 @@ impl Topic {
     #[must_use]
     pub fn name_in(self, namespace: &str) -> String {
         match self {
-            Self::Diagnostics | Self::Events => self.name().to_owned(),
+            Self::Diagnostics | Self::Events | Self::ParameterEvents => self.name().to_owned(),
             _ => format!("{namespace}{}", self.name()),
         }
     }
@@ -86,14 +96,24 @@ impl Topic {
             Self::Events => Event::DEFINITION,
             Self::Description => Text::DEFINITION,
             Self::Clock => Clock::DEFINITION,
+            Self::ParameterEvents => ParameterEvent::DEFINITION,
+            Self::GoalFeedback => FeedbackMessage::DEFINITION,
+            Self::GoalStatus => GoalStatusArray::DEFINITION,
         }
     }
 
     /// How it is carried: reliably, since RViz asks for that.
     #[must_use]
     pub fn quality(self) -> Quality {
-        let latched = matches!(self, Self::StaticTransforms | Self::Description);
-        let depth = if latched { 1 } else { 10 };
+        let latched = matches!(
+            self,
+            Self::StaticTransforms | Self::Description | Self::GoalStatus
+        );
+        let depth = match self {
+            _ if latched => 1,
+            Self::ParameterEvents => 100,
+            _ => 10,
+        };
         Quality {
             reliable: true,
             latched,

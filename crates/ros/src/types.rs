@@ -16,12 +16,22 @@ pub enum Type {
     Bool,
     /// `byte`, eight bits without a meaning as a number.
     Byte,
+    /// `int8`.
+    I8,
     /// `uint8`.
     U8,
+    /// `int16`.
+    I16,
+    /// `uint16`.
+    U16,
     /// `int32`.
     I32,
     /// `uint32`.
     U32,
+    /// `int64`.
+    I64,
+    /// `uint64`.
+    U64,
     /// `float32`.
     F32,
     /// `float64`.
@@ -34,6 +44,8 @@ pub enum Type {
     Array(&'static Type, usize),
     /// Any number of them.
     Sequence(&'static Type),
+    /// None or one of them.
+    Optional(&'static Type),
 }
 
 /// A message: its name and fields.
@@ -63,10 +75,22 @@ macro_rules! primitives {
     };
 }
 
-primitives! { bool => Bool, Byte => Byte, u8 => U8, i32 => I32, u32 => U32, f32 => F32, f64 => F64, String => String }
+primitives! {
+    bool => Bool, Byte => Byte, i8 => I8, u8 => U8, i16 => I16, u16 => U16, i32 => I32, u32 => U32, i64 => I64, u64 => U64,
+    f32 => F32, f64 => F64, String => String,
+}
 
 impl<T: Described> Described for Vec<T> {
     const TYPE: Type = Type::Sequence(&T::TYPE);
+}
+
+// In CDR a value that may be missing is what a sequence of at most one is.
+impl<T: Described> Described for Option<T> {
+    const TYPE: Type = Type::Optional(&T::TYPE);
+}
+
+impl<T: Described, const COUNT: usize> Described for [T; COUNT] {
+    const TYPE: Type = Type::Array(&T::TYPE, COUNT);
 }
 
 /// `byte`.
@@ -99,9 +123,11 @@ impl Serialize for Covariance {
     }
 }
 
-/// Declares messages: structures, and their types.
+/// Declares messages: structures, and their types. A field whose name is a word of Rust has another one here.
 macro_rules! messages {
-    ($($(#[$about:meta])* $ros:literal $name:ident { $($(#[$meaning:meta])* $field:ident: $type:ty,)* })*) => {
+    ($($(#[$about:meta])* $ros:literal $name:ident {
+        $($(#[$meaning:meta])* $field:ident $(as $called:literal)?: $type:ty,)*
+    })*) => {
         $(
             $(#[$about])*
             #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
@@ -116,7 +142,7 @@ macro_rules! messages {
             impl $crate::types::Message for $name {
                 const DEFINITION: &'static $crate::types::Definition = &$crate::types::Definition {
                     name: $ros,
-                    fields: &[$((stringify!($field), <$type as $crate::types::Described>::TYPE),)*],
+                    fields: &[$(([$($called,)? stringify!($field)][0], <$type as $crate::types::Described>::TYPE),)*],
                 };
             }
         )*
@@ -130,15 +156,21 @@ impl Type {
         match self {
             Self::Bool => "bool".into(),
             Self::Byte => "byte".into(),
+            Self::I8 => "int8".into(),
             Self::U8 => "uint8".into(),
+            Self::I16 => "int16".into(),
+            Self::U16 => "uint16".into(),
             Self::I32 => "int32".into(),
             Self::U32 => "uint32".into(),
+            Self::I64 => "int64".into(),
+            Self::U64 => "uint64".into(),
             Self::F32 => "float32".into(),
             Self::F64 => "float64".into(),
             Self::String => "string".into(),
             Self::Message(message) => message.short_name(),
             Self::Array(of, count) => format!("{}[{count}]", of.text()),
             Self::Sequence(of) => format!("{}[]", of.text()),
+            Self::Optional(of) => format!("{}[<=1]", of.text()),
         }
     }
 
@@ -146,15 +178,21 @@ impl Type {
     fn number(self) -> u8 {
         match self {
             Self::Message(_) => 1,
+            Self::I8 => 2,
             Self::U8 => 3,
+            Self::I16 => 4,
+            Self::U16 => 5,
             Self::I32 => 6,
             Self::U32 => 7,
+            Self::I64 => 8,
+            Self::U64 => 9,
             Self::F32 => 10,
             Self::F64 => 11,
             Self::Bool => 15,
             Self::Byte => 16,
             Self::String => 17,
             Self::Array(of, _) => 48 + of.number(),
+            Self::Optional(of) => 96 + of.number(),
             Self::Sequence(of) => 144 + of.number(),
         }
     }
@@ -162,7 +200,7 @@ impl Type {
     fn message(self) -> Option<&'static Definition> {
         match self {
             Self::Message(message) => Some(message),
-            Self::Array(of, _) | Self::Sequence(of) => of.message(),
+            Self::Array(of, _) | Self::Sequence(of) | Self::Optional(of) => of.message(),
             _ => None,
         }
     }
@@ -227,6 +265,7 @@ impl Definition {
         let fields = self.fields.iter().map(|(name, kind)| {
             let capacity = match kind {
                 Type::Array(_, count) => *count,
+                Type::Optional(_) => 1,
                 _ => 0,
             };
             let nested = kind.message().map_or("", |message| message.name);

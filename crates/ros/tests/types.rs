@@ -2,6 +2,7 @@
 
 use rumbo_ros::messages::{BatteryState, Diagnostics, Event, JointState, KeyValue, Odometry};
 use rumbo_ros::messages::{DiagnosticStatus, Header, Range, Text, Time, Transforms};
+use rumbo_ros::service_messages::{GoalStatusArray, ParameterDescriptor, ParameterEvent};
 use rumbo_ros::types::{Byte, Message, encode};
 
 #[test]
@@ -42,6 +43,18 @@ fn hashes_are_those_of_the_distributions() {
         (
             Event::DEFINITION,
             "e28ce254ca8abc06abf92773b74602cdbf116ed34fbaf294fb9f81da9f318eac",
+        ),
+        (
+            ParameterEvent::DEFINITION,
+            "043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204",
+        ),
+        (
+            ParameterDescriptor::DEFINITION,
+            "52175dbfda6c51153101d33d2a9da05743f66f02d5ab2ca9ec4709b46b73d704",
+        ),
+        (
+            GoalStatusArray::DEFINITION,
+            "6c1684b00f177d37438febe6e709fc4e2b0d4248dca4854946f9ed8b30cda83e",
         ),
     ] {
         assert_eq!(

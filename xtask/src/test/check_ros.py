@@ -3,9 +3,6 @@
 Argument: a folder for logs. `RUMBO_COMMAND` names a `rumbo` with the feature `ros`.
 """
 
-import atexit
-import base64
-import json
 import math
 import os
 import random
@@ -17,37 +14,39 @@ import tempfile
 import threading
 import time
 import xml.etree.ElementTree as ElementTree
-from dataclasses import dataclass
 from pathlib import Path
 
-DOMAIN = 30 + os.getpid() % 60
-os.environ["ROS_DOMAIN_ID"] = str(DOMAIN)
-# Cyclone on this computer alone, as `rmw_cyclonedds` does it with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST.
-os.environ["CYCLONEDDS_URI"] = (
-    "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address='127.0.0.1'/></Interfaces></General><Discovery>"
-    "<ParticipantIndex>auto</ParticipantIndex><Peers><Peer address='127.0.0.1'/></Peers></Discovery></Domain></CycloneDDS>"
-)
-
+import check_ros_goal
+import check_ros_others
+import check_ros_parameters
 import rclpy
-from cyclonedds.core import Policy, Qos
-from cyclonedds.domain import DomainParticipant
-from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.types import float64, int32, int64, sequence, uint8, uint32, uint64
-from cyclonedds.pub import DataWriter
-from cyclonedds.sub import DataReader
-from cyclonedds.topic import Topic
-from cyclonedds.util import duration
-from geometry_msgs.msg import Twist, TwistStamped
+import yaml
 from nav_msgs.msg import Odometry
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from ros_peers import (
+    DOMAIN,
+    LATCHED,
+    PATIENCE_S,
+    CycloneAnswer,
+    CycloneRequest,
+    Cyclone,
+    DiagnosticArray,
+    Page,
+    Peer,
+    Program,
+    ShortRequest,
+    Text,
+    TFMessage,
+    lab,
+    moved_m,
+    place,
+    seconds,
+    stamped,
+    twist,
+    wait_for,
+)
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Range
 from std_msgs.msg import String
-from std_srvs.srv import Trigger
-
-# Long enough for any machine; nothing is judged by it.
-PATIENCE_S = 40
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 # Its robot does not measure its battery.
 TOPICS = {
@@ -63,269 +62,10 @@ TOPICS = {
     "/rosout": "rcl_interfaces/msg/Log",
     "/robot_description": "std_msgs/msg/String",
     "/clock": "rosgraph_msgs/msg/Clock",
+    "/parameter_events": "rcl_interfaces/msg/ParameterEvent",
+    "/rumbo/navigate_to_pose/_action/feedback": "nav2_msgs/action/NavigateToPose_FeedbackMessage",
+    "/rumbo/navigate_to_pose/_action/status": "action_msgs/msg/GoalStatusArray",
 }
-
-
-# What the wheels of PyPI do not have, or not for Cyclone.
-@dataclass
-class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
-    sec: int32
-    nanosec: uint32
-
-
-@dataclass
-class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
-    stamp: Time
-    frame_id: str
-
-
-@dataclass
-class Vector3(IdlStruct, typename="geometry_msgs::msg::dds_::Vector3_"):
-    x: float64
-    y: float64
-    z: float64
-
-
-@dataclass
-class Quaternion(IdlStruct, typename="geometry_msgs::msg::dds_::Quaternion_"):
-    x: float64
-    y: float64
-    z: float64
-    w: float64
-
-
-@dataclass
-class Transform(IdlStruct, typename="geometry_msgs::msg::dds_::Transform_"):
-    translation: Vector3
-    rotation: Quaternion
-
-
-@dataclass
-class TransformStamped(IdlStruct, typename="geometry_msgs::msg::dds_::TransformStamped_"):
-    header: Header
-    child_frame_id: str
-    transform: Transform
-
-
-@dataclass
-class TFMessage(IdlStruct, typename="tf2_msgs::msg::dds_::TFMessage_"):
-    transforms: sequence[TransformStamped]
-
-
-@dataclass
-class KeyValue(IdlStruct, typename="diagnostic_msgs::msg::dds_::KeyValue_"):
-    key: str
-    value: str
-
-
-@dataclass
-class DiagnosticStatus(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticStatus_"):
-    level: uint8
-    name: str
-    message: str
-    hardware_id: str
-    values: sequence[KeyValue]
-
-
-@dataclass
-class DiagnosticArray(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticArray_"):
-    header: Header
-    status: sequence[DiagnosticStatus]
-
-
-@dataclass
-class Text(IdlStruct, typename="std_msgs::msg::dds_::String_"):
-    data: str
-
-
-# Cyclone puts half its identity and a number before requests and answers.
-@dataclass
-class CycloneRequest(IdlStruct, typename="std_srvs::srv::dds_::Trigger_Request_"):
-    guid: uint64
-    number: int64
-    nothing: uint8
-
-
-@dataclass
-class ShortRequest(IdlStruct, typename="std_srvs::srv::dds_::Trigger_Request_"):
-    nothing: uint8
-
-
-@dataclass
-class CycloneAnswer(IdlStruct, typename="std_srvs::srv::dds_::Trigger_Response_"):
-    guid: uint64
-    number: int64
-    success: bool
-    message: str
-
-
-def wait_for(what, condition):
-    """The first true value of `condition`."""
-    until = time.monotonic() + PATIENCE_S
-    while time.monotonic() < until:
-        value = condition()
-        if value:
-            return value
-        time.sleep(0.02)
-    raise AssertionError(f"not seen: {what}")
-
-
-class Program:
-    """A `rumbo` that runs until it is asked to end; what it prints."""
-
-    def __init__(self, *arguments, ready):
-        command = [os.environ["RUMBO_COMMAND"], *arguments]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        atexit.register(self.process.kill)
-        self.lines = []
-        threading.Thread(target=self._read, daemon=True).start()
-        self.ready = wait_for(f"{ready} of {arguments}", lambda: self.said(ready) or self.process.poll() is not None)
-        assert self.process.poll() is None, self.lines
-
-    def _read(self):
-        for line in self.process.stdout:
-            self.lines.append(line.rstrip())
-
-    def said(self, text):
-        return next((line for line in list(self.lines) if text in line), None)
-
-    def end(self):
-        self.process.terminate()
-        status = self.process.wait(PATIENCE_S)
-        assert status == 0, (status, self.lines)
-
-
-def lab(*arguments):
-    folder = ["--out", sys.argv[1]]
-    return Program("ros", "lab", "--no-browser", "--port", "0", *folder, *arguments, ready="http://")
-
-
-class Peer:
-    """A node of rclpy, spinning in a thread."""
-
-    def __init__(self, name):
-        self.node = rclpy.create_node(name)
-        self.executor = rclpy.executors.SingleThreadedExecutor()
-        self.executor.add_node(self.node)
-        threading.Thread(target=self._spin, daemon=True).start()
-
-    def _spin(self):
-        try:
-            self.executor.spin()
-        except rclpy.executors.ExternalShutdownException:
-            pass
-
-    def listen(self, kind, topic, quality=50):
-        """A list that grows with the messages."""
-        heard = []
-        self.node.create_subscription(kind, topic, heard.append, quality)
-        return heard
-
-    def call(self, service):
-        client = self.node.create_client(Trigger, service)
-        assert client.wait_for_service(PATIENCE_S), service
-        answer = client.call_async(Trigger.Request())
-        wait_for(f"an answer of {service}", answer.done)
-        return answer.result()
-
-    def must(self, service):
-        answer = self.call(service)
-        assert answer.success, (service, answer.message)
-
-    def drive(self, topic, make, seconds):
-        """Publishes what `make` gives, 20 times a second."""
-        publisher = self.publisher(topic, type(make()))
-        for _ in range(int(20 * seconds)):
-            publisher.publish(make())
-            time.sleep(0.05)
-
-    def publisher(self, topic, kind):
-        publisher = self.node.create_publisher(kind, topic, 10)
-        wait_for(f"a reader of {topic}", publisher.get_subscription_count)
-        return publisher
-
-
-class Page:
-    """A page of the dashboard at the address that was printed; it only gives orders."""
-
-    def __init__(self, url):
-        host, query = url.split("/")[2], url.split("?")[1]
-        head = f"Host: {host}\r\nOrigin: http://{host}\r\n"
-        request = f"POST /key?{query} HTTP/1.1\r\n{head}Authorization: Bearer test\r\nConnection: close\r\n\r\n"
-        with self._connect(host) as connection:
-            connection.sendall(request.encode())
-            key = connection.makefile("rb").read().decode().split("\r\n\r\n")[1]
-        upgrade = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-        upgrade += f"Sec-WebSocket-Key: {base64.b64encode(bytes(16)).decode()}\r\nSec-WebSocket-Protocol: rumbo, {key}\r\n"
-        self.socket = self._connect(host)
-        self.socket.sendall(f"GET /ws HTTP/1.1\r\n{head}{upgrade}\r\n".encode())
-        assert self.socket.recv(12) == b"HTTP/1.1 101"
-        threading.Thread(target=self._drain, daemon=True).start()
-
-    @staticmethod
-    def _connect(host):
-        name, port = host.split(":")
-        return socket.create_connection((name, int(port)), PATIENCE_S)
-
-    def _drain(self):
-        try:
-            while self.socket.recv(1 << 16):
-                pass
-        except OSError:
-            pass
-
-    def order(self, kind):
-        text = json.dumps({"type": kind}).encode()
-        # A masked text; the mask of zeros changes nothing.
-        self.socket.sendall(bytes([0x81, 0x80 | len(text), 0, 0, 0, 0]) + text)
-
-
-class Cyclone:
-    """A participant of Cyclone DDS."""
-
-    def __init__(self):
-        self.participant = DomainParticipant(DOMAIN)
-        reliable = Policy.Reliability.Reliable(duration(seconds=1))
-        self.volatile = Qos(reliable, Policy.Durability.Volatile, Policy.History.KeepLast(50))
-        self.latched = Qos(reliable, Policy.Durability.TransientLocal, Policy.History.KeepLast(1))
-
-    def read(self, name, kind, quality):
-        return DataReader(self.participant, Topic(self.participant, name, kind, qos=quality), qos=quality)
-
-    def write(self, name, kind):
-        topic = Topic(self.participant, name, kind, qos=self.volatile)
-        return DataWriter(self.participant, topic, qos=self.volatile)
-
-
-def twist(forward, yaw=0.0):
-    message = Twist()
-    message.linear.x = forward
-    message.angular.z = yaw
-    return message
-
-
-def stamped(clock, behind_s):
-    message = TwistStamped()
-    message.header.stamp.sec = clock[-1].clock.sec - behind_s
-    message.header.stamp.nanosec = clock[-1].clock.nanosec
-    message.twist.linear.x = 0.15
-    return message
-
-
-def x_m(odometry):
-    return odometry[-1].pose.pose.position.x
-
-
-def moved_m(odometry, act):
-    """How far the robot goes while `act` and a little after."""
-    before = x_m(odometry)
-    act()
-    time.sleep(0.3)
-    return x_m(odometry) - before
-
-
-def seconds(stamp):
-    return stamp.sec + stamp.nanosec / 1e9
 
 
 def check_graph(peer):
@@ -379,31 +119,31 @@ def check_late(cyclone):
 
 def check_driving(peer, odometry, truth, robot):
     # Connecting has armed nothing, and so does a velocity.
-    assert abs(moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 0.5))) < 1e-3
+    assert moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 0.5)) < 1e-3
     wait_for("why not", lambda: robot.said("the robot is in another mode; call mode/twist"))
     peer.must("/rumbo/mode/twist")
     peer.must("/rumbo/arm")
     refused = peer.call("/rumbo/mode/manual")
     assert not refused.success and "disarm first" in refused.message, refused
-    from_m, true_m = x_m(odometry), truth[-1].pose.pose.position
+    from_m, true_m = place(odometry), truth[-1].pose.pose.position
     peer.drive("/cmd_vel", lambda: twist(0.15), 1.5)
     assert odometry[-1].twist.twist.linear.x > 0.1, odometry[-1].twist
     wait_for("standing still", lambda: abs(odometry[-1].twist.twist.linear.x) < 0.005)
-    forward_m, now_m = x_m(odometry) - from_m, truth[-1].pose.pose.position
+    forward_m, now_m = math.dist(place(odometry), from_m), truth[-1].pose.pose.position
     true_m = math.hypot(now_m.x - true_m.x, now_m.y - true_m.y)
     assert 0.15 < forward_m < 0.5 and abs(true_m - forward_m) < 0.03, (true_m, forward_m)
     # Turning left is positive.
-    heading = lambda: odometry[-1].pose.pose.orientation.z
+    heading = lambda: 2 * math.atan2(odometry[-1].pose.pose.orientation.z, odometry[-1].pose.pose.orientation.w)
     before = heading()
     peer.drive("/cmd_vel", lambda: twist(0.0, 1.0), 0.7)
-    assert heading() > before + 0.1, (before, heading())
+    assert math.remainder(heading() - before, 2 * math.pi) > 0.2, (before, heading())
     wait_for("standing still", lambda: abs(odometry[-1].twist.twist.angular.z) < 0.02)
     for absurd in (twist(math.nan), twist(math.inf), twist(0.1, math.nan), twist(5.0), twist(0.1, 1e300)):
-        assert abs(moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: absurd, 0.3))) < 2e-3, absurd
+        assert moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: absurd, 0.3)) < 2e-3, absurd
     wait_for("what is no number", lambda: robot.said("its forward speed is not a finite number"))
     wait_for("what is too fast", lambda: robot.said("out of range"))
     peer.must("/rumbo/stop")
-    assert abs(moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 0.5))) < 1e-3
+    assert moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 0.5)) < 1e-3
 
 
 def robot_is(diagnostics, what):
@@ -420,7 +160,7 @@ def check_page(peer, cyclone, odometry, robot):
     wait_for("the page's ON", lambda: robot_is(diagnostics, "on"))
     refused = peer.call("/rumbo/arm").message
     assert "another page has control" in refused, refused
-    assert abs(moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 0.5))) < 1e-3
+    assert moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 0.5)) < 1e-3
     status = wait_for("diagnostics", lambda: diagnostics.take(N=50))[-1].status[2]
     assert (status.level, "another page has control" in status.message) == (1, True), status
     # STOP needs no control, from either side.
@@ -434,9 +174,9 @@ def check_page(peer, cyclone, odometry, robot):
     page.order("stop")
     wait_for("standing still", lambda: abs(odometry[-1].twist.twist.linear.x) < 0.005)
     assert driving.is_alive()
-    before = x_m(odometry)
+    before = place(odometry)
     driving.join()
-    assert abs(x_m(odometry) - before) < 0.01, (before, x_m(odometry))
+    assert math.dist(place(odometry), before) < 0.01, (before, place(odometry))
 
 
 def check_cyclone_calls(cyclone):
@@ -481,7 +221,7 @@ def check_killed_peer(peer, odometry):
     peer.must("/rumbo/arm")
 
 
-def check_two(peer, first):
+def check_two(peer, first, first_odometry):
     """The first robot is armed; the second one takes stamped velocities."""
     second = lab("--namespace", "second", "--stamped", "--scenario", "mode1")
     odometry = peer.listen(Odometry, "/second/odom")
@@ -492,10 +232,17 @@ def check_two(peer, first):
     peer.must("/second/rumbo/mode/twist")
     peer.must("/second/rumbo/arm")
     old = moved_m(odometry, lambda: peer.drive("/second/cmd_vel", lambda: stamped(clock, 2), 0.7))
-    assert abs(old) < 1e-3, old
+    assert old < 1e-3, old
     wait_for("what is old", lambda: second.said("refused, it was stamped 2."))
-    new = moved_m(odometry, lambda: peer.drive("/second/cmd_vel", lambda: stamped(clock, 0), 1.0))
-    assert new > 0.05, new
+    # Each has its own commands: the other one stands.
+    drive_second = lambda: peer.drive("/second/cmd_vel", lambda: stamped(clock, 0), 1.0)
+    first_stands = moved_m(first_odometry, lambda: check_moves(odometry, drive_second))
+    assert first_stands < 1e-3, first_stands
+    wait_for("standing still", lambda: check_ros_others.standing(odometry))
+    drive_first = lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 1.0)
+    second_stands = moved_m(odometry, lambda: check_moves(first_odometry, drive_first))
+    assert second_stands < 1e-3, second_stands
+    check_ros_parameters.check_two(peer)
     peer.must("/second/rumbo/stop")
     # The first one is still armed.
     refused = peer.call("/rumbo/mode/manual")
@@ -507,7 +254,28 @@ def check_two(peer, first):
     assert first.process.poll() is None
 
 
-def check_example():
+def check_moves(odometry, act):
+    moved = moved_m(odometry, act)
+    assert moved > 0.05, moved
+
+
+def check_examples():
+    """What of the examples can be checked without RViz and `ros2 launch`, and the one that runs."""
+    launch = Path("examples/ros2/rumbo.launch.py")
+    compile(launch.read_text(), launch, "exec")
+    layout = yaml.safe_load(Path("examples/ros2/rumbo.rviz").read_text())["Visualization Manager"]
+    kinds = {
+        "Odometry": "nav_msgs/msg/Odometry",
+        "Range": "sensor_msgs/msg/Range",
+        "RobotModel": "std_msgs/msg/String",
+    }
+    shown = {}
+    for display in layout["Displays"]:
+        topic = display.get("Topic") or display.get("Description Topic")
+        if topic:
+            shown[topic["Value"]] = kinds[display["Class"].split("/")[1]]
+    assert len(shown) == 6 and shown.items() <= TOPICS.items(), shown
+    assert layout["Global Options"]["Fixed Frame"] == "odom"
     example = [sys.executable, "examples/ros2/drive.py"]
     run = subprocess.run(example, capture_output=True, text=True, timeout=PATIENCE_S)
     assert run.returncode == 0 and run.stdout.startswith("x "), run
@@ -539,7 +307,7 @@ def check_replayed(peer, folder):
     replay = Program("ros", "replay", log, "--speed", "10", "--namespace", "log", ready="ROS 2")
     assert replay.process.wait(PATIENCE_S) == 0, replay.lines
     wait_for("the end", lambda: clock and odometry and seconds(odometry[-1].header.stamp) > 5.0)
-    assert x_m(odometry) > 0.1, x_m(odometry)
+    assert place(odometry)[0] > 0.1, place(odometry)
 
 
 def check_refusals(folder):
@@ -570,20 +338,27 @@ def main():
     done("topics")
     check_late(cyclone)
     done("latched topics, late")
+    check_ros_parameters.check(peer, cyclone, first)
+    done("parameters")
+    check_ros_goal.check(peer, odometry, first)
+    done("go to goal")
     check_driving(peer, odometry, truth, first)
     done("services and velocities")
     check_page(peer, cyclone, odometry, first)
     done("STOP of a page")
     check_cyclone_calls(cyclone)
     done("services of Cyclone")
+    peer.must("/rumbo/disarm")
+    check_ros_others.check(peer, cyclone, odometry, first)
+    done("others")
     check_garbage(peer, cyclone, odometry, first)
     done("garbage")
     check_killed_peer(peer, odometry)
     done("a killed peer")
-    check_two(peer, first)
+    check_two(peer, first, odometry)
     done("two robots")
-    check_example()
-    done("the example")
+    check_examples()
+    done("the examples")
     first.end()
     check_connected(peer)
     done("a robot at a port")

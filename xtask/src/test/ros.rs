@@ -18,6 +18,8 @@ const PACKAGES: [&str; 6] = [
 /// Builds `rumbo` as the step `test` does, and has the peers meet it.
 pub(super) fn check(project: &Project) -> Result<(), Stop> {
     let python = tools::python_with(project, "ros", &PACKAGES)?;
+    // For the type of Nav2's action.
+    tools::compiler(project)?;
     // Those of the Python that they were built for.
     let import = project
         .command(&python)

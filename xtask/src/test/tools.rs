@@ -140,6 +140,12 @@ pub(crate) fn python_with(
     Ok(python)
 }
 
+/// A C++ compiler, and what it needs of Python.
+pub(crate) fn compiler(project: &Project) -> Result<PathBuf, Stop> {
+    let packages = ["g++", "python3-dev"];
+    program(project, "g++", &packages, "a C++ compiler")
+}
+
 /// Node and npm, with the packages of `web/package-lock.json` installed.
 pub(crate) fn node(project: &Project) -> Result<PathBuf, Stop> {
     let node = program(project, "node", &["nodejs", "npm"], "Node 20 or newer")?;

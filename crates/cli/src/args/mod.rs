@@ -17,7 +17,7 @@ pub(crate) use logs::{
     CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
 };
 #[cfg(feature = "ros")]
-pub(crate) use ros::{NodeArgs, PlayArgs, RosArgs, RosSource};
+pub(crate) use ros::{Distribution, NodeArgs, PlayArgs, RosArgs, RosSource};
 pub(crate) use runs::{
     CalibrateArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, RunArgs,
 };

@@ -4,7 +4,7 @@ use super::live::{ConnectArgs, LabArgs};
 use super::values::positive_speed;
 use crate::failure::Failure;
 use crate::ros::{domain, namespace};
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Options of `rumbo ros`.
@@ -72,9 +72,23 @@ pub(crate) struct NodeArgs {
     /// Velocities on cmd_vel are geometry_msgs/TwistStamped instead of Twist
     #[arg(long, global = true)]
     pub(crate) stamped: bool,
+    /// Whose nav2_msgs the clients of navigate_to_pose have
+    #[arg(long, value_enum, value_name = "NAME", global = true, default_value_t = Distribution::Jazzy)]
+    pub(crate) distribution: Distribution,
     /// Be there for other computers too, in all networks of this one: everyone there can drive the robot
     #[arg(long, global = true)]
     pub(crate) network: bool,
+}
+
+/// A distribution of ROS 2, as far as it matters here.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Distribution {
+    /// Humble
+    Humble,
+    /// Iron and Jazzy
+    Jazzy,
+    /// Kilted and newer
+    Kilted,
 }
 
 /// Options of `rumbo ros replay`.

@@ -1,13 +1,19 @@
 //! `rumbo ros`: a robot, or the log of one, as a node of ROS 2.
 
+mod aim;
+mod calls;
+mod drive;
+mod goal;
+mod parameters;
 mod play;
 mod session;
 
-use crate::args::{NodeArgs, RosArgs, RosSource, ServeArgs};
+use crate::args::{Distribution, NodeArgs, RosArgs, RosSource, ServeArgs};
 use crate::failure::Failure;
 use crate::{browser, connect, lab, output};
 use rumbo_ros::bridge::BridgeError;
 use rumbo_ros::dds::{Dds, Reach};
+use rumbo_ros::navigate;
 use rumbo_ros::node::{self, Node};
 use rumbo_station::{Client, Lab};
 use session::Live;
@@ -29,12 +35,12 @@ pub(crate) fn ros(args: &mut RosArgs) -> Result<(), Failure> {
     match &mut args.source {
         RosSource::Lab(lab) => {
             let served = lab::serve(lab)?;
-            let live = Live::new(node, client(&served)?, true, args.node.stamped);
+            let live = Live::new(node, client(&served)?, true, &args.node);
             beside(served, live, lab.session.serve)
         }
         RosSource::Connect(connect) => {
             let served = connect::serve(connect)?;
-            let live = Live::new(node, client(&served)?, false, args.node.stamped);
+            let live = Live::new(node, client(&served)?, false, &args.node);
             beside(served, live, connect.session.serve)
         }
         RosSource::Replay(log) => play::play(log, node),
@@ -61,6 +67,15 @@ fn join(args: &NodeArgs) -> Result<RosNode, Failure> {
     let name = node.speaker();
     output::aside(&format!("ROS 2: node /{name} on domain {domain}, {whom}"));
     Ok(node)
+}
+
+/// The definitions of Nav2 that clients have.
+fn definitions(distribution: Distribution) -> navigate::Distribution {
+    match distribution {
+        Distribution::Humble => navigate::Distribution::Humble,
+        Distribution::Jazzy => navigate::Distribution::Jazzy,
+        Distribution::Kilted => navigate::Distribution::Kilted,
+    }
 }
 
 /// A domain as it is written.

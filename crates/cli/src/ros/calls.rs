@@ -1,0 +1,104 @@
+//! Services of ROS 2 without a question: each call is an order. It is answered when the robot's state shows what was
+//! asked for, or the robot has refused it.
+
+use super::report;
+use super::session::{Live, PATIENCE, TAKEN};
+use rumbo_control::mode::ModeId;
+use rumbo_log::RobotState;
+use rumbo_ros::node::Call;
+use rumbo_session::Order;
+use rumbo_wire::Command;
+use std::time::Instant;
+
+/// What a service is for.
+pub(super) enum Service {
+    /// An order for the robot, and how its state shows that it was done.
+    Robot(Command, fn(&RobotState) -> bool),
+    Mode(ModeId),
+    TakeControl,
+    ReleaseControl,
+}
+
+/// The services by name.
+pub(super) fn services() -> Vec<(String, Service)> {
+    let services = [
+        ("arm", Service::Robot(Command::Arm, |robot| robot.armed)),
+        (
+            "disarm",
+            Service::Robot(Command::Disarm, |robot| !robot.armed),
+        ),
+        ("stop", Service::Robot(Command::Stop, |robot| !robot.armed)),
+        (
+            "clear_fault",
+            Service::Robot(Command::ClearFault, |robot| robot.fault.is_none()),
+        ),
+        ("reset_pose", Service::Robot(Command::ResetPose, |_| true)),
+        ("take_control", Service::TakeControl),
+        ("release_control", Service::ReleaseControl),
+    ];
+    let services = services.map(|(name, service)| (name.to_owned(), service));
+    let modes = ModeId::ALL.map(|mode| (format!("mode/{}", mode.name()), Service::Mode(mode)));
+    services.into_iter().chain(modes).collect()
+}
+
+/// A call that waits for the robot.
+pub(super) struct Waiting {
+    call: Call,
+    since: Instant,
+}
+
+impl Live {
+    /// Gives the order of a call; one that does not reach the robot is answered at once.
+    pub(super) fn begin(&mut self, call: Call) {
+        let Some((_, service)) = self.services.get(call.service) else {
+            return;
+        };
+        let order = match service {
+            Service::Robot(command, _) => Order::Robot(*command),
+            Service::Mode(mode) => Order::Robot(Command::Mode(*mode)),
+            Service::TakeControl => Order::TakeControl,
+            Service::ReleaseControl => Order::ReleaseControl,
+        };
+        let for_robot = matches!(order, Order::Robot(_));
+        match self.give(order) {
+            Ok(()) if for_robot => self.waiting.push(Waiting {
+                call,
+                since: Instant::now(),
+            }),
+            given => self.answer(call, given),
+        }
+    }
+
+    fn answer(&mut self, call: Call, done: Result<(), String>) {
+        let answered = self.node.answer(call, done);
+        report(answered, &mut self.reported);
+    }
+
+    /// Answers the calls whose outcome is known; `has_state`: the state is new.
+    pub(super) fn settle(&mut self, has_state: bool) {
+        for waiting in std::mem::take(&mut self.waiting) {
+            let lasts = waiting.since.elapsed();
+            let known = has_state && lasts > TAKEN;
+            let outcome = known.then(|| self.outcome(waiting.call)).flatten();
+            let late = || Err("the robot has not confirmed it".to_owned());
+            match outcome.or_else(|| (lasts > PATIENCE).then(late)) {
+                None => self.waiting.push(waiting),
+                Some(done) => self.answer(waiting.call, done),
+            }
+        }
+    }
+
+    /// The outcome of a call by the robot's state, if it is known.
+    fn outcome(&self, call: Call) -> Option<Result<(), String>> {
+        if let Some(why) = &self.state.refused {
+            return Some(Err(why.clone()));
+        }
+        let robot = &self.state.robot;
+        let is_done = match self.services.get(call.service)? {
+            (_, Service::Robot(_, shows)) => shows(robot),
+            (_, Service::Mode(mode)) => robot.mode == *mode as u8,
+            (_, Service::TakeControl | Service::ReleaseControl) => true,
+        };
+        (is_done && self.state.link.unacknowledged == 0).then_some(Ok(()))
+    }
+}
