@@ -23,8 +23,8 @@ pub struct Encoder {
 pub struct State {
     /// Boundaries passed forward minus those passed backward.
     pub count: i64,
-    below_rad: f64,
-    above_rad: f64,
+    pub(crate) below_rad: f64,
+    pub(crate) above_rad: f64,
 }
 
 /// One edge of the sensor's output.

@@ -20,7 +20,7 @@ use crate::sonar::{self, Sonar, SonarId, View};
 use crate::world::World;
 
 /// Longest physical step, and the grid it keeps to.
-const STEP_US: u64 = 1000;
+pub(crate) const STEP_US: u64 = 1000;
 
 /// The parts of a plant.
 #[derive(Clone, Debug, Default)]
@@ -42,28 +42,28 @@ pub struct Setup {
 /// What does not change during a run.
 #[derive(Clone, Debug)]
 pub struct Plant {
-    drivetrain: Drivetrain,
-    encoders: [Encoder; 2],
-    footprint: Footprint,
-    servo: params::Servo,
+    pub(crate) drivetrain: Drivetrain,
+    pub(crate) encoders: [Encoder; 2],
+    pub(crate) footprint: Footprint,
+    pub(crate) servo: params::Servo,
     sonar: Sonar,
     mounts: [Option<Mount>; 3],
-    world: World,
-    wheels_in_air: bool,
+    pub(crate) world: World,
+    pub(crate) wheels_in_air: bool,
 }
 
 /// Everything that changes: plain numbers, copied to save a moment and to come back to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    now_us: u64,
-    pose: Pose,
+    pub(crate) now_us: u64,
+    pub(crate) pose: Pose,
     /// Speed of the body over the last step: forward, yaw.
-    speed: [f64; 2],
-    drivetrain: drivetrain::State,
-    encoders: [encoder::State; 2],
-    contact: contact::State,
-    servo: servo::State,
-    sonars: [sonar::State; 3],
+    pub(crate) speed: [f64; 2],
+    pub(crate) drivetrain: drivetrain::State,
+    pub(crate) encoders: [encoder::State; 2],
+    pub(crate) contact: contact::State,
+    pub(crate) servo: servo::State,
+    pub(crate) sonars: [sonar::State; 3],
 }
 
 /// Ground truth.
@@ -198,8 +198,7 @@ impl Plant {
         queue: &mut Queue,
         events: &mut impl FnMut(Event),
     ) {
-        let from_us = state.now_us;
-        let step_us = (until_us - from_us) as f64;
+        let step_us = (until_us - state.now_us) as f64;
         let dt_s = step_us * 1e-6;
 
         let before_rad = state.drivetrain.wheels.map(|wheel| wheel.angle_rad);
@@ -209,24 +208,45 @@ impl Plant {
             .step(&mut state.drivetrain, dt_s, resistance_n_m);
         for wheel in [Side::Left, Side::Right] {
             let i = wheel.index();
-            let after_rad = state.drivetrain.wheels[i].angle_rad;
-            self.encoders[i].turn(&mut state.encoders[i], before_rad[i], after_rad, |edge| {
-                // Within (from, until]: an edge at the very start belongs to the next microsecond.
-                let into_us = libm::ceil(edge.fraction * step_us).clamp(1.0, step_us);
-                let at_us = from_us + into_us as u64;
-                queue.put(
-                    Event::Edge {
-                        wheel,
-                        at_us,
-                        level: edge.level,
-                    },
-                    events,
-                );
-            });
+            let turn_rad = [before_rad[i], state.drivetrain.wheels[i].angle_rad];
+            self.pass_edges(state, wheel, turn_rad, step_us, queue, events);
         }
         state.servo.step(&self.servo, dt_s);
         state.now_us = until_us;
         self.move_body(state, &motion, dt_s, queue, events);
+        Self::pass_echoes(state, queue, events);
+    }
+
+    /// Reports the edges of a wheel that turns from one angle to another in the step of this length from now on.
+    pub(crate) fn pass_edges(
+        &self,
+        state: &mut State,
+        wheel: Side,
+        [from_rad, to_rad]: [f64; 2],
+        step_us: f64,
+        queue: &mut Queue,
+        events: &mut impl FnMut(Event),
+    ) {
+        let (i, from_us) = (wheel.index(), state.now_us);
+        self.encoders[i].turn(&mut state.encoders[i], from_rad, to_rad, |edge| {
+            // Within (from, until]: an edge at the very start belongs to the next microsecond.
+            let into_us = libm::ceil(edge.fraction * step_us).clamp(1.0, step_us);
+            let event = Event::Edge {
+                wheel,
+                at_us: from_us + into_us as u64,
+                level: edge.level,
+            };
+            queue.put(event, events);
+        });
+    }
+
+    /// Reports the edges of the echo lines up to now.
+    pub(crate) fn pass_echoes(
+        state: &mut State,
+        queue: &mut Queue,
+        events: &mut impl FnMut(Event),
+    ) {
+        let until_us = state.now_us;
         for sonar in SonarId::ALL {
             Sonar::advance(&mut state.sonars[sonar.index()], until_us, |edge| {
                 let at_us = edge.at_us;
