@@ -5,6 +5,7 @@
 //! [`Plant::advance`] as events in the order of time, each at its microsecond.
 
 use libm::{sincos, sqrt};
+use std::sync::{Arc, OnceLock};
 
 pub use crate::event::Event;
 pub use crate::rig::{Mount, Rig};
@@ -48,7 +49,7 @@ pub struct Plant {
     pub(crate) servo: params::Servo,
     sonar: Sonar,
     mounts: [Option<Mount>; 3],
-    pub(crate) world: World,
+    pub(crate) world: Arc<World>,
     pub(crate) wheels_in_air: bool,
 }
 
@@ -115,7 +116,7 @@ impl Plant {
             servo: params.servo,
             sonar: Sonar::new(&params.sonar, noise),
             mounts: rig.mounts(),
-            world,
+            world: Arc::new(world),
             wheels_in_air,
         }
     }
@@ -139,8 +140,16 @@ impl Plant {
 
     /// The world.
     #[must_use]
-    pub const fn world(&self) -> &World {
+    pub fn world(&self) -> &World {
         &self.world
+    }
+
+    /// Keeps its world in common with others if it is the same as theirs: the first one's.
+    pub fn share_world(&mut self, common: &OnceLock<Arc<World>>) {
+        let common = common.get_or_init(|| self.world.clone());
+        if self.world == *common {
+            self.world = common.clone();
+        }
     }
 
     /// Footprint of the body.

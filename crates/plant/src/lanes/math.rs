@@ -1,7 +1,8 @@
 //! libm's sine and cosine and the quantile of the standard normal, with their bits.
 
+use super::LANES;
 use super::vector::{Bits, M, V, gather, splat};
-use crate::noise::{self, CENTRE};
+use crate::noise::{self, CENTRE, SIDE};
 use fearless_simd::prelude::*;
 
 /// The least number whose upper 32 bits are these: libm compares by them.
@@ -28,6 +29,18 @@ const C: [f64; 6] = [
     -2.755_731_435_139_066_3e-7,
     2.087_572_321_298_175e-9,
     -1.135_964_755_778_819_5e-11,
+];
+
+/// libm's `log`: the natural logarithm of 2 in two parts, and the coefficients.
+const LN_2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
+const L: [f64; 7] = [
+    0.666_666_666_666_673_5,
+    0.399_999_999_994_094_2,
+    0.285_714_287_436_623_9,
+    0.222_221_984_321_497_84,
+    0.181_835_721_616_180_5,
+    0.153_138_376_992_093_73,
+    0.147_981_986_051_165_86,
 ];
 
 /// Sine and cosine. Arguments beyond five eighths of a turn, and those so near a quarter or half turn that libm reduces them
@@ -93,17 +106,48 @@ fn k_cos<W: Simd>(simd: W, x: V<W>, y: V<W>) -> V<W> {
     w + (((one - w) - hz) + (z * r - x * y))
 }
 
-/// [`noise::normal_quantile`]; far from the middle robot by robot.
+/// [`noise::normal_quantile`]; beyond one in 7e10 robot by robot.
 #[inline(always)]
-pub(super) fn normal_quantile<W: Simd>(simd: W, p: &[f64; 8]) -> [f64; 8] {
-    let q = gather(simd, |lane| p[lane]) - 0.5;
-    let x = splat(simd, 0.180_625) - q * q;
-    let [numerator, denominator] = &CENTRE;
-    let mut z = q * (horner(simd, x, numerator) / horner(simd, x, denominator));
-    for lane in Bits::of(q.abs().simd_gt(splat(simd, 0.425))) {
-        z[lane] = noise::normal_quantile(p[lane]);
+pub(super) fn normal_quantile<W: Simd>(simd: W, p: &[f64; LANES]) -> [f64; LANES] {
+    let (all, zero) = (gather(simd, |lane| p[lane]), splat(simd, 0.0));
+    let q = all - 0.5;
+    let mut z = q * ratio(simd, splat(simd, 0.180_625) - q * q, &CENTRE);
+    let beside = q.abs().simd_gt(splat(simd, 0.425));
+    if !Bits::of(beside).none() {
+        let below = q.simd_lt(zero);
+        let r = (-log(simd, below.select(all, splat(simd, 1.0) - all))).sqrt();
+        let size = ratio(simd, r - 1.6, &SIDE);
+        z = beside.select(below.select(-size, size), z);
+        for lane in Bits(Bits::of(beside).0 & !Bits::of(r.simd_le(splat(simd, 5.0))).0) {
+            z[lane] = noise::normal_quantile(p[lane]);
+        }
     }
     z.into()
+}
+
+/// libm's logarithm of a normal number below 1.
+#[inline(always)]
+fn log<W: Simd>(simd: W, x: V<W>) -> V<W> {
+    /// What centres the fraction on 1, in the bits of the exponent: libm's 0x3ff00000 - 0x3fe6a09e.
+    const CENTRED: u64 = 0x0009_5f62 << 32;
+    /// 2^52, whose lowest bits count units.
+    const UNITS: f64 = 4_503_599_627_370_496.0;
+    let bits = x.to_bits() + CENTRED;
+    let k = V::from_bits((bits >> 52) | UNITS.to_bits()) - UNITS - 1_023.0;
+    let f = V::from_bits((bits & 0x000f_ffff_ffff_ffff) + (0x3fe6_a09e << 32)) - 1.0;
+    let hfsq = f * 0.5 * f;
+    let s = f / (splat(simd, 2.0) + f);
+    let z = s * s;
+    let w = z * z;
+    let t1 = w * (w * (w * L[5] + L[3]) + L[1]);
+    let t2 = z * (w * (w * (w * L[6] + L[4]) + L[2]) + L[0]);
+    let r = t2 + t1;
+    s * (hfsq + r) + k * LN_2[1] - hfsq + f + k * LN_2[0]
+}
+
+#[inline(always)]
+fn ratio<W: Simd>(simd: W, x: V<W>, [numerator, denominator]: &[[f64; 8]; 2]) -> V<W> {
+    horner(simd, x, numerator) / horner(simd, x, denominator)
 }
 
 #[inline(always)]
@@ -113,4 +157,78 @@ fn horner<W: Simd>(simd: W, x: V<W>, c: &[f64; 8]) -> V<W> {
         sum = sum * x + c[i];
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fearless_simd::Level;
+
+    /// Calls `with` with so many groups of uniform numbers.
+    fn groups(count: u64, mut with: impl FnMut([f64; LANES])) {
+        let noise = noise::Noise::new(3, 0);
+        for step in 0..count {
+            with(std::array::from_fn(|lane| noise.uniform(lane as u32, step)));
+        }
+    }
+
+    fn bits(values: [f64; LANES]) -> [u64; LANES] {
+        values.map(f64::to_bits)
+    }
+
+    #[test]
+    fn sines_and_cosines_are_those_of_libm() {
+        let Some(simd) = Level::new().as_avx2() else {
+            return;
+        };
+        let check = |x: [f64; LANES]| {
+            let (s, c) = sincos(simd, gather(simd, |lane| x[lane]));
+            assert_eq!(bits(s.into()), bits(x.map(libm::sin)), "sin {x:?}");
+            assert_eq!(bits(c.into()), bits(x.map(libm::cos)), "cos {x:?}");
+        };
+        groups(50_000, |u| check(u.map(|u| 9.0 * u - 4.5)));
+        // Where libm goes another way, and on both sides of it.
+        let places = [
+            0x3fe9_21fc,
+            0x3ff9_21fb,
+            0x4002_d97d,
+            0x4009_21fb,
+            0x400f_6a7b,
+        ];
+        for place in places.map(high) {
+            groups(2_000, |u| {
+                check(u.map(|u| place * (1.0 + 1e-6 * (u - 0.5))))
+            });
+            groups(2_000, |u| {
+                check(u.map(|u| -place * (1.0 + 1e-12 * (u - 0.5))))
+            });
+        }
+        check([0.0, -0.0, 1e-9, -1e-9, 1e-300, 6.5, -100.0, 1e7]);
+    }
+
+    #[test]
+    fn quantiles_are_those_of_one_by_one() {
+        let Some(simd) = Level::new().as_avx2() else {
+            return;
+        };
+        let check = |p: [f64; LANES]| {
+            let expected = p.map(noise::normal_quantile);
+            assert_eq!(bits(normal_quantile(simd, &p)), bits(expected), "{p:?}");
+        };
+        groups(50_000, &check);
+        groups(10_000, |u| check(u.map(|u| 0.08 * u)));
+        groups(10_000, |u| check(u.map(|u| 1.0 - 0.08 * u * u * u)));
+        groups(10_000, |u| check(u.map(|u| libm::pow(u, 20.0) + 1e-16)));
+        let half_a_step = 0.5_f64.powi(54);
+        check([
+            0.5,
+            0.075,
+            0.925,
+            half_a_step,
+            1e-11,
+            1.4e-11,
+            1.0 - half_a_step,
+            0.0749,
+        ]);
+    }
 }
