@@ -12,6 +12,7 @@
 mod baseline;
 mod emulated;
 mod native;
+mod together;
 mod unlinked;
 
 use crate::baseline::Baseline;
@@ -32,6 +33,7 @@ use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Event, Plant, State, Truth};
 use rumbo_plant::world::World;
 use rumbo_wire::{Command, FromRobot};
+use std::sync::{Arc, OnceLock};
 
 /// What is at the robot's pins.
 #[derive(Clone, Debug)]
@@ -293,6 +295,11 @@ impl Sim {
     /// The world.
     pub fn world(&self) -> &World {
         self.plant.world()
+    }
+
+    /// Keeps its world in common with others if it is the same as theirs: the first one's.
+    pub fn share_world(&mut self, common: &OnceLock<Arc<World>>) {
+        self.plant.share_world(common);
     }
 
     /// Drains the messages of the report's native program; empty for other programs, which send over the link.
