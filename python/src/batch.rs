@@ -93,7 +93,7 @@ impl Batch {
         known: PyReadwriteArray2<'_, f32>,
         truth: PyReadwriteArray2<'_, f64>,
     ) -> PyResult<()> {
-        self.step(py, known, truth, |_, _| {})
+        self.step(py, known, truth, 0, |_, _| false)
     }
 
     /// Gives each robot its row of `actions`, advances it by this many control ticks and writes its rows. Robots of which
@@ -115,9 +115,9 @@ impl Batch {
         }
         let (actions, active) = (actions.as_slice()?, active.as_slice()?);
         check_actions(actions)?;
-        self.step(py, known, truth, |index, robot| {
+        self.step(py, known, truth, ticks, |index, robot| {
             if active.get(index) != Some(&true) {
-                return;
+                return false;
             }
             if let Some([left, right, servo_rad]) = actions.as_chunks().0.get(index) {
                 let (left, right) = (*left, *right);
@@ -125,7 +125,7 @@ impl Batch {
                 let _ = robot.command(&Command::WheelReference(Wheels { left, right }));
                 robot.aim(Some(ServoAngle(*servo_rad)));
             }
-            robot.advance(ticks);
+            true
         })
     }
 
@@ -242,14 +242,15 @@ impl Batch {
         py: Python<'_>,
         mut known: PyReadwriteArray2<'_, f32>,
         mut truth: PyReadwriteArray2<'_, f64>,
-        act: impl Fn(usize, &mut Robot) + Sync + Send,
+        ticks: u32,
+        act: impl Fn(usize, &mut Robot) -> bool + Sync + Send,
     ) -> PyResult<()> {
         let mut held = self.lock()?;
         let robots = &mut *held;
         let known = rows("known", &mut known, self.count, OBSERVED.len())?;
         let truth = rows("truth", &mut truth, self.count, TRUE.len())?;
         on_threads(py, self.count, self.threads, || {
-            robots.step(known, truth, act);
+            robots.step(known, truth, ticks, act);
         })
     }
 }

@@ -6,6 +6,7 @@ use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Batch, Driver, OBSERVED, Robot, TRUE};
 use rumbo_experiment::files::{Kind, Library, Overrides, Setup};
 use rumbo_experiment::run;
+use rumbo_plant::lanes::Lanes;
 use rumbo_sim::trace::Sample;
 use rumbo_wire::Command;
 
@@ -84,6 +85,42 @@ fn each_robot_of_a_batch_is_bit_for_bit_that_of_a_run() {
     }
 }
 
+/// Seeds of groups for the lanes, and of three robots more: `RUMBO_LANES_SEEDS=100` asks for more than usual.
+fn many_seeds() -> Vec<u64> {
+    let more = std::env::var("RUMBO_LANES_SEEDS").ok();
+    let count = more.and_then(|count| count.parse().ok()).unwrap_or(11);
+    (1..=count).collect()
+}
+
+#[test]
+fn robots_in_lanes_are_bit_for_bit_those_of_runs_in_every_scenario() {
+    let seeds = many_seeds();
+    for scenario in Library::new().list(Kind::Scenario) {
+        let setup = setup(&scenario);
+        let runs = (seeds.iter().map(|seed| run::run(&setup, *seed).unwrap())).collect::<Vec<_>>();
+        for lanes in Lanes::all() {
+            on_threads(1, || {
+                let mut batch = Batch::new(setup.clone(), Driver::Scenario, &seeds).unwrap();
+                batch.use_lanes(lanes);
+                let ticks = runs[0].trace.samples.len();
+                for at in (0..ticks - STEP).step_by(STEP) {
+                    batch.advance(STEP as u32);
+                    for (robot, run) in batch.robots().iter().zip(&runs) {
+                        assert_eq!(
+                            of_robot(robot),
+                            of_sample(&run.trace.samples[at + STEP - 1]),
+                            "{scenario}, seed {}, {}, tick {}",
+                            run.seed,
+                            lanes.name(),
+                            at + STEP
+                        );
+                    }
+                }
+            });
+        }
+    }
+}
+
 /// Drives by actions that change, and gives all that is known and true at the end of each step.
 fn driven(batch: &mut Batch, steps: u32) -> Vec<(Vec<u32>, Vec<u64>)> {
     batch.for_each(|_, robot| {
@@ -97,7 +134,7 @@ fn driven(batch: &mut Batch, steps: u32) -> Vec<(Vec<u32>, Vec<u64>)> {
     );
     let mut rows = Vec::new();
     for step in 0..steps {
-        batch.step(&mut known, &mut truth, |_, robot| {
+        batch.step(&mut known, &mut truth, 10, |_, robot| {
             // By the seed: the same robot does the same in every batch.
             let speed = 4.0 + (step * 7 % 5) as f32 - (robot.seed() % 3) as f32;
             let wheels = Wheels {
@@ -106,7 +143,7 @@ fn driven(batch: &mut Batch, steps: u32) -> Vec<(Vec<u32>, Vec<u64>)> {
             };
             robot.command(&Command::WheelReference(wheels)).unwrap();
             robot.aim(Some(ServoAngle((step % 3) as f32 * 0.4 - 0.4)));
-            robot.advance(10);
+            true
         });
         let known = known.iter().map(|value| value.to_bits()).collect();
         let truth = truth.iter().map(|value| value.to_bits()).collect();
@@ -129,6 +166,26 @@ fn a_driven_robot_is_the_same_alone_and_among_others_on_any_threads() {
             assert!(truth[..] == all_truth[index * TRUE.len()..][..TRUE.len()]);
         }
     }
+}
+
+#[test]
+fn driven_robots_of_any_age_share_lanes_with_the_bits_of_each_alone() {
+    let mut setup = setup("mode8-random");
+    setup.scenario.mode = rumbo_control::mode::ModeId::WheelSpeed;
+    let seeds: Vec<u64> = (1..=19).collect();
+    let mut rows = Vec::new();
+    for lanes in Lanes::all() {
+        on_threads(1, || {
+            let mut batch = Batch::new(setup.clone(), Driver::Caller, &seeds).unwrap();
+            batch.use_lanes(lanes);
+            let mut all = driven(&mut batch, 20);
+            // New ones among the old, as vector environments begin an episode.
+            batch.renew(&[(2, 102), (9, 109)]).unwrap();
+            all.extend(driven(&mut batch, 20));
+            rows.push(all);
+        });
+    }
+    assert!(rows.iter().all(|row| *row == rows[0]));
 }
 
 #[test]

@@ -1,17 +1,19 @@
 //! How fast the plant is: `cargo run --release -p rumbo-plant --example speed`.
 //!
-//! A robot drives about a room with 20 boxes, first without pings, then with its three sonars at 50 pings a second.
+//! Eight robots drive about a room with 20 boxes, first without pings, then with their three sonars at 50 pings a second;
+//! one by one, and in lanes.
 
 use std::hint::black_box;
 use std::time::Instant;
 
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
+use rumbo_plant::lanes::{LANES, Lanes};
 use rumbo_plant::plant::{Mount, Plant, Rig, Setup};
 use rumbo_plant::sonar::SonarId;
 use rumbo_plant::world::{Block, ShapeError, Wall, World};
 
-const RUN_S: u64 = 2_000;
+const RUN_S: u64 = 400;
 
 fn main() -> Result<(), ShapeError> {
     let mount = |x_m, y_m, angle_rad| {
@@ -45,37 +47,54 @@ fn main() -> Result<(), ShapeError> {
             }
         })
         .collect();
-    let plant = Plant::new(Setup {
-        rig,
-        world: World::new(&walls, &blocks)?,
-        ..Setup::default()
+    let world = World::new(&walls, &blocks)?;
+    let plants: [Plant; LANES] = std::array::from_fn(|seed| {
+        Plant::new(Setup {
+            rig,
+            world: world.clone(),
+            seed: seed as u64,
+            ..Setup::default()
+        })
     });
-
     for ping in [false, true] {
-        let mut state = plant.start(Pose::default());
-        let mut events = 0_u64;
-        let started = Instant::now();
-        for tick in 0..RUN_S * 100 {
-            // Circles of about half a metre, each tick another duty as a controller would command.
-            let ripple = 0.01 * (tick % 7) as f64;
-            plant.set_bridge(&mut state, Side::Left, Bridge::Forward(0.4 + ripple));
-            plant.set_bridge(&mut state, Side::Right, Bridge::Forward(0.6 - ripple));
-            if ping && tick % 2 == 0 {
-                plant.trigger(&mut state, SonarId::ALL[(tick / 2 % 3) as usize]);
-            }
-            plant.advance(&mut state, (tick + 1) * 10_000, &mut |event| {
-                events += u64::from(event.at_us() > 0)
-            });
+        for lanes in Lanes::all() {
+            measure(&plants, lanes, ping);
         }
-        let took_s = started.elapsed().as_secs_f64();
-        let truth = black_box(plant.truth(&state));
-        println!(
-            "{:<13} {:6.1} ns per 1 ms step, {:6.0} x real time ({events} events, {} contacts)",
-            if ping { "50 pings/s:" } else { "no ping:" },
-            took_s / (RUN_S * 1000) as f64 * 1e9,
-            RUN_S as f64 / took_s,
-            truth.contacts
-        );
     }
     Ok(())
+}
+
+fn measure(plants: &[Plant; LANES], lanes: Lanes, ping: bool) {
+    let mut robots = plants
+        .each_ref()
+        .map(|plant| (plant, plant.start(Pose::default())));
+    let mut events = 0_u64;
+    let started = Instant::now();
+    for tick in 0..RUN_S * 100 {
+        // Circles of about half a metre, each tick another duty as a controller would command.
+        let ripple = 0.01 * (tick % 7) as f64;
+        for (plant, state) in &mut robots {
+            plant.set_bridge(state, Side::Left, Bridge::Forward(0.4 + ripple));
+            plant.set_bridge(state, Side::Right, Bridge::Forward(0.6 - ripple));
+            if ping && tick % 2 == 0 {
+                plant.trigger(state, SonarId::ALL[(tick / 2 % 3) as usize]);
+            }
+        }
+        let mut group = robots.each_mut().map(|(plant, state)| (*plant, state));
+        lanes.advance(&mut group, 10_000, &mut |_, event| {
+            events += u64::from(event.at_us() > 0);
+        });
+    }
+    let took_s = started.elapsed().as_secs_f64();
+    let contacts = robots
+        .each_ref()
+        .map(|(plant, state)| plant.truth(state).contacts);
+    let contacts: u32 = black_box(contacts).iter().sum();
+    println!(
+        "{:<12} {:<8} {:6.1} ns per 1 ms step of a robot, {:6.0} x real time ({events} events, {contacts} contacts)",
+        if ping { "50 pings/s:" } else { "no ping:" },
+        lanes.name(),
+        took_s / (RUN_S * 1000 * LANES as u64) as f64 * 1e9,
+        (RUN_S * LANES as u64) as f64 / took_s,
+    );
 }

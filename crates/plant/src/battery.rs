@@ -6,19 +6,19 @@
 use crate::params;
 
 /// Fall of the open-circuit voltage per full charge above the knee (two cells: 8.4 V full, 7.0 V at 5 %).
-const PLATEAU_V: f64 = 1.45;
+pub(crate) const PLATEAU_V: f64 = 1.45;
 /// The same below the knee (7.0 V at 5 %, 6.2 V empty).
-const KNEE_FALL_V: f64 = 16.0;
+pub(crate) const KNEE_FALL_V: f64 = 16.0;
 /// Open-circuit voltage at the knee.
-const KNEE_V: f64 = 7.0;
+pub(crate) const KNEE_V: f64 = 7.0;
 
 /// What does not change: resistance and rate of discharge.
 #[derive(Clone, Copy, Debug)]
 pub struct Battery {
     start_v: f64,
-    resistance_ohm: f64,
-    electronics_a: f64,
-    per_coulomb: f64,
+    pub(crate) resistance_ohm: f64,
+    pub(crate) electronics_a: f64,
+    pub(crate) per_coulomb: f64,
 }
 
 /// State of a [`Battery`].

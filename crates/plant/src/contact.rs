@@ -46,7 +46,7 @@ pub struct Footprint {
     half_m: [f64; 2],
     ahead_m: f64,
     /// Farthest corner from the middle of the axis.
-    reach_m: f64,
+    pub(crate) reach_m: f64,
     inverse_mass: f64,
     inverse_inertia: f64,
     half_base_m: f64,
@@ -180,7 +180,7 @@ impl Footprint {
     }
 
     #[cold]
-    fn settle_near(
+    pub(crate) fn settle_near(
         &self,
         step: &Step<'_>,
         state: &mut State,

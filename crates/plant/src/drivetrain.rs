@@ -21,9 +21,9 @@ use bridge::{Command, RELEASED, Winding};
 use coupling::{Coupling, turning_share};
 use wander::Wander;
 
-mod bridge;
-mod coupling;
-mod wander;
+pub(crate) mod bridge;
+pub(crate) mod coupling;
+pub(crate) mod wander;
 
 /// Left or right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,9 +69,9 @@ pub struct WheelState {
     pub remembered_rad_s: f64,
     /// Share of the rolled distance lost to slip at this place.
     pub slip: f64,
-    command: Command,
-    floor: Wander,
-    slipping: Wander,
+    pub(crate) command: Command,
+    pub(crate) floor: Wander,
+    pub(crate) slipping: Wander,
 }
 
 /// State of a [`Drivetrain`]: plain numbers.
@@ -86,25 +86,25 @@ pub struct State {
 /// Parameters in the form the step needs.
 #[derive(Clone, Copy, Debug)]
 pub struct Drivetrain {
-    battery: Battery,
-    noise: Noise,
-    winding: Winding,
-    wheels: [WheelModel; 2],
-    floor: params::Floor,
+    pub(crate) battery: Battery,
+    pub(crate) noise: Noise,
+    pub(crate) winding: Winding,
+    pub(crate) wheels: [WheelModel; 2],
+    pub(crate) floor: params::Floor,
     on_floor: bool,
-    coupling: Coupling,
-    base_m: f64,
+    pub(crate) coupling: Coupling,
+    pub(crate) base_m: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct WheelModel {
-    params: params::Wheel,
-    back_emf_v_s: f64,
-    torque_n_m_a: f64,
-    inverse_stribeck: f64,
-    forgetting_per_s: f64,
-    floor_knots_per_rad: f64,
-    slip_knots_per_rad: f64,
+pub(crate) struct WheelModel {
+    pub(crate) params: params::Wheel,
+    pub(crate) back_emf_v_s: f64,
+    pub(crate) torque_n_m_a: f64,
+    pub(crate) inverse_stribeck: f64,
+    pub(crate) forgetting_per_s: f64,
+    pub(crate) floor_knots_per_rad: f64,
+    pub(crate) slip_knots_per_rad: f64,
 }
 
 impl Drivetrain {

@@ -23,8 +23,8 @@ pub struct Encoder {
 pub struct State {
     /// Boundaries passed forward minus those passed backward.
     pub count: i64,
-    below_rad: f64,
-    above_rad: f64,
+    pub(crate) below_rad: f64,
+    pub(crate) above_rad: f64,
 }
 
 /// One edge of the sensor's output.
@@ -81,24 +81,28 @@ impl Encoder {
     pub fn turn(&self, state: &mut State, from_rad: f64, to_rad: f64, mut each: impl FnMut(Edge)) {
         while to_rad >= state.above_rad {
             let fraction = (state.above_rad - from_rad) / (to_rad - from_rad);
-            state.count += 1;
-            state.below_rad = state.above_rad;
-            state.above_rad = self.boundary_rad(state.count);
-            each(Edge {
-                fraction,
-                level: self.level(state),
-            });
+            let level = self.pass(state, true);
+            each(Edge { fraction, level });
         }
         while to_rad < state.below_rad {
             let fraction = (state.below_rad - from_rad) / (to_rad - from_rad);
+            let level = self.pass(state, false);
+            each(Edge { fraction, level });
+        }
+    }
+
+    /// Passes the next boundary in a direction; the level after it.
+    pub(crate) fn pass(&self, state: &mut State, forward: bool) -> bool {
+        if forward {
+            state.count += 1;
+            state.below_rad = state.above_rad;
+            state.above_rad = self.boundary_rad(state.count);
+        } else {
             state.count -= 1;
             state.above_rad = state.below_rad;
             state.below_rad = self.boundary_rad(state.count - 1);
-            each(Edge {
-                fraction,
-                level: self.level(state),
-            });
         }
+        self.level(state)
     }
 
     fn boundary_rad(&self, index: i64) -> f64 {

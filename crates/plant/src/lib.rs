@@ -20,6 +20,7 @@ pub mod draw;
 pub mod drivetrain;
 pub mod encoder;
 pub mod event;
+pub mod lanes;
 pub mod link;
 pub mod moving;
 pub mod noise;

@@ -5,6 +5,7 @@
 //! [`Plant::advance`] as events in the order of time, each at its microsecond.
 
 use libm::{sincos, sqrt};
+use std::sync::{Arc, OnceLock};
 
 pub use crate::event::Event;
 pub use crate::rig::{Mount, Rig};
@@ -21,7 +22,7 @@ use crate::sonar::{self, Sonar, SonarId, View};
 use crate::world::{ShapeError, World};
 
 /// Longest physical step, and the grid it keeps to.
-const STEP_US: u64 = 1000;
+pub(crate) const STEP_US: u64 = 1000;
 
 /// The parts of a plant.
 #[derive(Clone, Debug, Default)]
@@ -43,28 +44,28 @@ pub struct Setup {
 /// What does not change during a run.
 #[derive(Clone, Debug)]
 pub struct Plant {
-    drivetrain: Drivetrain,
-    encoders: [Encoder; 2],
-    footprint: Footprint,
-    servo: params::Servo,
+    pub(crate) drivetrain: Drivetrain,
+    pub(crate) encoders: [Encoder; 2],
+    pub(crate) footprint: Footprint,
+    pub(crate) servo: params::Servo,
     sonar: Sonar,
     mounts: [Option<Mount>; 3],
-    world: World,
-    wheels_in_air: bool,
+    pub(crate) world: Arc<World>,
+    pub(crate) wheels_in_air: bool,
 }
 
 /// Everything that changes: plain numbers, copied to save a moment and to come back to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    now_us: u64,
-    pose: Pose,
+    pub(crate) now_us: u64,
+    pub(crate) pose: Pose,
     /// Speed of the body over the last step: forward, yaw.
-    speed: [f64; 2],
-    drivetrain: drivetrain::State,
-    encoders: [encoder::State; 2],
-    contact: contact::State,
-    servo: servo::State,
-    sonars: [sonar::State; 3],
+    pub(crate) speed: [f64; 2],
+    pub(crate) drivetrain: drivetrain::State,
+    pub(crate) encoders: [encoder::State; 2],
+    pub(crate) contact: contact::State,
+    pub(crate) servo: servo::State,
+    pub(crate) sonars: [sonar::State; 3],
 }
 
 /// Ground truth.
@@ -116,7 +117,7 @@ impl Plant {
             servo: params.servo,
             sonar: Sonar::new(&params.sonar, noise),
             mounts: rig.mounts(),
-            world,
+            world: Arc::new(world),
             wheels_in_air,
         }
     }
@@ -140,7 +141,7 @@ impl Plant {
 
     /// The world.
     #[must_use]
-    pub const fn world(&self) -> &World {
+    pub fn world(&self) -> &World {
         &self.world
     }
 
@@ -150,12 +151,13 @@ impl Plant {
     /// There is no room for another one.
     pub fn add_body(&mut self, state: &mut State, body: Body) -> Result<(), ShapeError> {
         state.contact.clearance_m = 0.0;
-        self.world.add_body(body)
+        Arc::make_mut(&mut self.world).add_body(body)
     }
 
     /// Sets the course of a body of the world, by its index, from now on.
     pub fn set_course(&mut self, state: &mut State, body: usize, course: Course) {
-        state.contact.clearance_m -= self.world.set_course(body, state.now_us, course);
+        state.contact.clearance_m -=
+            Arc::make_mut(&mut self.world).set_course(body, state.now_us, course);
     }
 
     /// Where the body is, and how fast it moves.
@@ -169,6 +171,14 @@ impl Plant {
                 m_s: [forward_m_s * c, forward_m_s * s],
                 yaw_rad_s,
             },
+        }
+    }
+
+    /// Keeps its world in common with others if it is the same as theirs: the first one's.
+    pub fn share_world(&mut self, common: &OnceLock<Arc<World>>) {
+        let common = common.get_or_init(|| self.world.clone());
+        if self.world == *common {
+            self.world = common.clone();
         }
     }
 
@@ -227,8 +237,7 @@ impl Plant {
         queue: &mut Queue,
         events: &mut impl FnMut(Event),
     ) {
-        let from_us = state.now_us;
-        let step_us = (until_us - from_us) as f64;
+        let step_us = (until_us - state.now_us) as f64;
         let dt_s = step_us * 1e-6;
 
         let before_rad = state.drivetrain.wheels.map(|wheel| wheel.angle_rad);
@@ -238,24 +247,45 @@ impl Plant {
             .step(&mut state.drivetrain, dt_s, resistance_n_m);
         for wheel in [Side::Left, Side::Right] {
             let i = wheel.index();
-            let after_rad = state.drivetrain.wheels[i].angle_rad;
-            self.encoders[i].turn(&mut state.encoders[i], before_rad[i], after_rad, |edge| {
-                // Within (from, until]: an edge at the very start belongs to the next microsecond.
-                let into_us = libm::ceil(edge.fraction * step_us).clamp(1.0, step_us);
-                let at_us = from_us + into_us as u64;
-                queue.put(
-                    Event::Edge {
-                        wheel,
-                        at_us,
-                        level: edge.level,
-                    },
-                    events,
-                );
-            });
+            let turn_rad = [before_rad[i], state.drivetrain.wheels[i].angle_rad];
+            self.pass_edges(state, wheel, turn_rad, step_us, queue, events);
         }
         state.servo.step(&self.servo, dt_s);
         state.now_us = until_us;
         self.move_body(state, &motion, dt_s, queue, events);
+        Self::pass_echoes(state, queue, events);
+    }
+
+    /// Reports the edges of a wheel that turns from one angle to another in the step of this length from now on.
+    pub(crate) fn pass_edges(
+        &self,
+        state: &mut State,
+        wheel: Side,
+        [from_rad, to_rad]: [f64; 2],
+        step_us: f64,
+        queue: &mut Queue,
+        events: &mut impl FnMut(Event),
+    ) {
+        let (i, from_us) = (wheel.index(), state.now_us);
+        self.encoders[i].turn(&mut state.encoders[i], from_rad, to_rad, |edge| {
+            // Within (from, until]: an edge at the very start belongs to the next microsecond.
+            let into_us = libm::ceil(edge.fraction * step_us).clamp(1.0, step_us);
+            let event = Event::Edge {
+                wheel,
+                at_us: from_us + into_us as u64,
+                level: edge.level,
+            };
+            queue.put(event, events);
+        });
+    }
+
+    /// Reports the edges of the echo lines up to now.
+    pub(crate) fn pass_echoes(
+        state: &mut State,
+        queue: &mut Queue,
+        events: &mut impl FnMut(Event),
+    ) {
+        let until_us = state.now_us;
         for sonar in SonarId::ALL {
             Sonar::advance(&mut state.sonars[sonar.index()], until_us, |edge| {
                 let at_us = edge.at_us;

@@ -2,6 +2,7 @@
 //!
 //! The figures are of the machine at hand and its present load: they are printed, never asserted.
 
+mod batch;
 mod emulator;
 mod headless;
 mod lab;
@@ -35,7 +36,12 @@ struct Part {
     measure: fn(&Project) -> Result<Vec<Figure>, String>,
 }
 
-const PARTS: [Part; 7] = [
+const PARTS: [Part; 8] = [
+    Part {
+        name: "batch",
+        what: "robots stepped together, in lanes and one by one, beside rapier2d: some minutes",
+        measure: batch::measure,
+    },
     Part {
         name: "emulator",
         what: "simulated time over the processor's of firmware on the emulated Mega, beside simavr",
@@ -97,13 +103,13 @@ pub(crate) fn run(project: &Project, only: &[String]) -> Result<bool, String> {
             "no part `{unknown}`; see `cargo xtask bench --help`"
         ));
     }
-    project.release_binary()?;
+    let asked = |part: &&Part| only.is_empty() || only.iter().any(|name| name == part.name);
+    if PARTS.iter().filter(asked).any(|part| part.name != "batch") {
+        project.release_binary()?;
+    }
     let mut figures = Vec::new();
     let mut complete = true;
-    for part in PARTS
-        .iter()
-        .filter(|part| only.is_empty() || only.iter().any(|name| name == part.name))
-    {
+    for part in PARTS.iter().filter(asked) {
         eprintln!("{}: {} ...", part.name, part.what);
         match (part.measure)(project) {
             Ok(measured) => figures.extend(measured),

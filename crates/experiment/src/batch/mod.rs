@@ -3,7 +3,8 @@
 //! A [`Robot`] is a run that the caller steps: by its scenario's commands it is bit for bit that of [`crate::run::run`],
 //! without its records. Taken by the caller it has no link: commands reach the control core at once. A [`Batch`] steps
 //! its robots on the threads of the current rayon pool, a single one on the caller's; robots share nothing, so the number
-//! of threads does not matter.
+//! of threads does not matter. Eight and more go in groups, their plants in the lanes of vector registers, with the same
+//! bits as one by one.
 
 mod robot;
 
@@ -12,13 +13,18 @@ pub use robot::{Driver, OBSERVED, Robot, TRUE};
 use crate::files::{FileError, Setup};
 #[cfg(feature = "host")]
 use rayon::prelude::*;
-use std::sync::Arc;
+use rumbo_plant::lanes::{LANES, Lanes};
+use rumbo_plant::world::World;
+use std::sync::{Arc, OnceLock};
 
 /// Robots of one setup, each with its seed. A clone is a snapshot.
 #[derive(Clone)]
 pub struct Batch {
     setup: Arc<Setup>,
     driver: Driver,
+    lanes: Lanes,
+    /// The world of all robots that are in the same.
+    world: OnceLock<Arc<World>>,
     robots: Vec<Robot>,
 }
 
@@ -29,12 +35,20 @@ impl Batch {
     /// The setup's values do not fit together, or its calibration failed.
     pub fn new(setup: Setup, driver: Driver, seeds: &[u64]) -> Result<Self, FileError> {
         let setup = Arc::new(setup);
-        let robots = make_all(seeds, |seed| Robot::new(&setup, driver, *seed))?;
+        let world = OnceLock::new();
+        let robots = make_all(seeds, |seed| make(&setup, driver, *seed, &world))?;
         Ok(Self {
             setup,
             driver,
+            lanes: Lanes::widest(),
+            world,
             robots,
         })
+    }
+
+    /// Steps groups of robots with these instructions from now on, in place of the widest that the processor has.
+    pub fn use_lanes(&mut self, lanes: Lanes) {
+        self.lanes = lanes;
     }
 
     /// The robots, in the order of their seeds.
@@ -53,7 +67,7 @@ impl Batch {
     /// As [`Batch::new`]; all robots stay as they are then.
     pub fn renew(&mut self, renewed: &[(usize, u64)]) -> Result<(), FileError> {
         let robots = make_all(renewed, |(_, seed)| {
-            Robot::new(&self.setup, self.driver, *seed)
+            make(&self.setup, self.driver, *seed, &self.world)
         })?;
         for ((index, _), robot) in renewed.iter().zip(robots) {
             if let Some(slot) = self.robots.get_mut(*index) {
@@ -65,7 +79,11 @@ impl Batch {
 
     /// Advances every robot by this many control ticks of 10 ms.
     pub fn advance(&mut self, ticks: u32) {
-        for_all(&mut self.robots, |robot| robot.advance(ticks));
+        let (lanes, size) = (self.lanes, group_size(self.robots.len()));
+        let mut groups: Vec<_> = self.robots.chunks_mut(size).collect();
+        for_all(&mut groups, |group| {
+            robot::advance(lanes, group.iter_mut(), ticks);
+        });
     }
 
     /// Has each robot, by its number, do something.
@@ -74,23 +92,66 @@ impl Batch {
         for_all(&mut work, |(index, robot)| act(*index, robot));
     }
 
-    /// The same, then writes a row for each robot into `known` and `truth`, in the order of [`OBSERVED`] and [`TRUE`].
+    /// Has each robot, by its number, do something, and advances those that say so by this many ticks; then writes a row
+    /// for each robot into `known` and `truth`, in the order of [`OBSERVED`] and [`TRUE`].
     pub fn step(
         &mut self,
         known: &mut [f32],
         truth: &mut [f64],
-        act: impl Fn(usize, &mut Robot) + Sync,
+        ticks: u32,
+        act: impl Fn(usize, &mut Robot) -> bool + Sync,
     ) {
+        let (lanes, size) = (self.lanes, group_size(self.robots.len()));
         let rows = known
-            .chunks_exact_mut(OBSERVED.len())
-            .zip(truth.chunks_exact_mut(TRUE.len()));
-        let mut work: Vec<_> = self.robots.iter_mut().zip(rows).enumerate().collect();
-        for_all(&mut work, |(index, (robot, (known, truth)))| {
-            act(*index, robot);
-            known.copy_from_slice(&robot.observed());
-            truth.copy_from_slice(&robot.true_values());
+            .chunks_mut(size * OBSERVED.len())
+            .zip(truth.chunks_mut(size * TRUE.len()));
+        let mut work: Vec<_> = self.robots.chunks_mut(size).zip(rows).enumerate().collect();
+        for_all(&mut work, |(group, (robots, (known, truth)))| {
+            let mut going: Vec<&mut Robot> = Vec::with_capacity(size);
+            for (index, robot) in robots.iter_mut().enumerate() {
+                if act(*group * size + index, robot) {
+                    going.push(robot);
+                }
+            }
+            robot::advance(lanes, going.into_iter(), ticks);
+            let rows = known
+                .chunks_exact_mut(OBSERVED.len())
+                .zip(truth.chunks_exact_mut(TRUE.len()));
+            for (robot, (known, truth)) in robots.iter().zip(rows) {
+                known.copy_from_slice(&robot.observed());
+                truth.copy_from_slice(&robot.true_values());
+            }
         });
     }
+}
+
+/// Robots that one thread steps together: a group of lanes, unless that left threads without work.
+fn group_size(robots: usize) -> usize {
+    match robots >= LANES * threads() {
+        true => LANES,
+        false => 1,
+    }
+}
+
+#[cfg(feature = "host")]
+fn threads() -> usize {
+    rayon::current_num_threads()
+}
+
+#[cfg(not(feature = "host"))]
+fn threads() -> usize {
+    1
+}
+
+fn make(
+    setup: &Arc<Setup>,
+    driver: Driver,
+    seed: u64,
+    world: &OnceLock<Arc<World>>,
+) -> Result<Robot, FileError> {
+    let mut robot = Robot::new(setup, driver, seed)?;
+    robot.share_world(world);
+    Ok(robot)
 }
 
 /// A single one needs no pool, whose threads a fork of this process would lose.

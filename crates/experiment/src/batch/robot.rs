@@ -7,11 +7,12 @@ use crate::run::prepare;
 use rumbo_control::mode::ModeId;
 use rumbo_control::range::REACH_M;
 use rumbo_control::{AgedRange, Range, ServoAngle, TICK_S, TICK_US};
+use rumbo_plant::lanes::{LANES, Lanes};
 use rumbo_plant::world::World;
 use rumbo_sim::Sim;
 use rumbo_wire::{Command, Refusal};
 use std::borrow::Cow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Ages of ranges end here [s].
 const OLDEST_S: f32 = 1.0;
@@ -160,6 +161,11 @@ impl Robot {
         self.sim.world()
     }
 
+    /// Keeps its world in common with others if it is the same.
+    pub(super) fn share_world(&mut self, common: &OnceLock<Arc<World>>) {
+        self.sim.share_world(common);
+    }
+
     /// Advances by this many control ticks of 10 ms, or to the end of a program that cannot go on.
     pub fn advance(&mut self, ticks: u32) {
         let Some(operator) = &mut self.operator else {
@@ -291,6 +297,39 @@ impl Robot {
             goal_x_m,
             goal_y_m,
         ]
+    }
+}
+
+/// Advances robots of one thread, in lanes where there are as many.
+pub(super) fn advance<'a>(lanes: Lanes, robots: impl Iterator<Item = &'a mut Robot>, ticks: u32) {
+    let mut robots: Vec<_> = robots.collect();
+    for group in robots.chunks_mut(LANES) {
+        match group {
+            [a, b, c, d, e, f, g, h] => together(lanes, [a, b, c, d, e, f, g, h], ticks),
+            few => few.iter_mut().for_each(|robot| robot.advance(ticks)),
+        }
+    }
+}
+
+/// As [`Robot::advance`], which a program that can end takes alone.
+fn together(lanes: Lanes, mut robots: [&mut Robot; LANES], ticks: u32) {
+    if robots.iter().any(|robot| robot.sim.mega().is_some()) {
+        return robots.into_iter().for_each(|robot| robot.advance(ticks));
+    }
+    // An operator looks at its robot at each tick.
+    let (strides, stride) = match robots.iter().all(|robot| robot.operator.is_none()) {
+        true => (1, ticks),
+        false => (ticks, 1),
+    };
+    for _ in 0..strides {
+        for robot in &mut robots {
+            if let Some(operator) = &mut robot.operator {
+                operator.step(&mut robot.sim);
+                operator.received.clear();
+            }
+        }
+        let sims = robots.each_mut().map(|robot| &mut robot.sim);
+        Sim::advance_together(lanes, sims, u64::from(stride) * u64::from(TICK_US));
     }
 }
 

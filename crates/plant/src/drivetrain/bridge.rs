@@ -23,10 +23,10 @@ pub enum Bridge {
 
 /// Voltages and time constants of bridge and winding.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Winding {
-    drop_v: f64,
-    diode_v: f64,
-    loop_ohm: f64,
+pub(crate) struct Winding {
+    pub(crate) drop_v: f64,
+    pub(crate) diode_v: f64,
+    pub(crate) loop_ohm: f64,
     /// Electrical time constant.
     time_constant_s: f64,
     /// The default frequency of the PWM.
@@ -35,15 +35,15 @@ pub(super) struct Winding {
 
 /// A bridge setting with the exponential its mean current needs, computed once per setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Command {
+pub(crate) struct Command {
     /// +1 forward, -1 backward, 0 released or braking.
-    direction: f64,
-    braking: bool,
-    duty: f64,
+    pub(crate) direction: f64,
+    pub(crate) braking: bool,
+    pub(crate) duty: f64,
     /// Electrical time constant in PWM periods.
-    periods: f64,
+    pub(crate) periods: f64,
     /// 1 - exp(-on-time / time constant): share of the final current reached at the end of the on-time.
-    reached: f64,
+    pub(crate) reached: f64,
 }
 
 pub(super) const RELEASED: Command = Command {
@@ -100,7 +100,7 @@ impl Winding {
     }
 
     /// Mean motor current and mean current drawn from the supply over one PWM period, A.
-    pub(super) fn current(&self, command: &Command, emf_v: f64, supply_v: f64) -> (f64, f64) {
+    pub(crate) fn current(&self, command: &Command, emf_v: f64, supply_v: f64) -> (f64, f64) {
         if command.direction == 0.0 {
             return if command.braking {
                 (command.duty * self.braking_current_a(emf_v), 0.0)

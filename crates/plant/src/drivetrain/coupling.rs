@@ -4,10 +4,10 @@ use crate::params::Params;
 
 /// Inverse of the wheels' inertia matrix.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Coupling {
-    left: f64,
-    shared: f64,
-    right: f64,
+pub(crate) struct Coupling {
+    pub(crate) left: f64,
+    pub(crate) shared: f64,
+    pub(crate) right: f64,
 }
 
 impl Coupling {
@@ -37,7 +37,7 @@ impl Coupling {
     }
 
     /// Wheel speeds after `dt_s` under these torques and at most this much dry friction.
-    pub(super) fn speeds_after(
+    pub(crate) fn speeds_after(
         &self,
         old: [f64; 2],
         torque_n_m: [f64; 2],

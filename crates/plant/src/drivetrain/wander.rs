@@ -5,15 +5,15 @@ use crate::noise::Noise;
 /// A slowly changing quantity of mean 0 and standard deviation 1: straight lines between random knots, met as the
 /// wheel goes on in either direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Wander {
-    knot: u64,
-    phase: f64,
-    from: f64,
-    to: f64,
+pub(crate) struct Wander {
+    pub(crate) knot: u64,
+    pub(crate) phase: f64,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
 }
 
 /// The mean square of a line between two independent unit knots is 2/3.
-const KNOT_SD: f64 = 1.224_744_871_391_589;
+pub(crate) const KNOT_SD: f64 = 1.224_744_871_391_589;
 
 impl Wander {
     /// Starts at a random place.

@@ -12,6 +12,7 @@
 mod baseline;
 mod emulated;
 mod native;
+mod together;
 mod touches;
 mod unlinked;
 
@@ -34,6 +35,7 @@ use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Event, Plant, State, Truth};
 use rumbo_plant::world::{ShapeError, World};
 use rumbo_wire::{Command, FromRobot};
+use std::sync::{Arc, OnceLock};
 pub use touches::Touch;
 use touches::Touches;
 
@@ -325,6 +327,11 @@ impl Sim {
     /// Sets the course of a body from now on.
     pub(crate) fn meet(&mut self, body: usize, course: Course) {
         self.plant.set_course(&mut self.state, body, course);
+    }
+
+    /// Keeps its world in common with others if it is the same as theirs: the first one's.
+    pub fn share_world(&mut self, common: &OnceLock<Arc<World>>) {
+        self.plant.share_world(common);
     }
 
     /// Drains the messages of the report's native program; empty for other programs, which send over the link.

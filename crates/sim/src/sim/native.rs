@@ -117,6 +117,15 @@ impl Native {
         self.is_ghost = true;
     }
 
+    /// When it next does something, at most `until_us`.
+    pub(super) fn next_us(&self, until_us: u64) -> u64 {
+        let next_us = self.next_tick_us.min(until_us);
+        match self.pending {
+            Some((at_us, _)) => next_us.min(at_us),
+            None => next_us,
+        }
+    }
+
     /// Applies a command that did not come over the link.
     pub(super) fn order(&mut self, command: &Command) -> Result<f32, Refusal> {
         self.robot.order(command)
@@ -164,24 +173,26 @@ impl Sim {
     /// Advances robot and plant to this time [us].
     pub(super) fn advance_native(&mut self, native: &mut Native, until_us: u64) {
         loop {
-            let mut next_us = native.next_tick_us.min(until_us);
-            if let Some((at_us, _)) = native.pending {
-                next_us = next_us.min(at_us);
-            }
-            self.sense(native, next_us);
-            if let Some((at_us, outputs)) = native.pending
-                && at_us == next_us
-            {
-                native.pending = None;
-                self.apply(native, &outputs);
-            }
-            if native.next_tick_us == next_us && next_us < until_us {
-                self.tick(native);
-            }
-            if next_us == until_us {
+            self.sense(native, native.next_us(until_us));
+            if self.act_native(native, until_us) {
                 return;
             }
         }
+    }
+
+    /// Lets the robot do what is due now; true if this is the time to advance to.
+    pub(super) fn act_native(&mut self, native: &mut Native, until_us: u64) -> bool {
+        let now_us = self.now_us();
+        if let Some((at_us, outputs)) = native.pending
+            && at_us == now_us
+        {
+            native.pending = None;
+            self.apply(native, &outputs);
+        }
+        if native.next_tick_us == now_us && now_us < until_us {
+            self.tick(native);
+        }
+        now_us == until_us
     }
 
     /// Advances the plant to this time, and latches the edges that its wires bring to the board.

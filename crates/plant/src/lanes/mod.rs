@@ -1,0 +1,137 @@
+//! Eight plants stepped together, a lane of a vector register each: the same bits as one by one, sooner.
+//!
+//! [`crate::plant`] is the reference, and what runs where the processor has neither AVX2 nor AVX-512. A group advances here
+//! when its robots stand on the floor and are at the same place within a millisecond; their times may differ by whole ones.
+//!
+//! | file | what goes in lanes | what goes robot by robot |
+//! |---|---|---|
+//! | `drivetrain` | currents, battery, friction, wheel speeds | a braking bridge, a wheel that stops or stands |
+//! | `wander` | floor and slip along the way, draws of their knots | the hash of a draw, draws far out |
+//! | `body` | pose, speeds, clearance | a body near an obstacle |
+//! | `group` | which lanes have events | the events: edges, echoes; the servo |
+//! | `math` | sine and cosine, the normal's quantile | arguments near multiples of a quarter turn |
+//!
+//! Every operation of a lane is that of the scalar source, in its order: no fused multiply-add, true division, libm's
+//! polynomials. `tests/lanes.rs` compares both bit for bit. Everything is `#[inline(always)]`: a function that is not
+//! inlined is compiled without the wide instructions, and costs six times.
+
+#[cfg(target_arch = "x86_64")]
+mod body;
+#[cfg(target_arch = "x86_64")]
+mod drivetrain;
+#[cfg(target_arch = "x86_64")]
+mod group;
+#[cfg(target_arch = "x86_64")]
+mod math;
+#[cfg(target_arch = "x86_64")]
+mod vector;
+#[cfg(target_arch = "x86_64")]
+mod wander;
+
+use crate::event::Event;
+use crate::plant::{Plant, STEP_US, State};
+#[cfg(target_arch = "x86_64")]
+use fearless_simd::{Avx2, Avx512, Level, Simd};
+
+/// Robots of a group.
+pub const LANES: usize = 8;
+
+/// One robot of a group: its plant, and its state.
+pub type Lane<'a> = (&'a Plant, &'a mut State);
+
+/// The instructions to step groups with.
+#[derive(Clone, Copy, Debug)]
+pub struct Lanes(Kind);
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Scalar,
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+    #[cfg(target_arch = "x86_64")]
+    Avx512(Avx512),
+}
+
+impl Lanes {
+    /// Robot by robot, as [`Plant::advance`] does.
+    pub const SCALAR: Self = Self(Kind::Scalar);
+
+    /// All that this processor has, the widest last.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let mut all = vec![Self::SCALAR];
+        #[cfg(target_arch = "x86_64")]
+        {
+            let level = Level::new();
+            all.extend(level.as_avx2().map(|simd| Self(Kind::Avx2(simd))));
+            all.extend(level.as_avx512().map(|simd| Self(Kind::Avx512(simd))));
+        }
+        all
+    }
+
+    /// The widest that this processor has.
+    #[must_use]
+    pub fn widest() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let level = Level::new();
+            if let Some(simd) = level.as_avx512() {
+                return Self(Kind::Avx512(simd));
+            }
+            if let Some(simd) = level.as_avx2() {
+                return Self(Kind::Avx2(simd));
+            }
+        }
+        Self::SCALAR
+    }
+
+    /// Their name: `scalar`, `AVX2` or `AVX-512`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self.0 {
+            Kind::Scalar => "scalar",
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2(_) => "AVX2",
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx512(_) => "AVX-512",
+        }
+    }
+
+    /// Passes `for_us` for each robot, as [`Plant::advance`] would, and reports its events, in the order of time for each,
+    /// with its number in the group.
+    pub fn advance(
+        self,
+        group: &mut [Lane<'_>; LANES],
+        for_us: u64,
+        events: &mut impl FnMut(usize, Event),
+    ) {
+        let phase_us = group[0].1.now_us % STEP_US;
+        let alike = |(plant, state): &Lane<'_>| {
+            state.now_us % STEP_US == phase_us
+                && !plant.wheels_in_air
+                && plant.world.bodies().is_empty()
+        };
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2(simd) if group.iter().all(alike) => {
+                simd.vectorize(
+                    #[inline(always)]
+                    || group::advance(simd, group, for_us, events),
+                );
+            }
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx512(simd) if group.iter().all(alike) => {
+                simd.vectorize(
+                    #[inline(always)]
+                    || group::advance(simd, group, for_us, events),
+                );
+            }
+            _ => {
+                for (index, (plant, state)) in group.iter_mut().enumerate() {
+                    let until_us = state.now_us + for_us;
+                    plant.advance(state, until_us, &mut |event| events(index, event));
+                }
+            }
+        }
+    }
+}
