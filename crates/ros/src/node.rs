@@ -253,7 +253,7 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub fn tell<M: Message>(&mut self, topic: Topic, message: &M) -> Result<(), BridgeError> {
+    pub fn send<M: Message>(&mut self, topic: Topic, message: &M) -> Result<(), BridgeError> {
         let data = encode(message).map_err(|error| BridgeError::Send(error.to_string()))?;
         let channel = self.announce(topic)?;
         self.bridge.publish(channel, &data)

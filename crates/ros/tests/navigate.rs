@@ -70,16 +70,19 @@ fn the_end_of_a_goal_is_known_to_those_who_wait_and_to_those_who_ask_later() {
     assert!(goals.knows(FIRST) && !goals.knows(SECOND));
     assert_eq!(goals.result(FIRST, caller(1)), None);
     assert_eq!(goals.result(FIRST, caller(2)), None);
-    let told = goals.end(FIRST, Status::Aborted, "there is no way");
+    let answered = goals.end(FIRST, Status::Aborted, "there is no way");
     assert_eq!(
-        told.iter().map(|(who, _)| who.number).collect::<Vec<_>>(),
+        answered
+            .iter()
+            .map(|(who, _)| who.number)
+            .collect::<Vec<_>>(),
         [1, 2]
     );
-    let (status, result) = (told[0].1.status, told[0].1.result.clone());
+    let (status, result) = (answered[0].1.status, answered[0].1.result.clone());
     assert_eq!((status, result.error_code), (6, 9000));
     assert_eq!(result.error_msg, "there is no way");
-    assert_eq!(goals.result(FIRST, caller(3)).unwrap(), told[0].1);
-    // Told once.
+    assert_eq!(goals.result(FIRST, caller(3)).unwrap(), answered[0].1);
+    // Answered once.
     assert!(goals.end(FIRST, Status::Aborted, "").is_empty());
 }
 

@@ -188,9 +188,9 @@ class Peer:
 
     def listen(self, kind, topic, quality=50):
         """A list that grows with the messages."""
-        heard = []
-        self.node.create_subscription(kind, topic, heard.append, quality)
-        return heard
+        received = []
+        self.node.create_subscription(kind, topic, received.append, quality)
+        return received
 
     def call(self, service):
         client = self.node.create_client(Trigger, service)

@@ -93,7 +93,7 @@ impl Live {
             }
             Question::Result(id) => {
                 if let Some(ended) = self.navigation.goals.result(id, caller) {
-                    self.tell_end(caller, &ended);
+                    self.answer_end(caller, &ended);
                 }
             }
         }
@@ -263,7 +263,7 @@ impl Live {
         match self.outcome_of(&mut active) {
             Some((status, why)) => {
                 if !self.state.link.connected {
-                    // It may hear this although it is not heard.
+                    // Its messages are lost; ours may still arrive.
                     let _ = self.give(Order::Robot(Command::Stop));
                 }
                 self.end(active.id, status, &why);
@@ -317,7 +317,7 @@ impl Live {
             self.say(&format!("{NAME}: aborted, {why}"));
         }
         for (caller, ended) in self.navigation.goals.end(id, status, why) {
-            self.tell_end(caller, &ended);
+            self.answer_end(caller, &ended);
         }
         self.show_goals();
     }
@@ -339,7 +339,7 @@ impl Live {
         }
     }
 
-    fn tell_end(&mut self, caller: Caller, ended: &Ended) {
+    fn answer_end(&mut self, caller: Caller, ended: &Ended) {
         if let Ok(data) = self.navigation.distribution.encode(ended) {
             let answered = self.node.reply_bytes(caller, &data);
             report(answered, &mut self.reported);
@@ -348,8 +348,8 @@ impl Live {
 
     fn show_goals(&mut self) {
         let status = self.navigation.goals.status();
-        let told = self.node.tell(Topic::GoalStatus, &status);
-        report(told, &mut self.reported);
+        let sent = self.node.send(Topic::GoalStatus, &status);
+        report(sent, &mut self.reported);
     }
 
     /// Distance to a goal in a straight line [m].
@@ -387,8 +387,8 @@ impl Live {
             goal_id: Uuid { uuid: active.id },
             feedback,
         };
-        let told = self.node.tell(Topic::GoalFeedback, &message);
-        report(told, &mut self.reported);
+        let sent = self.node.send(Topic::GoalFeedback, &message);
+        report(sent, &mut self.reported);
     }
 }
 

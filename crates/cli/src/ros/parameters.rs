@@ -99,8 +99,8 @@ impl Live {
         let node = format!("/{}", self.node.speaker());
         let at = stamp(self.now_ns());
         if let Some(event) = parameters::changes(&node, at, &before, &self.parameters.known) {
-            let told = self.node.tell(Topic::ParameterEvents, &event);
-            report(told, &mut self.reported);
+            let sent = self.node.send(Topic::ParameterEvents, &event);
+            report(sent, &mut self.reported);
         }
     }
 
