@@ -2,6 +2,7 @@
 //!
 //! ```toml
 //! title = "A wall across the way"
+//! goal_m = [1.2, 0.5]    # of scenarios with goal = "world"
 //! [arena]                # what the map shows; walled = true puts a wall along each side
 //! from_m = [-0.5, -1.0]
 //! to_m = [1.5, 1.0]
@@ -16,7 +17,6 @@
 //! diameter_m = 0.3
 //! path_m = [[0.8, -0.9], [0.8, 0.9]]
 //! speed_m_s = 0.3
-//! goal_m = [1.2, 0.5]    # of scenarios with goal = "world"; stands above the tables
 //! [start]                # in place of the scenario's
 //! x_m = 0.2
 //! heading_deg = 90
