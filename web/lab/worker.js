@@ -10,7 +10,7 @@
  * looks for it at another one, and 'leave' goes back to the lab; `{ port }` is the port's name or null, `{ back }` the
  * name when it is there again or null when it is gone, `{ refused }` why there is none. `{ flash }` writes a program to a board, `{ flashed }` says how far that is. To the page go arrays of the messages of the station's WebSocket, or `{ error }` when the session has ended.
  */
-import { readLink } from '../src/run_link.js';
+import { readLink, unpack } from '../src/run_link.js';
 import { LOCK } from '../src/serial_ports.js';
 import { flash } from './flash.js';
 import init, { Flasher, Lab, Recording, Robot } from './rumbo.js';
@@ -213,9 +213,10 @@ self.addEventListener('message', ({ data }) => {
 });
 
 /** The lab that the worker's address asks for; if it asks for what is not there, the usual one, which says so. */
-function open() {
+async function open() {
   const { start, version } = readLink(location.search);
   try {
+    if (start.edited) start.edited = await unpack(start.edited);
     const made = new Lab(JSON.stringify(start));
     if (version !== null && version !== made.version) made.warn(`the link is of version ${version}, this is ${made.version}: the run may differ`);
     return made;
@@ -228,7 +229,7 @@ function open() {
 
 try {
   await init();
-  lab = open();
+  lab = await open();
   setInterval(round, EVERY_MS);
 } catch (error) {
   end(error);

@@ -12,6 +12,8 @@ import { named, said, t } from './text.js';
 const SPEEDS = [0, 0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
 /** The scenario's own world or rig. */
 const OWN = '';
+/** The world that was edited here: `EDITED` of `crates/lab`. */
+const EDITED = 'edited';
 /** Without a message from the server for this long, the display is stale [ms]. */
 const STALE_MS = 1_500;
 
@@ -51,7 +53,7 @@ export class Header {
     this.#form.hidden = scene === null;
     if (!scene) return;
     this.#scenario.replaceChildren(...grouped(scene.experiments));
-    this.#world.replaceChildren(option(OWN, t('scenario default')), ...scene.worlds.map((name) => option(name, titleWords(scene.world_titles?.[name] ?? name))));
+    this.#world.replaceChildren(option(OWN, t('scenario default')), ...scene.worlds.map((name) => option(name, name === EDITED ? t('edited: {}', titleWords(scene.world_titles?.[name] ?? '')) : titleWords(scene.world_titles?.[name] ?? name))));
     this.#rig.replaceChildren(option(OWN, t('scenario default')), ...scene.rigs.map((name) => option(name, named(name))));
     this.#rig.title = named(scene.rig);
     this.#scenario.value = scene.choice.scenario;

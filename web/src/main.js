@@ -41,6 +41,7 @@ import { Tabs } from './tabs.js';
 import { LANGUAGES, language, speak, t, translatePage, untranslated } from './text.js';
 import { Tour } from './tour.js';
 import { WorkerLink, isSite } from './worker_link.js';
+import { WorldEditor } from './world_editor.js';
 
 translatePage();
 const languages = element('language', HTMLSelectElement);
@@ -137,6 +138,7 @@ const program = new ProgramPanel(send, complain, showRecording);
 let consoleRun = null;
 const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);
 const panel = new CommandPanel(send, map);
+const editor = new WorldEditor(send, map);
 const machine = new Machine(store);
 const meter = new LinkMeter();
 const tabs = new Tabs('tabs', (panel) => meter.show(panel === 'bytes'));
@@ -229,6 +231,7 @@ function receive(message) {
       recordings.titles = new Map(message.scene?.experiments.map(({ name, title }) => [name, title]));
       header.setScene(simulated);
       map.setScene(message.scene);
+      editor.setScene(simulated);
       panel.setScene(message.scene);
       stateLine.setScene(simulated);
       setBody();
@@ -242,6 +245,7 @@ function receive(message) {
       setBody();
       header.show(state);
       replay.show(state);
+      if (state.replay) editor.close();
       panel.show(state);
       stateLine.show(state);
       alarm.show(state);
@@ -294,6 +298,9 @@ function receive(message) {
       for (const group of message.groups) store.pushReadings(group);
       redraw();
       break;
+    case 'world':
+      editor.receive(message);
+      break;
     case 'control':
       seat.show(message);
       recordings.page = message.page;
@@ -327,6 +334,8 @@ Object.assign(window, {
     state: () => state,
     /** Where a place from the robot's origin is on the map [px]. @param {[number, number]} at */
     onMap: (at) => map.toCanvas(at),
+    /** Where a place of the world is on the map [px]. @param {[number, number]} at */
+    worldOnMap: (at) => map.worldToCanvas(at),
     /** The plots and what is seen of them. */
     plots: () => ({ layout: plots.layout, range_s: plots.range_s, mark_s: plots.mark_s, following: plots.following }),
     /** The figures of every step of the setpoint. */

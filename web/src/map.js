@@ -20,6 +20,16 @@ import { watchFingers } from './touch.js';
 /** @typedef {import('./store.js').Store} Store */
 /** @typedef {[number, number]} Point */
 /** @typedef {{x_m: number, y_m: number, px_per_m: number}} View Middle [m] and scale. */
+/**
+ * What is drawn and dragged in place of the robot.
+ * @typedef {object} Tool
+ * @property {Point[]} bounds What is to be in sight.
+ * @property {(at: Point, reach_m: number) => boolean} press
+ * @property {(at: Point) => void} drag
+ * @property {() => void} release
+ * @property {(event: KeyboardEvent) => boolean} key
+ * @property {(sketch: Sketch, px: number) => void} draw
+ */
 
 /** Free space around what is to be seen [m]. */
 const MARGIN_M = 0.12;
@@ -33,6 +43,8 @@ const ZOOM_STEP = 1.25;
 const KEY_PAN_PX = 40;
 /** A press that moves no further than this is a click [px]. */
 const CLICK_PX = 4;
+/** A tool holds what is so near [px]; a finger is thicker. */
+const REACH_PX = { mouse: 8, touch: 18 };
 /** The goal in the robot's frame is drawn separately from this distance on [px]. */
 const APART_PX = 3;
 
@@ -49,6 +61,8 @@ export class WorldMap {
   #draft = null;
   /** @type {((at: Point) => void) | null} */
   #pick = null;
+  /** @type {Tool | null} */
+  #tool = null;
   /** Places are picked for a plan. */
   #planning = false;
   /** Where the pointer is [px]. @type {Point | null} */
@@ -110,10 +124,40 @@ export class WorldMap {
     this.#redraw();
   }
 
+  /** A tool takes the map's clicks and keys, and draws in place of the robot. @param {Tool | null} tool */
+  setTool(tool) {
+    this.#tool = tool;
+    this.fit();
+  }
+
   /** Shows everything. */
   fit() {
     this.#view = null;
+    // What a tool changes does not move the view.
+    if (this.#tool) this.#view = this.#fitted();
     this.#redraw();
+  }
+
+  redraw() {
+    this.#redraw();
+  }
+
+  focus() {
+    this.#canvas.focus();
+  }
+
+  /** The place in the middle. @returns {Point} */
+  middle() {
+    return this.#toWorld(this.#middle());
+  }
+
+  /** A place of the world on the canvas [px]; for tests. @param {Point} at @returns {Point} */
+  worldToCanvas([x_m, y_m]) {
+    const view = this.#view ?? this.#fitted();
+    return [
+      this.#canvas.clientWidth / 2 + (x_m - view.x_m) * view.px_per_m,
+      this.#canvas.clientHeight / 2 - (y_m - view.y_m) * view.px_per_m,
+    ];
   }
 
   /** The place under the pointer, or that Enter picks, from the robot's origin. @returns {Point | null} */
@@ -124,12 +168,7 @@ export class WorldMap {
 
   /** A place from the robot's origin, on the canvas [px]; for tests. @param {Point} at @returns {Point} */
   toCanvas(at) {
-    const [x_m, y_m] = place(this.#pickFrame(), at);
-    const view = this.#view ?? this.#fitted();
-    return [
-      this.#canvas.clientWidth / 2 + (x_m - view.x_m) * view.px_per_m,
-      this.#canvas.clientHeight / 2 - (y_m - view.y_m) * view.px_per_m,
-    ];
+    return this.worldToCanvas(place(this.#pickFrame(), at));
   }
 
   draw() {
@@ -150,6 +189,7 @@ export class WorldMap {
     sketch.context.setTransform(scale, 0, 0, -scale, width / 2 - view.x_m * scale, height / 2 + view.y_m * scale);
     const px = ratio / scale;
     sketch.drawGrid(view, px);
+    if (this.#tool) return this.#tool.draw(sketch, px);
     sketch.drawWorld(px, this.#store.latest?.t_s ?? 0);
     sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
     sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
@@ -245,7 +285,7 @@ export class WorldMap {
     const robot = this.#robot();
     const around_m = this.#pick ? 1.3 : 0.35;
     const { goal = null, route = null } = this.#errand ?? {};
-    const all = [
+    const all = this.#tool?.bounds ?? [
       ...(this.#sketch.scene?.obstacles.flatMap(({ corners_m, closed }) => corners_m.flatMap((corner, index) => {
         const next = corners_m[index + 1] ?? (closed ? corners_m[0] : undefined);
         return next ? nextTo(corner, next, [start.x_m, start.y_m], ALONG_M) : [];
@@ -308,9 +348,10 @@ export class WorldMap {
       ArrowRight: () => this.#pan(-KEY_PAN_PX, 0),
       ArrowUp: () => this.#pan(0, KEY_PAN_PX),
       ArrowDown: () => this.#pan(0, -KEY_PAN_PX),
-      Enter: () => this.#pick?.(this.#fromOrigin(this.#toWorld(this.#middle()))),
+      Enter: () => !this.#tool && this.#pick?.(this.#fromOrigin(this.#toWorld(this.#middle()))),
     };
     canvas.addEventListener('keydown', (event) => {
+      if (this.#tool?.key(event)) return event.preventDefault();
       const act = keys[event.key];
       if (!act || event.defaultPrevented) return;
       event.preventDefault();
@@ -332,9 +373,20 @@ export class WorldMap {
     const canvas = this.#canvas;
     /** Where the button went down, until it has moved too far for a click [px]. @type {Point | null} */
     let pressed = null;
+    /** The tool holds something. */
+    let held = false;
+    const release = () => {
+      if (held) this.#tool?.release();
+      held = false;
+      pressed = null;
+    };
     canvas.addEventListener('pointerdown', (event) => {
       canvas.setPointerCapture(event.pointerId);
+      // A second finger zooms.
+      if (!event.isPrimary) return release();
       pressed = event.button === 0 ? [event.offsetX, event.offsetY] : null;
+      const reach_px = event.pointerType === 'touch' ? REACH_PX.touch : REACH_PX.mouse;
+      held = pressed !== null && (this.#tool?.press(this.#toWorld(pressed), reach_px / (this.#view ?? this.#fitted()).px_per_m) ?? false);
     });
     canvas.addEventListener('pointermove', (event) => {
       this.#pointer = [event.offsetX, event.offsetY];
@@ -342,13 +394,14 @@ export class WorldMap {
       if (!canvas.hasPointerCapture(event.pointerId) || !event.isPrimary) return;
       if (pressed && Math.hypot(event.offsetX - pressed[0], event.offsetY - pressed[1]) <= CLICK_PX) return;
       pressed = null;
+      if (held) return this.#tool?.drag(this.#toWorld([event.offsetX, event.offsetY]));
       this.#pan(event.movementX, event.movementY);
     });
     canvas.addEventListener('pointerup', () => {
-      if (pressed && this.#pick) this.#pick(this.#fromOrigin(this.#toWorld(pressed)));
-      pressed = null;
+      if (pressed && this.#pick && !this.#tool) this.#pick(this.#fromOrigin(this.#toWorld(pressed)));
+      release();
     });
-    canvas.addEventListener('pointercancel', () => { pressed = null; });
+    canvas.addEventListener('pointercancel', release);
     canvas.addEventListener('pointerleave', () => {
       this.#pointer = null;
       this.#redraw();

@@ -9,6 +9,7 @@
  * @typedef {object} Start
  * @property {string} [scenario]
  * @property {string} [world]
+ * @property {string} [edited] The file of an edited world, packed by `pack` in a link.
  * @property {string} [rig]
  * @property {string} [robot]
  * @property {number} [seed]
@@ -21,7 +22,7 @@
 /** Some programs cut a longer address [characters]. */
 export const LONGEST = 2_048;
 
-const TEXTS = /** @type {const} */ (['scenario', 'world', 'rig', 'robot', 'drive', 'hash']);
+const TEXTS = /** @type {const} */ (['scenario', 'world', 'edited', 'rig', 'robot', 'drive', 'hash']);
 const NUMBERS = /** @type {const} */ (['seed', 'until_s']);
 
 /** What a link says, and the version of Rumbo that made it. @param {string} text @returns {{start: Start, version: string | null}} */
@@ -62,4 +63,32 @@ export function writeLink(page, start, version) {
   const url = new URL(page);
   url.hash = new URLSearchParams(given).toString();
   return url.href;
+}
+
+/** Longest text that a link unpacks to [bytes]: what the session takes. */
+const MOST_UNPACKED = 100_000;
+
+/** A text for a link, compressed: in base64 as addresses take it. @param {string} text */
+export async function pack(text) {
+  const packed = await bytesOf(new Blob([text]).stream().pipeThrough(new CompressionStream('deflate-raw')), Infinity);
+  return btoa(String.fromCharCode(...packed)).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
+}
+
+/** The text that was packed. @param {string} packed */
+export async function unpack(packed) {
+  const bytes = Uint8Array.from(atob(packed.replaceAll('-', '+').replaceAll('_', '/')), (each) => each.charCodeAt(0));
+  const text = await bytesOf(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw')), MOST_UNPACKED);
+  return new TextDecoder().decode(text);
+}
+
+/** @param {ReadableStream<Uint8Array>} stream @param {number} most */
+async function bytesOf(stream, most) {
+  /** @type {number[]} */
+  const all = [];
+  const reader = stream.getReader();
+  for (let read = await reader.read(); !read.done; read = await reader.read()) {
+    if (all.length + read.value.length > most) throw new Error('its world is too large');
+    for (const byte of read.value) all.push(byte);
+  }
+  return new Uint8Array(all);
 }

@@ -5,7 +5,7 @@
  */
 import { dialog } from './dialog.js';
 import { create, element, setText } from './dom.js';
-import { LONGEST, readLink, writeLink } from './run_link.js';
+import { LONGEST, pack, readLink, writeLink } from './run_link.js';
 import { said, t } from './text.js';
 import { format } from './units.js';
 import { isSite } from './worker_link.js';
@@ -46,7 +46,8 @@ export class Share {
     this.#dialog.body.append(this.#about, this.#row, create('div', { className: 'row' }, this.#link, copy, this.#copied));
     this.#by_hand.addEventListener('change', () => this.#show());
     button.addEventListener('click', async () => {
-      this.#shared = await ask();
+      const shared = await ask();
+      this.#shared = { ...shared, edited: shared.edited && await pack(shared.edited) };
       this.#show();
       this.#dialog.open();
       this.#link.select();
@@ -55,14 +56,23 @@ export class Share {
     addEventListener('hashchange', () => location.reload());
   }
 
+  /** A link without its world would open something else. */
+  #refuse() {
+    this.#row.hidden = true;
+    this.#link.value = '';
+    setText(this.#copied, '');
+    setText(this.#about, t('The edited world is too large for a link, which has at most 2 KB: save it as a file in the editor.'));
+  }
+
   #show() {
     const { scene, table, version } = this.#known();
     const shared = this.#shared;
     if (!scene || !shared) return;
     const { robot } = readLink(location.hash).start;
-    const choice = { ...scene.choice, robot };
+    const choice = shared.edited ? { ...scene.choice, world: null, edited: shared.edited, robot } : { ...scene.choice, robot };
     const changed = table.flatMap(({ name, value, default: usual }) => (value === null || value === usual ? [] : [[name, value]]));
     const setUp = writeLink(location.href, { ...choice, parameters: Object.fromEntries(changed) }, version);
+    if (shared.edited && setUp.length > LONGEST) return this.#refuse();
     const { drive, until_s, hash, parameters, changes } = shared;
     const driven = drive === null || changes === 0 ? null : writeLink(location.href, { ...choice, parameters, drive, until_s, hash }, version);
     const why = shared.why_not ?? (driven !== null && driven.length > LONGEST ? 'a link has at most 2 KB, this one would be longer' : null);

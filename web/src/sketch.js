@@ -93,18 +93,44 @@ export class Sketch {
     context.restore();
   }
 
+  /**
+   * The part of the world that a map shows.
+   * @param {Point} from
+   * @param {Point} to
+   * @param {number} px
+   */
+  drawArena([x0, y0], [x1, y1], px) {
+    const context = this.context;
+    context.strokeStyle = colours.dim;
+    context.lineWidth = px;
+    context.setLineDash([4 * px, 4 * px]);
+    context.strokeRect(x0, y0, x1 - x0, y1 - y0);
+    context.setLineDash([]);
+  }
+
   /** @param {number} px @param {number} t_s Simulated time. */
   drawWorld(px, t_s) {
+    this.drawOutlines(px, this.scene?.obstacles ?? []);
+    this.drawMovers(px, t_s);
+  }
+
+  /** What moves, at this simulated time. @param {number} px @param {number} t_s */
+  drawMovers(px, t_s) {
+    const movers = (this.scene?.movers ?? []).map((mover) => {
+      const at = poseOf(mover, t_s);
+      return { corners_m: mover.corners_m.map((corner) => place(at, corner)), closed: true };
+    });
+    this.drawOutlines(px, movers);
+  }
+
+  /** @param {number} px @param {import('./types.js').Obstacle[]} obstacles @param {string} [colour] */
+  drawOutlines(px, obstacles, colour = colours.wall) {
     const context = this.context;
-    context.strokeStyle = colours.wall;
-    context.fillStyle = colours.wall;
+    context.strokeStyle = colour;
+    context.fillStyle = colour;
     context.lineWidth = 2.5 * px;
     context.lineJoin = 'round';
-    for (const { corners_m, closed } of this.scene?.obstacles ?? []) this.#drawOutline(corners_m, closed);
-    for (const mover of this.scene?.movers ?? []) {
-      const at = poseOf(mover, t_s);
-      this.#drawOutline(mover.corners_m.map((corner) => place(at, corner)), true);
-    }
+    for (const { corners_m, closed } of obstacles) this.#drawOutline(corners_m, closed);
   }
 
   /** @param {[number, number][]} corners_m @param {boolean} closed */

@@ -112,6 +112,8 @@
  *
  * @typedef {{t_s: number, to_robot: boolean, hex: string}} LinkBytes Raw bytes that crossed the link together.
  *
+ * @typedef {{ticket: number, model: import('./world_shapes.js').World | null, toml: string, problem: string | null, driven: boolean}} EditedWorld A world to edit: what its file holds, its text, what is wrong with it.
+ *
  * @typedef {{usart: number, text: string}} ConsoleText Output of a USART of an emulated chip.
  *
  * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[]}
@@ -123,6 +125,7 @@
  *   | {type: 'events', events: LoggedEvent[]}
  *   | {type: 'bytes', bytes: LinkBytes[]}
  *   | {type: 'consoles', run: number, said: ConsoleText[]}
+ *   | ({type: 'world'} & EditedWorld)
  *   | {type: 'control', seat: Seat, page: number, holder: number | null, pages: number}
  *   | {type: 'error', text: string}} FromServer
  *
@@ -143,6 +146,7 @@
  *   | {type: 'set_param', id: number, value: number}
  *   | {type: 'program', name: string, data: string}
  *   | {type: 'profile', on: boolean}
+ *   | {type: 'world', ticket: number, act: 'show' | 'check' | 'drive', text: string}
  *   | {type: 'type', usart: number, text: string}
  *   | {type: 'speed', factor: number}
  *   | {type: 'seek', t_s: number}

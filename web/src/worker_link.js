@@ -10,6 +10,7 @@ import { saveFile } from './dialog.js';
 /**
  * The run as a link carries it: `Shared` of `crates/browser`.
  * @typedef {object} Shared
+ * @property {string | null} edited The file of the edited world in which it drives; `Share` packs it.
  * @property {Record<string, number>} parameters With which it began.
  * @property {string | null} drive The commands given by hand.
  * @property {string | null} why_not Why a link cannot repeat them.

@@ -26,6 +26,10 @@ for (const colorScheme of /** @type {const} */ (['dark', 'light'])) {
         assert.deepEqual(await violations(page), [], name);
       }
       await page.getByRole('tab', { name: 'Events' }).click();
+      await page.locator('#edit-world').click();
+      await page.locator('#editor').waitFor();
+      assert.deepEqual(await violations(page), [], 'world editor');
+      await page.locator('#edit-world').click();
       await page.locator('#help').click();
       assert.deepEqual(await violations(page), [], 'help');
       await page.keyboard.press('Escape');

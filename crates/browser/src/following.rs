@@ -3,7 +3,7 @@
 use crate::drive::{self, MOST};
 use crate::lab::Start;
 use rumbo_log::Level;
-use rumbo_session::Order;
+use rumbo_session::{Order, WorldAct, WorldOrder};
 use std::collections::VecDeque;
 
 /// The orders of a link that are not given yet.
@@ -98,6 +98,10 @@ pub(crate) fn is_by_hand(order: &Order) -> bool {
             | Order::ReleaseControl
             | Order::RestartGhost
             | Order::Profile(_)
+            | Order::World(WorldOrder {
+                act: WorldAct::Show | WorldAct::Check,
+                ..
+            })
             | Order::Seek(_)
             | Order::Step(_)
     )

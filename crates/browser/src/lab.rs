@@ -24,6 +24,8 @@ pub struct Start {
     pub scenario: String,
     /// Another world than the scenario's.
     pub world: Option<String>,
+    /// The file of an edited world, in place of `world`.
+    pub edited: Option<String>,
     /// Other sonars than the scenario's.
     pub rig: Option<String>,
     /// Another robot than the scenario's.
@@ -43,6 +45,8 @@ pub struct Start {
 /// The run as a link carries it: what the page does not know of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shared {
+    /// The file of the edited world in which it drives.
+    pub edited: Option<String>,
     /// With which it began, besides the scenario's.
     pub parameters: BTreeMap<String, f64>,
     /// The commands given by hand since, with their times; `None`: a link cannot repeat them.
@@ -62,6 +66,7 @@ impl Default for Start {
         Self {
             scenario: "mode1".into(),
             world: None,
+            edited: None,
             rig: None,
             robot: None,
             seed: 1,
@@ -102,7 +107,10 @@ impl Lab {
             parameters: start.parameters.clone().into_iter().collect(),
             ..Overrides::default()
         };
-        let robot = SimulatedRobot::new(overrides, choice)?;
+        let robot = match &start.edited {
+            Some(text) => SimulatedRobot::in_world(text, overrides, choice)?,
+            None => SimulatedRobot::new(overrides, choice)?,
+        };
         let extras = Extras {
             calibration: Some(rumbo_lab::calibration),
             ..Extras::default()
@@ -222,6 +230,7 @@ impl Lab {
     pub fn share(&mut self) -> Shared {
         let until_us = self.desk.driver.target_us();
         let hash = self.hash(until_us);
+        let edited = self.desk.driver.target().edited_world().map(str::to_owned);
         let page = self.desk.driver.host();
         let changes = page.changes.len();
         let why_not = match page.unlike {
@@ -238,6 +247,7 @@ impl Lab {
             changes,
             until_s: until_us as f64 / 1e6,
             hash,
+            edited,
             parameters: self.parameters.clone(),
         }
     }

@@ -338,3 +338,49 @@ fn a_run_that_no_link_can_repeat_says_why() {
     drive(&mut lab, &clock_us, 1.0);
     assert!(lab.share().why_not.unwrap().contains("saved on it"));
 }
+
+#[test]
+fn an_edited_world_is_in_what_is_shared_and_is_driven_in_from_the_link_again() {
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(Start::default(), 0.0).unwrap();
+    drive(&mut lab, &clock_us, 0.5);
+    let world = r#"{\"title\":\"Mine\",\"box\":[{\"centre_m\":[0.9,0],\"size_m\":[0.2,0.4]}],\"start\":{\"x_m\":0.1}}"#;
+    let order = |act: &str, ticket: u32| {
+        format!(r#"{{"type":"world","ticket":{ticket},"act":"{act}","text":"{world}"}}"#)
+    };
+    lab.order(&order("check", 1));
+    let answer = drive(&mut lab, &clock_us, 0.1);
+    let answer = answer.iter().find(is("world")).unwrap();
+    assert!(
+        answer.contains(r#""ticket":1"#) && answer.contains(r#""problem":null"#),
+        "{answer}"
+    );
+    assert_eq!(lab.share().edited, None);
+    lab.order(&order("drive", 2));
+    let messages = drive(&mut lab, &clock_us, 1.0);
+    let answer = messages.iter().find(is("world")).unwrap();
+    assert!(answer.contains(r#""driven":true"#), "{answer}");
+    assert!(state(&messages).contains("\"armed\":false"));
+    lab.order(r#"{"type":"arm"}"#);
+    drive(&mut lab, &clock_us, 2.0);
+    let shared = lab.share();
+    assert!(
+        shared.edited.as_ref().unwrap().contains("Mine"),
+        "{shared:?}"
+    );
+    let start = Start {
+        edited: shared.edited.clone(),
+        drive: shared.drive.clone(),
+        until_s: Some(shared.until_s),
+        hash: shared.hash.clone(),
+        ..Start::default()
+    };
+    let clock_us = Cell::new(0);
+    let mut linked = Lab::new(start, 0.0).unwrap();
+    let messages = drive(&mut linked, &clock_us, shared.until_s + 1.0);
+    let events: String = messages
+        .into_iter()
+        .filter(|it| is("events")(&it))
+        .collect();
+    assert!(events.contains("bit for bit"), "{events}");
+}

@@ -534,7 +534,7 @@ fn a_random_world_is_checked_and_a_fixed_one_has_no_goal_to_give() {
         .unwrap_err();
     assert_eq!(
         error.to_string(),
-        "scenario mode8-random: its goal is that of the world, and world room has none; give a world with [random], or goal_m in place of goal"
+        "scenario mode8-random: its goal is that of the world, and world room has none; give a world with goal_m or [random], or goal_m in place of goal"
     );
 }
 

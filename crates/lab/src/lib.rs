@@ -11,9 +11,11 @@ mod prepare;
 mod program;
 mod robot;
 mod scene;
+mod world;
 
 pub use calibration::calibration;
 pub use hash::{recorded_hash, run_hash};
 pub use program::{Made, Make, OwnProgram, Workshop, problem};
 pub use robot::{Cable, SimulatedRobot, type_to};
 pub use scene::scene;
+pub use world::EDITED;

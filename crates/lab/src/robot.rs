@@ -2,12 +2,13 @@
 
 use crate::prepare::{Prepared, prepare};
 use crate::program::{Held, Make, OwnProgram};
+use crate::world;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_emulator::observe::profile::Profile;
 use rumbo_experiment::files::{FileError, Library, Overrides};
 use rumbo_log::{Choice, Level, Manifest, MapPose, ProgramState, Scene, Source, Truth};
-use rumbo_session::{Abilities, LinkNews, Shown, Standing, Target, TargetError};
+use rumbo_session::{Abilities, EditedWorld, LinkNews, Shown, Standing, Target, TargetError};
 use rumbo_sim::boards::Board;
 use rumbo_sim::debugging::Debugging;
 use rumbo_sim::mega::firmware::Language;
@@ -29,7 +30,7 @@ pub trait Cable: Send {
 
 /// A simulated robot, with what is connected to it.
 pub struct SimulatedRobot {
-    library: Library,
+    pub(crate) library: Library,
     /// The overrides of the command line; the page chooses scenario, world and rig.
     pub(crate) overrides: Overrides,
     /// An image that was dropped on the page, in place of that of the overrides.
@@ -40,7 +41,7 @@ pub struct SimulatedRobot {
     /// The program that the user gave, if it is one for the emulated Mega.
     pub(crate) program: Option<OwnProgram>,
     pub(crate) make: Option<Make>,
-    manifest: Manifest,
+    pub(crate) manifest: Manifest,
     mode: ModeId,
     /// When the instruments are read next \[us\].
     reading_due_us: u64,
@@ -60,7 +61,20 @@ impl SimulatedRobot {
     /// # Errors
     /// The problems of the files that they name.
     pub fn new(overrides: Overrides, choice: Choice) -> Result<Self, FileError> {
-        let library = Library::new();
+        Self::of(Library::new(), overrides, choice)
+    }
+
+    /// The same in the edited world of this text, whatever world the choice names.
+    ///
+    /// # Errors
+    /// The same, and those of the text.
+    pub fn in_world(text: &str, overrides: Overrides, choice: Choice) -> Result<Self, FileError> {
+        let library = world::holding(Library::new(), text);
+        let world = Some(world::EDITED.to_owned());
+        Self::of(library, overrides, Choice { world, ..choice })
+    }
+
+    fn of(library: Library, overrides: Overrides, choice: Choice) -> Result<Self, FileError> {
         let Prepared {
             sim,
             mode,
@@ -327,6 +341,14 @@ impl Target for SimulatedRobot {
         }
         self.start_again(choice.clone())
             .map_err(|error| TargetError::Setup(error.to_string()))
+    }
+
+    fn world(&mut self, given: Option<&str>) -> EditedWorld {
+        self.to_edit(given)
+    }
+
+    fn drive_in(&mut self, world: &str) -> Result<Choice, TargetError> {
+        self.start_in(world)
     }
 }
 

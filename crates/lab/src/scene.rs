@@ -2,7 +2,7 @@
 
 use rumbo_control::SonarId;
 use rumbo_experiment::files::TimedCommand;
-use rumbo_experiment::files::{FileError, Kind, Library, ScenarioFile, Setup};
+use rumbo_experiment::files::{FileError, Kind, Library, ScenarioFile, Setup, goal_seen_from};
 use rumbo_log::{
     Choice, Experiment, MapPose, Mover, Obstacle, Repeat, RoutePlan, Scene, SonarMount, TimedPose,
 };
@@ -58,7 +58,7 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
         world_titles: world_titles(library, choice.world.as_deref()),
         rigs: robot.rigs.keys().cloned().collect(),
         rig: scenario.rig.clone(),
-        goals: goals(&scenario.commands),
+        goals: goals(setup),
         routes: routes(&scenario.commands),
         robot: robot.name.clone(),
         start: MapPose {
@@ -137,9 +137,14 @@ fn experiments(library: &Library, scenario: &ScenarioFile, choice: &Choice) -> V
 }
 
 /// The commands that prepare a robot without starting it: the mode, and the experiment's settings up to arming, or its
-/// first setpoint after that.
+/// first setpoint after that. The goal of a world comes before that of the experiment.
 pub(crate) fn first_commands(setup: &Setup) -> Vec<Command> {
-    let commands = setup.scenario.commands.iter().map(|timed| timed.command);
+    let goal = goal_of_world(setup);
+    let commands = setup.scenario.commands.iter();
+    let commands = commands.map(|timed| match (timed.command, goal) {
+        (Command::Goal { .. }, Some(goal)) => goal,
+        (command, _) => command,
+    });
     let armed = |command: &Command| *command == Command::Arm;
     let before: Vec<_> = commands
         .clone()
@@ -171,11 +176,19 @@ fn is_setpoint(command: &Command) -> bool {
     )
 }
 
-/// The goals of an experiment, each once.
-fn goals(commands: &[TimedCommand]) -> Vec<[f32; 2]> {
+/// The command to go to the goal of a world that has one.
+fn goal_of_world(setup: &Setup) -> Option<Command> {
+    let goal_m = setup.world.goal_m?;
+    Some(goal_seen_from(&setup.scenario.start, goal_m))
+}
+
+/// The goals of a world and an experiment, each once.
+fn goals(setup: &Setup) -> Vec<[f32; 2]> {
     let mut goals = Vec::new();
-    for timed in commands {
-        if let Command::Goal { x_m, y_m } = timed.command
+    let commands = setup.scenario.commands.iter();
+    let commands = commands.map(|timed| timed.command);
+    for command in goal_of_world(setup).into_iter().chain(commands) {
+        if let Command::Goal { x_m, y_m } = command
             && !goals.contains(&[x_m, y_m])
         {
             goals.push([x_m, y_m]);

@@ -8,6 +8,7 @@ mod ring;
 
 use crate::console::{ConsoleText, readable};
 use crate::event::Event;
+use crate::world::EditedWorld;
 use ring::{Ring, Versioned};
 use rumbo_log::{Burst, Entry, LoggedEvent, ParameterState, Reading, Row, Scene, Source, State};
 
@@ -41,6 +42,7 @@ pub struct Board {
     scene: Versioned<Option<Scene>>,
     parameters: Versioned<Vec<ParameterState>>,
     state: Versioned<State>,
+    world: Versioned<EditedWorld>,
 }
 
 /// How far a page has read.
@@ -56,6 +58,7 @@ pub struct Cursor {
     scene: u64,
     parameters: u64,
     state: u64,
+    world: u64,
 }
 
 /// What is new to a page.
@@ -69,6 +72,8 @@ pub struct News {
     pub parameters: Option<Vec<ParameterState>>,
     /// What changes slowly.
     pub state: Option<State>,
+    /// A world that a page edits.
+    pub world: Option<EditedWorld>,
     /// Signals.
     pub samples: Vec<Row>,
     /// Signals beside the telemetry.
@@ -99,6 +104,7 @@ impl Default for Board {
             scene: Versioned::default(),
             parameters: Versioned::default(),
             state: Versioned::default(),
+            world: Versioned::default(),
         }
     }
 }
@@ -125,6 +131,7 @@ impl Board {
                 self.consoles.push(said.clone());
                 true
             }
+            Event::World(world) => self.world.set(world.clone()),
             Event::Entry(entry) => self.show(entry),
         }
     }
@@ -181,6 +188,7 @@ impl Board {
             scene: self.scene.newer(&mut cursor.scene),
             parameters: self.parameters.newer(&mut cursor.parameters),
             state: self.state.newer(&mut cursor.state),
+            world: self.world.newer(&mut cursor.world),
             samples,
             readings,
             received: self.received,

@@ -11,7 +11,8 @@ use crate::orders::{MAX_SPEED, Order};
 use crate::pace::{Pace, SLICE_US};
 use crate::session::{Ask, Going, Now, Session, Sight};
 use crate::target::{About, LinkNews, Target};
-use rumbo_log::{Level, Manifest};
+use crate::world::{EditedWorld, WorldAct, WorldOrder};
+use rumbo_log::{Choice, Level, Manifest};
 
 /// Begins a calibration of the robot at this instant \[us\].
 pub type Calibration = fn(u64) -> Box<dyn Guest>;
@@ -173,14 +174,43 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
             }
             Ask::Reset(choice) => {
                 let done = self.target.reset(&choice);
-                if done.is_ok() {
-                    self.begin_again(wall_us);
-                }
-                let done = done.map(|()| About::of(self.target.as_ref()));
-                let (id, now) = (self.host.random_id(), self.now(wall_us));
-                self.session.restart(&choice, done, id, now);
+                self.restarted(&choice, done, wall_us);
+            }
+            Ask::World(order) => {
+                let world = self.edit(&order, wall_us);
+                self.host.publish(Event::World(world));
             }
         }
+    }
+
+    /// The target was reset, or refused it.
+    fn restarted(&mut self, choice: &Choice, done: Result<(), TargetError>, wall_us: u64) {
+        if done.is_ok() {
+            self.begin_again(wall_us);
+        }
+        let done = done.map(|()| About::of(self.target.as_ref()));
+        let (id, now) = (self.host.random_id(), self.now(wall_us));
+        self.session.restart(choice, done, id, now);
+    }
+
+    fn edit(&mut self, order: &WorldOrder, wall_us: u64) -> EditedWorld {
+        let WorldOrder { ticket, act, text } = order;
+        let mut world = match act {
+            WorldAct::Show => self.target.world(None),
+            WorldAct::Check => self.target.world(Some(text)),
+            WorldAct::Drive => EditedWorld::default(),
+        };
+        world.ticket = *ticket;
+        if *act == WorldAct::Drive {
+            match self.target.drive_in(text) {
+                Ok(choice) => {
+                    world.driven = true;
+                    self.restarted(&choice, Ok(()), wall_us);
+                }
+                Err(why) => world.problem = Some(why.to_string()),
+            }
+        }
+        world
     }
 
     /// The wall clock says so: time of the target becomes due.

@@ -1,6 +1,7 @@
 //! The events a session publishes: each subscriber takes what it needs.
 
 use crate::console::ConsoleText;
+use crate::world::EditedWorld;
 use rumbo_log::Entry;
 use rumbo_wire::Command;
 use std::sync::Arc;
@@ -17,6 +18,8 @@ pub enum Event {
     /// Commands that the operator gave together, at this time of the target \[us\]; an end of a movement held by a key is
     /// one too.
     Commanded(u64, Vec<Command>),
+    /// What a page asked of a world that it edits.
+    World(EditedWorld),
     /// The next samples arrived at this time of the session \[ms\].
     Received(i64),
 }

@@ -5,6 +5,7 @@
 
 use crate::error::TargetError;
 use crate::target::{Abilities, LinkNews, Target};
+use crate::world::EditedWorld;
 use rumbo_log::{Choice, Manifest, Scene, Truth};
 use rumbo_wire::Command;
 use std::collections::VecDeque;
@@ -191,6 +192,14 @@ impl<T: Target> Target for Faulty<T> {
 
     fn reset(&mut self, choice: &Choice) -> Result<(), TargetError> {
         self.target.reset(choice)
+    }
+
+    fn world(&mut self, given: Option<&str>) -> EditedWorld {
+        self.target.world(given)
+    }
+
+    fn drive_in(&mut self, world: &str) -> Result<Choice, TargetError> {
+        self.target.drive_in(world)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Orders of a page: parses JSON text into a checked order.
 
+use crate::world::{WorldAct, WorldOrder};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use rumbo_control::mode::waypoints::{MAX_WAYPOINTS, Waypoint};
@@ -20,10 +21,12 @@ const MAX_NAME: usize = 100;
 /// Longest line typed.
 const MAX_LINE: usize = 200;
 
-/// Longest order; only one with a program is longer than [`SHORT_ORDER`] \[bytes\].
+/// Longest order; only one with a program is longer than [`WORLD_ORDER`] \[bytes\].
 pub const MAX_ORDER: usize = 1_500_000;
-/// Longest order without a program \[bytes\].
+/// Longest order without a program or a world \[bytes\].
 pub const SHORT_ORDER: usize = 4_096;
+/// Longest order with a world, which has some hundreds of shapes \[bytes\].
+pub const WORLD_ORDER: usize = 100_000;
 
 /// What the session is to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +61,8 @@ pub enum Order {
     Program(String, Vec<u8>),
     /// Count the cycles of the program on the emulated chip, from zero, or no longer.
     Profile(bool),
+    /// Show, check or drive in a world that the page edits.
+    World(WorldOrder),
 }
 
 /// The orders to execute when STOP was pressed (`stop`): no older command to the robot comes after it.
@@ -78,7 +83,7 @@ pub fn stop_first(mut waiting: Vec<Order>, stop: bool) -> Vec<Order> {
         Some(last) => waiting.split_off(last + 1),
         None => Vec::new(),
     };
-    waiting.retain(|order| matches!(order, Order::Speed(_) | Order::Reset(_)));
+    waiting.retain(|order| matches!(order, Order::Speed(_) | Order::Reset(_) | Order::World(_)));
     [vec![Order::Robot(Command::Stop)], waiting, newer].concat()
 }
 
@@ -165,6 +170,12 @@ enum Message {
     Profile {
         on: bool,
     },
+    World {
+        ticket: u32,
+        act: WorldAct,
+        #[serde(default)]
+        text: String,
+    },
     Seek {
         t_s: f64,
     },
@@ -207,8 +218,13 @@ impl FromStr for Order {
 
     /// The order in a page's text. A page that sends anything else is not ours, and its connection is to be closed.
     fn from_str(text: &str) -> Result<Self, BadOrder> {
-        if text.len() > SHORT_ORDER && !text.starts_with("{\"type\":\"program\"") {
-            return Err(BadOrder(format!("longer than {SHORT_ORDER} bytes")));
+        let longest = match text {
+            _ if text.starts_with("{\"type\":\"program\"") => usize::MAX,
+            _ if text.starts_with("{\"type\":\"world\"") => WORLD_ORDER,
+            _ => SHORT_ORDER,
+        };
+        if text.len() > longest {
+            return Err(BadOrder(format!("longer than {longest} bytes")));
         }
         // The error repeats an unknown name as it was sent, ends of lines included.
         let one_line = |why: String| why.replace(char::is_control, "\u{fffd}");
@@ -287,6 +303,7 @@ impl FromStr for Order {
             }
             Message::Program { name, data } => program(name, &data)?,
             Message::Profile { on } => Order::Profile(on),
+            Message::World { ticket, act, text } => Order::World(WorldOrder { ticket, act, text }),
             Message::Seek { t_s } if t_s.is_finite() => Order::Seek(t_s),
             Message::Seek { .. } => return Err(BadOrder("t_s is too large".into())),
             Message::Step { frames } => Order::Step(frames),
@@ -462,6 +479,19 @@ mod tests {
         assert!(matches!(parse(text).unwrap(), Order::Robot(_)));
         let text = r#"{"type":"move_duty","movement":1,"duty":0.3,"held":true}"#;
         assert!(matches!(parse(text).unwrap(), Order::Hold(_)));
+        let world = |text: &str| {
+            parse(&format!(
+                r#"{{"type":"world","ticket":7,"act":"check","text":"{text}"}}"#
+            ))
+        };
+        let long = " ".repeat(2 * SHORT_ORDER);
+        let Order::World(order) = world(&long).unwrap() else {
+            panic!("no world");
+        };
+        assert_eq!((order.ticket, order.act), (7, WorldAct::Check));
+        assert_eq!(order.text, long);
+        let longer = world(&" ".repeat(WORLD_ORDER)).unwrap_err().to_string();
+        assert!(longer.contains("longer than 100000 bytes"), "{longer}");
     }
 
     #[test]

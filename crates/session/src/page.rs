@@ -4,6 +4,7 @@ use crate::board::{Arrival, News};
 use crate::catalogue::{self, ModeEntry};
 use crate::console::ConsoleText;
 use crate::lease::View;
+use crate::world::EditedWorld;
 use rumbo_log::{Burst, Cell, LoggedEvent, ParameterState, Reading, Row, Scene, Source, State};
 use serde::Serialize;
 
@@ -40,6 +41,8 @@ pub enum ToPage<'a> {
         /// All of it.
         state: &'a State,
     },
+    /// What a page asked of a world that it edits.
+    World(&'a EditedWorld),
     /// Rows of signals; the page discards those of another run.
     Samples {
         /// Number of the run.
@@ -149,6 +152,7 @@ impl News {
         let scene = self.scene.iter();
         let scene = scene.map(move |scene| ToPage::Scene { run, scene });
         let state = self.state.iter().map(|state| ToPage::State { state });
+        let world = self.world.iter().map(ToPage::World);
         let parameters = self.parameters.iter();
         let parameters = parameters.map(|parameters| ToPage::Parameters { parameters });
         let events = some(&self.events).map(|events| ToPage::Events { events });
@@ -175,6 +179,7 @@ impl News {
         });
         scene
             .chain(state)
+            .chain(world)
             .chain(parameters)
             .chain(events)
             .chain(said)

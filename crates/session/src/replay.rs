@@ -131,7 +131,8 @@ impl Replay {
             | Order::Route(_)
             | Order::Type(..)
             | Order::Program(..)
-            | Order::Profile(_) => {
+            | Order::Profile(_)
+            | Order::World(_) => {
                 if !std::mem::replace(&mut self.warned, true) {
                     self.note("this is a replay: nothing is sent to a robot".into());
                 }

@@ -17,6 +17,7 @@ use crate::observer::describe::{Around, describe};
 use crate::orders::Order;
 use crate::target::{About, LinkNews, Shown, Standing};
 use crate::watch::LinkWatch;
+use crate::world::WorldOrder;
 use rumbo_control::mode::ModeId;
 use rumbo_log::{Burst, CalibrationState, Choice, Level, ProgramState, State, Truth};
 use rumbo_wire::Command;
@@ -46,6 +47,8 @@ pub enum Ask {
     Pace(f64),
     /// Start it again; then [`Session::restart`].
     Reset(Choice),
+    /// To show, check or drive in a world.
+    World(WorldOrder),
     /// Send a line to a USART; then [`Session::typed`].
     Type(u8, String),
     /// Put the ghost there; then [`Session::ghost_restarted`].
@@ -206,6 +209,11 @@ impl Session {
             Order::Reset(choice) if abilities.reset => return Some(Ask::Reset(choice)),
             Order::Reset(_) => {
                 let text = "reset: refused, this is a real robot";
+                self.note(Level::Warning, text.into(), now);
+            }
+            Order::World(order) if abilities.reset => return Some(Ask::World(order)),
+            Order::World(_) => {
+                let text = "world: refused, this is a real robot";
                 self.note(Level::Warning, text.into(), now);
             }
             Order::Calibrate => return self.may_calibrate(now),

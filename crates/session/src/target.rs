@@ -5,6 +5,7 @@
 //! known of a robot beyond those bytes is only displayed: commands and measurements take the link.
 
 use crate::error::TargetError;
+use crate::world::EditedWorld;
 use rumbo_control::Fault;
 use rumbo_control::mode::ModeId;
 use rumbo_log::{Choice, Level, Manifest, MapPose, ProgramState, Scene, Source, Truth};
@@ -168,6 +169,22 @@ pub trait Target: Send {
     /// # Errors
     /// When the choice names something unknown or unreadable; the target then continues as before.
     fn reset(&mut self, _choice: &Choice) -> Result<(), TargetError> {
+        Err(TargetError::NoReset)
+    }
+
+    /// The world in which it drives as one to edit, or the one given, checked.
+    fn world(&mut self, _given: Option<&str>) -> EditedWorld {
+        EditedWorld {
+            problem: Some(TargetError::NoReset.to_string()),
+            ..EditedWorld::default()
+        }
+    }
+
+    /// Starts again from time 0 in the world given; returns what runs then.
+    ///
+    /// # Errors
+    /// What is wrong with it; the target then continues as before.
+    fn drive_in(&mut self, _world: &str) -> Result<Choice, TargetError> {
         Err(TargetError::NoReset)
     }
 

@@ -96,6 +96,8 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/units.js": SCRIPT,
     "src/value_field.js": SCRIPT,
     "src/worker_link.js": SCRIPT,
+    "src/world_editor.js": SCRIPT,
+    "src/world_shapes.js": SCRIPT,
     "vendor/uplot/uPlot.js": SCRIPT,
     "vendor/uplot/uPlot.css": CSS,
     "vendor/uplot/LICENSE": TEXT,

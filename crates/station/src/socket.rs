@@ -16,7 +16,7 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use futures_util::stream::SplitSink;
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
 use rumbo_log::{Level, LoggedEvent};
-use rumbo_session::{Cursor, MAX_ORDER, News, Order, SHORT_ORDER, ToPage};
+use rumbo_session::{Cursor, MAX_ORDER, News, Order, ToPage, WORLD_ORDER};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::mpsc;
@@ -53,7 +53,7 @@ impl Hub {
     pub(crate) fn longest_message(&self) -> usize {
         match self.local {
             true => MAX_ORDER,
-            false => SHORT_ORDER,
+            false => WORLD_ORDER,
         }
     }
 }

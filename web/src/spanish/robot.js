@@ -180,6 +180,7 @@ export const ROBOT = {
   '{}: the thread of the port has ended; please report it': '{}: el hilo del puerto ha terminado; por favor, avísanos',
   'it ended by a fault of its own; please report it': 'terminó por un fallo propio; por favor, avísanos',
   'speed: refused, a real robot runs in real time': 'velocidad: rechazado, un robot real va en tiempo real', 'refused, this is no replay of a log': 'rechazado, esto no es una grabación',
+  'world: refused, this is a real robot': 'mundo: rechazado, es un robot real',
   'reset: refused, this is a real robot': 'reinicio: rechazado, es un robot real', 'this is a real robot': 'es un robot real', 'reset: refused, {}': 'reinicio: rechazado, {}',
   'reset: {}, seed {}': 'reinicio: {}, semilla {}', 'reset: {} in world {}, seed {}': 'reinicio: {} en el mundo {}, semilla {}',
   'reset: {} with rig {}, seed {}': 'reinicio: {} con el montaje {}, semilla {}', 'reset: {} in world {} with rig {}, seed {}': 'reinicio: {} en el mundo {} con el montaje {}, semilla {}',

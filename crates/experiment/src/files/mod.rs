@@ -34,7 +34,6 @@ pub use names::{MOVEMENTS, find_mode, find_movement};
 pub use near::unknown;
 pub use robot::{FirmwareCaps, RobotFile};
 pub use scenario::{Bounds, ScenarioFile, Spread, Start, TimedCommand};
-pub(crate) use setup::goal_seen_from;
-pub use setup::{NativeProgram, Overrides, Port, Setup, TimedText};
+pub use setup::{NativeProgram, Overrides, Port, Setup, TimedText, goal_seen_from};
 pub use word::WordError;
 pub use world::{Arena, WorldFile};

@@ -220,7 +220,7 @@ fn read_mode(root: &Table<'_, '_>) -> Option<ModeId> {
         })
 }
 
-fn read_start(table: &Table<'_, '_>) -> Start {
+pub(super) fn read_start(table: &Table<'_, '_>) -> Start {
     let start = Start {
         x_m: table.number("x_m", PLACE).unwrap_or(0.0),
         y_m: table.number("y_m", PLACE).unwrap_or(0.0),

@@ -5,7 +5,7 @@ use super::kept::Calibrations;
 use super::near::{near, near_or_all};
 use super::read::Allowed;
 use super::{Library, RobotFile, ScenarioFile, Spread, Start, WorldFile, firmware, parameters};
-use crate::random_world::{Site, Size};
+use crate::random_world::{Journey, Site, Size};
 use rumbo_control::params::ParamId;
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::params::Params;
@@ -129,6 +129,9 @@ impl Library {
             }
             apply(&mut scenario, name, *value)?;
         }
+        if let Some(start) = world.start {
+            scenario.start = start;
+        }
         stands_free(&scenario, &robot, &world)?;
         has_its_goal(&scenario, &world)?;
         let rig = robot
@@ -178,17 +181,9 @@ impl Setup {
     /// A random world that finds no room.
     pub fn of_seed(&self, seed: u64) -> Result<Cow<'_, Self>, FileError> {
         let Some(random) = self.world.random else {
-            return Ok(Cow::Borrowed(self));
+            return self.to_goal_of_world();
         };
-        let Start { x_m, y_m, .. } = self.scenario.start;
-        let site = Site {
-            from_m: self.world.arena.from_m,
-            to_m: self.world.arena.to_m,
-            walls: &self.world.walls,
-            boxes: &self.world.boxes,
-            start_m: [x_m, y_m],
-            robot: Size::of(&self.robot.plant.body),
-        };
+        let site = self.site();
         let drawn = random.draw(&site, seed).ok_or_else(|| {
             FileError::Setting(format!(
                 "world {}: no room for boxes and a goal with seed {seed}; make its arena larger, or ask for fewer groups or nearer goals in \
@@ -199,13 +194,43 @@ impl Setup {
         let mut own = self.clone();
         own.world.random = None;
         own.world.boxes.extend(drawn.boxes);
-        for timed in &mut own.scenario.commands {
+        own.take_journey(drawn.journey);
+        Ok(Cow::Owned(own))
+    }
+
+    /// The same with the fixed goal of the world where the scenario asks for it.
+    fn to_goal_of_world(&self) -> Result<Cow<'_, Self>, FileError> {
+        let asks = self.scenario.commands.iter().any(|it| it.goal_of_world);
+        let Some(goal_m) = self.world.goal_m.filter(|_| asks) else {
+            return Ok(Cow::Borrowed(self));
+        };
+        let obstacles = self.world.world();
+        let obstacles = obstacles
+            .map_err(|error| FileError::Setting(format!("world {}: {error}", self.world.name)))?;
+        let mut own = self.clone();
+        own.take_journey(Journey::to(goal_m, &self.site(), &obstacles));
+        Ok(Cow::Owned(own))
+    }
+
+    fn site(&self) -> Site<'_> {
+        let Start { x_m, y_m, .. } = self.scenario.start;
+        Site {
+            from_m: self.world.arena.from_m,
+            to_m: self.world.arena.to_m,
+            walls: &self.world.walls,
+            boxes: &self.world.boxes,
+            start_m: [x_m, y_m],
+            robot: Size::of(&self.robot.plant.body),
+        }
+    }
+
+    fn take_journey(&mut self, journey: Journey) {
+        for timed in &mut self.scenario.commands {
             if timed.goal_of_world {
-                timed.command = goal_seen_from(&self.scenario.start, drawn.journey.goal_m);
+                timed.command = goal_seen_from(&self.scenario.start, journey.goal_m);
             }
         }
-        own.world.journey = Some(drawn.journey);
-        Ok(Cow::Owned(own))
+        self.world.journey = Some(journey);
     }
 
     /// The robot of a seed at its start.
@@ -367,7 +392,8 @@ impl Setup {
 }
 
 /// The command to go to a point of the world, for a robot whose origin is the start.
-pub(crate) fn goal_seen_from(start: &Start, goal_m: Point) -> Command {
+#[must_use]
+pub fn goal_seen_from(start: &Start, goal_m: Point) -> Command {
     let (x_m, y_m) = (goal_m[0] - start.x_m, goal_m[1] - start.y_m);
     let (sin, cos) = (libm::sin(start.heading_rad), libm::cos(start.heading_rad));
     Command::Goal {
@@ -379,11 +405,11 @@ pub(crate) fn goal_seen_from(start: &Start, goal_m: Point) -> Command {
 /// Reports a goal that only a random world could provide.
 fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileError> {
     let asks = scenario.commands.iter().any(|timed| timed.goal_of_world);
-    if !asks || world.random.is_some() {
+    if !asks || world.random.is_some() || world.goal_m.is_some() {
         return Ok(());
     }
     Err(FileError::Setting(format!(
-        "scenario {}: its goal is that of the world, and world {} has none; give a world with [random], or goal_m in place of goal",
+        "scenario {}: its goal is that of the world, and world {} has none; give a world with goal_m or [random], or goal_m in place of goal",
         scenario.name, world.name
     )))
 }
@@ -423,9 +449,13 @@ fn stands_free(
         };
         world.movers[index].called(index)
     };
+    let whose = match world.start {
+        Some(_) => format!("world {}", world.name),
+        None => format!("scenario {}", scenario.name),
+    };
     Err(FileError::Setting(format!(
-        "scenario {}: its start x_m = {x_m}, y_m = {y_m} is inside {inside} of world {}; move [start] or choose another world",
-        scenario.name, world.name
+        "{whose}: its start x_m = {x_m}, y_m = {y_m} is inside {inside} of world {}; move [start] or choose another world",
+        world.name
     )))
 }
 

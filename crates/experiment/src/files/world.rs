@@ -2,6 +2,7 @@
 //!
 //! ```toml
 //! title = "A wall across the way"
+//! goal_m = [1.2, 0.5]    # of scenarios with goal = "world"
 //! [arena]                # what the map shows; walled = true puts a wall along each side
 //! from_m = [-0.5, -1.0]
 //! to_m = [1.5, 1.0]
@@ -16,6 +17,9 @@
 //! diameter_m = 0.3
 //! path_m = [[0.8, -0.9], [0.8, 0.9]]
 //! speed_m_s = 0.3
+//! [start]                # in place of the scenario's
+//! x_m = 0.2
+//! heading_deg = 90
 //! [random]               # groups of boxes and a goal besides, others for each seed; each key has a default
 //! groups = [2, 6]
 //! goal_away_m = [2, 4]
@@ -26,8 +30,9 @@
 use super::error::FileError;
 use super::mover::{MOST_MOVERS, Mover, read_mover};
 use super::read::{Allowed, Source, Table};
+use super::scenario::{Start, read_start};
 use crate::random_world::{Journey, RandomWorld};
-use rumbo_plant::world::{Block, ShapeError, Wall, World};
+use rumbo_plant::world::{Block, Point, ShapeError, Wall, World};
 
 /// Coordinates of anything in a world.
 pub(crate) const PLACE: Allowed = Allowed::new(-50.0, 50.0, "m");
@@ -57,9 +62,13 @@ pub struct WorldFile {
     pub boxes: Vec<Block>,
     /// What moves.
     pub movers: Vec<Mover>,
+    /// Where the robot starts, in place of the scenario's start.
+    pub start: Option<Start>,
+    /// The goal, for scenarios whose goal is that of the world, in m.
+    pub goal_m: Option<Point>,
     /// What every seed adds at random.
     pub random: Option<RandomWorld>,
-    /// The goal of a seed's random world, and the true shortest path to it.
+    /// The goal of the world or of a seed's random one, and the true shortest path to it.
     pub journey: Option<Journey>,
 }
 
@@ -103,6 +112,11 @@ impl WorldFile {
         let random = root
             .has("random")
             .then(|| read_random(&root.table("random")));
+        let start = root.has("start").then(|| read_start(&root.table("start")));
+        let goal_m = root.pair("goal_m", PLACE);
+        if random.is_some() && goal_m.is_some() {
+            root.complain_here("goal_m: [random] draws a goal; leave one of them out");
+        }
         root.finish();
         source.verdict()?;
         Ok(Self {
@@ -113,6 +127,8 @@ impl WorldFile {
             walls,
             boxes,
             movers,
+            start,
+            goal_m,
             random,
             journey: None,
         })

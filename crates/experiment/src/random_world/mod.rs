@@ -118,6 +118,18 @@ pub struct Journey {
     pub shortest: Option<Path>,
 }
 
+impl Journey {
+    /// From the start of a site to a goal, among these obstacles.
+    pub(crate) fn to(goal_m: Point, site: &Site<'_>, obstacles: &World) -> Self {
+        let slim = Floor::grown(obstacles, site.robot.half_width_m);
+        Self {
+            goal_m,
+            blocked: !slim.is_straight(site.start_m, goal_m),
+            shortest: slim.shortest(site.start_m, goal_m),
+        }
+    }
+}
+
 /// The boxes of a seed, and its goal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
@@ -251,17 +263,12 @@ fn anywhere(dice: &mut Dice, site: &Site<'_>) -> (Vec<Block>, Option<usize>) {
 /// The true shortest path from the start of a site to a goal; `None` where it is ambiguous: reachable only for a slim
 /// robot.
 fn survey(world: &World, site: &Site<'_>, goal_m: Point) -> Option<Journey> {
-    let slim = Floor::grown(world, site.robot.half_width_m);
-    let shortest = slim.shortest(site.start_m, goal_m);
+    let journey = Journey::to(goal_m, site, world);
     let easy = Floor::grown(world, site.robot.easy_m());
-    if shortest.is_some() && easy.shortest(site.start_m, goal_m).is_none() {
+    if journey.shortest.is_some() && easy.shortest(site.start_m, goal_m).is_none() {
         return None;
     }
-    Some(Journey {
-        goal_m,
-        blocked: !slim.is_straight(site.start_m, goal_m),
-        shortest,
-    })
+    Some(journey)
 }
 
 #[cfg(test)]
