@@ -10,6 +10,12 @@ use rumbo_sim::Sim;
 use rumbo_sim::fleet::{Fleet, FleetError, Met};
 use rumbo_wire::Command;
 
+/// No built-in one: mode 8 does not yield yet.
+const CROSSING: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../../examples/crossing/mode8-crossing.toml"
+);
+
 fn setup(scenario: &str, program: NativeProgram) -> Setup {
     let overrides = Overrides {
         program,
@@ -31,7 +37,7 @@ fn runs_on(threads: usize, setup: &Setup, seeds: std::ops::Range<u64>) -> Vec<Ru
 
 #[test]
 fn movers_are_met_alike_on_any_number_of_threads_and_by_a_repetition() {
-    let mut setup = setup("mode8-crossing", NativeProgram::Rumbo);
+    let mut setup = setup(CROSSING, NativeProgram::Rumbo);
     setup.scenario.duration_s = 15.0;
     let one = runs_on(1, &setup, 1..4);
     // Metrics may be no numbers, which are not equal.
@@ -111,6 +117,44 @@ fn two_that_meet_head_on_touch_each_other_and_do_not_overlap() {
         "each is 0.13 m long ahead of its axis: {apart_m}"
     );
     assert!(before_m.is_none_or(|before_m| before_m < 1.0));
+}
+
+/// A program for a Mega in the final wiring: both motors forward, for good.
+const AHEAD: &str = ":1400000008E100930101009302016B9A739A9D9AA59AFFCF82\n:00000001FF\n";
+
+#[test]
+fn two_emulated_megas_meet_the_same_way_each_time_and_from_a_snapshot() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("ahead.hex");
+    std::fs::write(&path, AHEAD).unwrap();
+    let overrides = Overrides {
+        rig: Some("final".into()),
+        wiring: Some("final".into()),
+        firmware: Some(path),
+        ..Overrides::default()
+    };
+    let setup = Library::new().setup("free", &overrides).unwrap();
+    let robot = |seed: u64, x_m: f64, heading_rad: f64| {
+        let mut config = setup.config(seed).unwrap();
+        config.start = Pose {
+            x_m,
+            heading_rad,
+            ..Pose::default()
+        };
+        Sim::new(config).unwrap()
+    };
+    let pi = std::f64::consts::PI;
+    let fleet = || Fleet::new(vec![robot(1, 0.0, 0.0), robot(2, 1.0, pi)]).unwrap();
+    let (mut first, mut second) = (fleet(), fleet());
+    first.advance(500_000);
+    let mut snapshot = first.clone();
+    for fleet in [&mut first, &mut second, &mut snapshot] {
+        fleet.advance(3_000_000);
+        assert_eq!(fleet.encounters(0)[0].met, Met::Robot(1));
+        assert_eq!(fleet.encounters(1)[0].met, Met::Robot(0));
+    }
+    let truths = |fleet: &Fleet| [0, 1].map(|robot| fleet.robots()[robot].truth());
+    assert_eq!(truths(&first), truths(&second));
+    assert_eq!(truths(&first), truths(&snapshot));
 }
 
 #[test]

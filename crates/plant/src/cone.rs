@@ -194,6 +194,18 @@ impl Query {
     }
 }
 
+/// True if nothing that stands crosses the way between two points; what one of them lies on does not.
+pub(crate) fn is_clear(world: &World, from: Point, to: Point) -> bool {
+    let way = sub(to, from);
+    let candidate = Candidate {
+        at: to,
+        range_m: sqrt(dot(way, way)),
+        facing: 1.0,
+        corner: false,
+    };
+    !hidden(world.obstacles().iter(), usize::MAX, from, &candidate)
+}
+
 /// True if another obstacle crosses the way from the apex to the candidate.
 fn hidden<'a>(
     obstacles: impl Iterator<Item = &'a Obstacle>,

@@ -18,11 +18,13 @@ use crate::moving::{Body, Course, Motion as BodyMotion, Velocity};
 use crate::noise::Noise;
 use crate::params::{self, Params};
 use crate::servo;
-use crate::sonar::{self, Sonar, SonarId, View};
+use crate::sonar::{self, Ping, Sonar, SonarId, View};
 use crate::world::{ShapeError, World};
 
 /// Longest physical step, and the grid it keeps to.
 pub(crate) const STEP_US: u64 = 1000;
+/// No sonar listens for longer after a burst has left.
+const IN_AIR_US: u64 = 40_000;
 
 /// The parts of a plant.
 #[derive(Clone, Debug, Default)]
@@ -51,6 +53,8 @@ pub struct Plant {
     sonar: Sonar,
     mounts: [Option<Mount>; 3],
     pub(crate) world: Arc<World>,
+    /// Pings of other robots that may still be in the air.
+    air: Vec<Ping>,
     pub(crate) wheels_in_air: bool,
 }
 
@@ -118,6 +122,7 @@ impl Plant {
             sonar: Sonar::new(&params.sonar, noise),
             mounts: rig.mounts(),
             world: Arc::new(world),
+            air: Vec::new(),
             wheels_in_air,
         }
     }
@@ -214,10 +219,45 @@ impl Plant {
     /// Ends a trigger pulse now. False if the robot has no such sonar or its echo line is not low: nothing happens
     /// then.
     pub fn trigger(&self, state: &mut State, sonar: SonarId) -> bool {
-        self.view(state, sonar).is_some_and(|view| {
-            self.sonar
-                .trigger(&mut state.sonars, sonar, state.now_us, &self.world, &view)
-        })
+        let Some(view) = self.view(state, sonar) else {
+            return false;
+        };
+        let now_us = state.now_us;
+        let pings = self
+            .sonar
+            .trigger(&mut state.sonars, sonar, now_us, &self.world, &view);
+        if pings {
+            for ping in &self.air {
+                self.overhear(state, sonar, &view, ping);
+            }
+        }
+        pings
+    }
+
+    fn overhear(&self, state: &mut State, sonar: SonarId, view: &View, ping: &Ping) {
+        let (now_us, own) = (state.now_us, &mut state.sonars[sonar.index()]);
+        self.sonar
+            .overhear_ping(own, sonar, now_us, &self.world, view, ping);
+    }
+
+    /// Lets the sonars receive pings of other robots, which have left within the last millisecond.
+    pub fn receive_pings(&mut self, state: &mut State, pings: &[Ping]) {
+        let now_us = state.now_us;
+        self.air.retain(|ping| ping.rise_us + IN_AIR_US > now_us);
+        for sonar in SonarId::ALL {
+            if let Some(view) = self.view(state, sonar).filter(|_| !pings.is_empty()) {
+                for ping in pings {
+                    self.overhear(state, sonar, &view, ping);
+                }
+            }
+        }
+        self.air.extend(pings);
+    }
+
+    /// A sonar as it is now.
+    #[must_use]
+    pub const fn sonar<'a>(&self, state: &'a State, sonar: SonarId) -> &'a sonar::State {
+        &state.sonars[sonar.index()]
     }
 
     /// Passes time up to `until_us` (nothing happens if that is past), reporting events in the order of time.

@@ -15,8 +15,15 @@
 //!   echo, or its second one, obstacle - body - obstacle. With two paired sonars fired one right after the other, the
 //!   second reads a few centimetres short in one of a dozen pings for that reason, and is noisier in the others.
 //!
+//! - *Crosstalk of other robots* ([`Sonar::overhear_ping`]): a burst that comes straight from the sonar of a robot that
+//!   looks here, or now and then its echo.
+//!
 //! *Weakness* is the one measure of an echo that drives these: 1 in motion at about half a metre, growing with the
 //! range up to about a metre, less at rest, more while another burst is in the air.
+
+mod ping;
+
+pub use ping::Ping;
 
 use libm::{cos, floor, pow};
 
@@ -82,6 +89,10 @@ enum Line {
 struct Burst {
     echo_us: [u64; 2],
     axis_rad: f64,
+    /// Where and when it left, and how far away its first echo is.
+    at: [f64; 2],
+    rise_us: u64,
+    range_m: Option<f64>,
 }
 
 /// An edge of the echo line.
@@ -299,6 +310,9 @@ impl Sonar {
         Burst {
             echo_us: [heard_m, second].map(|range_m| range_m.map_or(0, arrival_us)),
             axis_rad: view.axis_rad,
+            at: view.at,
+            rise_us,
+            range_m: heard_m,
         }
     }
 

@@ -8,7 +8,7 @@ use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::moving::{Body, Course, Motion, Repeat, Route, Velocity, Waypoint};
 use rumbo_plant::plant::{Event, Mount, Plant, Rig, Setup};
-use rumbo_plant::sonar::SonarId;
+use rumbo_plant::sonar::{Ping, SonarId};
 use rumbo_plant::world::{Block, Point, ShapeError, Wall, World};
 
 const S: u64 = 1_000_000;
@@ -308,4 +308,69 @@ fn a_copy_of_the_state_meets_the_same_bodies() {
     plant.advance(&mut copy, 2 * S, &mut |_| {});
     assert_eq!(state, copy);
     assert!(plant.truth(&state).contacts > 0);
+}
+
+/// Width of the echo pulse of a robot in an open space that pings at 0, in metres, beside pings of other robots.
+fn pulse_m(world: World, pings: &[Ping]) -> f64 {
+    let mut plant = plant(world);
+    let mut state = plant.start(Pose::default());
+    assert!(plant.trigger(&mut state, SonarId::Front));
+    plant.receive_pings(&mut state, pings);
+    let mut echo_us = [0; 2];
+    plant.advance(&mut state, 60_000, &mut |event| match event {
+        Event::EchoRise { at_us, .. } => echo_us[0] = at_us,
+        Event::EchoFall { at_us, .. } => echo_us[1] = at_us,
+        _ => {}
+    });
+    (echo_us[1] - echo_us[0]) as f64 * 1e-6 * 343.4 / 2.0
+}
+
+#[test]
+fn a_burst_of_a_robot_that_looks_here_ends_the_pulse_at_half_its_way() {
+    let ping = Ping {
+        speaker: 5,
+        number: 1,
+        rise_us: 450,
+        at: [1.11, 0.0],
+        axis_rad: std::f64::consts::PI,
+        range_m: None,
+    };
+    let alone_m = pulse_m(World::empty(), &[]);
+    assert!(alone_m > 6.0, "no echo: {alone_m}");
+    let heard_m = pulse_m(World::empty(), &[ping]);
+    assert!((heard_m - 0.5).abs() < 0.01, "1 m of way: {heard_m}");
+    let later = Ping {
+        rise_us: 10_450,
+        ..ping
+    };
+    let later_m = pulse_m(World::empty(), &[later]);
+    assert!(
+        (later_m - 0.5 - 1.717).abs() < 0.01,
+        "10 ms later: {later_m}"
+    );
+    let away = Ping {
+        axis_rad: 0.0,
+        ..ping
+    };
+    assert_eq!(pulse_m(World::empty(), &[away]), alone_m, "it looks away");
+    let beside = Ping {
+        at: [0.11, 1.0],
+        axis_rad: -std::f64::consts::FRAC_PI_2,
+        ..ping
+    };
+    assert_eq!(
+        pulse_m(World::empty(), &[beside]),
+        alone_m,
+        "this one looks elsewhere"
+    );
+    let behind_a_wall = Wall {
+        from_m: [0.9, -1.0],
+        to_m: [0.9, 1.0],
+        thickness_m: 0.0,
+    };
+    let wall_m = pulse_m(with(vec![], &[behind_a_wall]), &[ping]);
+    assert!(
+        (wall_m - 0.79).abs() < 0.05,
+        "the wall is in its way: {wall_m}"
+    );
 }

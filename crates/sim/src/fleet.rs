@@ -8,6 +8,7 @@
 use crate::sim::Sim;
 use rumbo_plant::contact::Pose;
 use rumbo_plant::moving::{Body, Course, Motion};
+use rumbo_plant::sonar::Ping;
 use rumbo_plant::world::{Obstacle, ShapeError};
 
 /// Longest step, and the grid it keeps to [us].
@@ -21,6 +22,8 @@ pub struct Fleet {
     bodies: Vec<Body>,
     /// Bodies of the world that are no robots.
     movers: usize,
+    /// Pings so far of each sonar of each robot.
+    pings: Vec<[u64; 3]>,
     /// Of each pair, the second before the first in the list: by `pair`.
     closest_m: Vec<f64>,
 }
@@ -102,6 +105,7 @@ impl Fleet {
         }
         let pairs = robots.len() * robots.len().saturating_sub(1) / 2;
         let mut fleet = Self {
+            pings: vec![[0; 3]; robots.len()],
             robots,
             bodies,
             movers,
@@ -143,8 +147,13 @@ impl Fleet {
         }
     }
 
-    /// Each robot gets the poses and velocities of the others.
+    /// Each robot gets the poses and velocities of the others, and their pings of the last step. No sonar is so near to
+    /// another robot's that a burst, 450 us after its trigger, would have arrived before.
     fn meet(&mut self, now_us: u64) {
+        let robots = self.robots.iter().enumerate();
+        let pings: Vec<Vec<Ping>> = std::iter::zip(robots, &mut self.pings)
+            .map(|((index, robot), counts)| robot.pings_since(index, counts))
+            .collect();
         let motions: Vec<Motion> = self.robots.iter().map(Sim::motion).collect();
         for (own, robot) in self.robots.iter_mut().enumerate() {
             let others = motions
@@ -158,6 +167,9 @@ impl Fleet {
                 };
                 robot.meet(self.movers + body, course);
             }
+            let others = pings.iter().enumerate().filter(|(other, _)| *other != own);
+            let heard: Vec<Ping> = others.flat_map(|(_, pings)| pings).copied().collect();
+            robot.receive_pings(&heard);
         }
     }
 

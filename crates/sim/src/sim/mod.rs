@@ -33,6 +33,7 @@ use rumbo_plant::moving::{Body, Course, Motion};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Event, Plant, State, Truth};
+use rumbo_plant::sonar::Ping;
 use rumbo_plant::world::{ShapeError, World};
 use rumbo_wire::{Command, FromRobot};
 use std::sync::{Arc, OnceLock};
@@ -322,6 +323,25 @@ impl Sim {
     /// Puts a body into the world.
     pub(crate) fn join(&mut self, body: Body) -> Result<(), ShapeError> {
         self.plant.add_body(&mut self.state, body)
+    }
+
+    /// The pings since there had been so many of each sonar, which is brought up to date; `robot` is its number among all.
+    pub(crate) fn pings_since(&self, robot: usize, counts: &mut [u64; 3]) -> Vec<Ping> {
+        let mut pings = Vec::new();
+        for sonar in rumbo_plant::sonar::SonarId::ALL {
+            let state = self.plant.sonar(&self.state, sonar);
+            let count = &mut counts[sonar.index()];
+            if *count != state.pings() {
+                *count = state.pings();
+                pings.push(state.last_ping((3 * robot + sonar.index()) as u32));
+            }
+        }
+        pings
+    }
+
+    /// Lets the sonars receive pings of other robots.
+    pub(crate) fn receive_pings(&mut self, pings: &[Ping]) {
+        self.plant.receive_pings(&mut self.state, pings);
     }
 
     /// Sets the course of a body from now on.
