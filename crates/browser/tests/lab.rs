@@ -361,13 +361,21 @@ fn an_edited_world_is_in_what_is_shared_and_is_driven_in_from_the_link_again() {
     let answer = messages.iter().find(is("world")).unwrap();
     assert!(answer.contains(r#""driven":true"#), "{answer}");
     assert!(state(&messages).contains("\"armed\":false"));
+    let opened = Start {
+        edited: lab.share().edited,
+        ..Start::default()
+    };
+    assert!(
+        opened.edited.as_ref().unwrap().contains("Mine"),
+        "{opened:?}"
+    );
+    // What is done by hand from its start on goes into a link too.
+    let clock_us = Cell::new(0);
+    let mut lab = Lab::new(opened, 0.0).unwrap();
+    drive(&mut lab, &clock_us, 1.0);
     lab.order(r#"{"type":"arm"}"#);
     drive(&mut lab, &clock_us, 2.0);
     let shared = lab.share();
-    assert!(
-        shared.edited.as_ref().unwrap().contains("Mine"),
-        "{shared:?}"
-    );
     let start = Start {
         edited: shared.edited.clone(),
         drive: shared.drive.clone(),
