@@ -11,6 +11,7 @@ export const SCENARIOS = {
   'A walled floor of 2.9 x 1.9 m to calibrate in: along its walls': 'Un suelo de 2,9 x 1,9 m con paredes para calibrar: a lo largo de ellas',
   'A lane of boxes: left, right, right, and out to the left': 'Un carril de cajas: izquierda, derecha, derecha y salida a la izquierda',
   'A box and a block of two behind it, on the way to a goal': 'Una caja y detrás un bloque de dos, de camino a un destino',
+  'Two people who cross the way': 'Dos personas que cruzan el paso',
   'An empty floor': 'Un suelo vacío', 'Boxes at random and a goal, another arrangement for each seed': 'Cajas al azar y un destino, distintos con cada semilla',
   'A walled room of 4 x 3 m with boxes': 'Una habitación de 4 x 3 m con cajas', 'A wall across the way at x = 1.20 m': 'Una pared que cierra el paso en x = 1,20 m',
   'A straight wall of 7.5 m along y = 0.65 m': 'Una pared recta de 7,5 m a lo largo de y = 0,65 m',
