@@ -121,10 +121,9 @@ def check_pose(peer, goals, odometry):
     """Mode 7 has a heading at the end, and frames are those of the tree."""
     peer.must("/rumbo/mode/waypoints")
     peer.must("/rumbo/arm")
-    start = place(odometry)
-    _, _, result = goals.must(0.3, 0.0, frame="base_link", heading=math.pi / 2)
     turn = lambda: 2 * math.atan2(odometry[-1].pose.pose.orientation.z, odometry[-1].pose.pose.orientation.w)
-    before = turn()
+    start, before = place(odometry), turn()
+    _, _, result = goals.must(0.3, 0.0, frame="base_link", heading=math.pi / 2)
     assert status_of(result) == GoalStatus.STATUS_SUCCEEDED
     turned = math.remainder(turn() - before - math.pi / 2, 2 * math.pi)
     assert abs(turned) < 0.15 and 0.2 < math.dist(place(odometry), start) < 0.4, (turned, start, place(odometry))
