@@ -106,6 +106,7 @@ pub struct Edge {
 
 impl State {
     /// When the line's next edge is due.
+    #[cfg(target_arch = "x86_64")]
     pub(crate) const fn due_us(&self) -> Option<u64> {
         match self.line {
             Line::Low => None,
