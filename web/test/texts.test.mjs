@@ -32,7 +32,8 @@ test('the texts of the page that scripts put there', () => {
   // What stands in a call, and what is put into one later.
   const calls = [...sources.matchAll(/\b(?:t|said|named)\((?:[^()'`]|'(?:[^'\\]|\\.)*')*/g)].map(([call]) => call);
   const later = [...sources.matchAll(/\b(?:title|label|unit|name): '(?:[^'\\]|\\.)*'/g)].map(([property]) => property).filter((each) => !/'\w+_\w+'/.test(each));
-  const texts = [...calls, ...later].flatMap((part) => [...part.matchAll(/'((?:[^'\\]|\\.)*)'/g)].map((found) => unescaped(found[1] ?? ''))).filter(hasWords);
+  const frames = sources.match(/const KINDS = {.*/)?.[0] ?? '';
+  const texts = [...calls, ...later, frames].flatMap((part) => [...part.matchAll(/'((?:[^'\\]|\\.)*)'/g)].map((found) => unescaped(found[1] ?? ''))).filter(hasWords);
   assert.ok(texts.length > 120, String(texts.length));
   allSpanish(texts);
 });
