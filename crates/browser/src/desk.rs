@@ -152,7 +152,7 @@ impl<T: Target> Desk<T> {
     pub(crate) fn news(&mut self, shown: Option<&Board>) -> Vec<String> {
         let mut messages = Vec::new();
         if !std::mem::replace(&mut self.greeted, true) {
-            messages.extend(ToPage::hello().json());
+            messages.extend(ToPage::hello(&[], 0).json());
         }
         let view = self.lease.view(self.page);
         if self.seat.replace(view) != Some(view) {

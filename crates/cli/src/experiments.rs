@@ -93,7 +93,7 @@ fn check_places(args: &ExperimentsArgs, plan: &Plan) -> Result<Stamp, Failure> {
     guard.check(&args.out.join(REPORT), &stamp.mark())?;
     for scenario in plan.scenarios().filter(|_| args.data) {
         let seed = args.seed.seed;
-        Results::of(&args.out, &scenario.name, seed).check(&guard, scenario, seed)?;
+        Results::of(&args.out, &scenario.name, seed).check(&guard, scenario, &[], seed)?;
     }
     Ok(stamp)
 }

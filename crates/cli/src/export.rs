@@ -158,6 +158,7 @@ fn readings_of(log: &Log) -> Vec<(String, String)> {
         let ending = match source {
             Source::Truth => "instruments.csv".to_owned(),
             Source::Loops => "loops.csv".to_owned(),
+            Source::Others => "others.csv".to_owned(),
             Source::Usart(usart) => format!("printed{usart}.csv"),
         };
         let of_it = log.readings.iter().filter(|each| each.source == source);

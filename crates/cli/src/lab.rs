@@ -7,14 +7,18 @@ use crate::failure::Failure;
 use crate::logs;
 use crate::output;
 use crate::workshop::{self, Workshop};
-use rumbo_experiment::files::Overrides;
+use rumbo_experiment::files::{Kind, Library, Overrides, ScenarioFile, fleet_around};
 use rumbo_lab::{OwnProgram, SimulatedRobot};
 use rumbo_log::Choice;
 use rumbo_sim::debugging::Debugging;
-use rumbo_station::{Lab, LabConfig, Print};
+use rumbo_station::{Lab, LabConfig, Named, Print};
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
 pub(crate) fn lab(args: &mut LabArgs) -> Result<(), Failure> {
+    let scenario = Library::new().scenario(&args.scenario)?;
+    if args.robots > 1 || !scenario.fleet.is_empty() {
+        return browser::show(served_fleet(args, &scenario)?, args.session.serve);
+    }
     let robot = simulated(args)?;
     #[cfg(unix)]
     if args.pty {
@@ -62,16 +66,80 @@ fn simulated(args: &mut LabArgs) -> Result<SimulatedRobot, Failure> {
 }
 
 fn served(args: &LabArgs, robot: SimulatedRobot, echo: Option<Print>) -> Result<Lab, Failure> {
-    let config = LabConfig {
+    let config = config(args, echo)?;
+    rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
+        .map_err(Failure::input)
+}
+
+fn config(args: &LabArgs, echo: Option<Print>) -> Result<LabConfig, Failure> {
+    Ok(LabConfig {
         at: args.session.serve.at(),
         speed: args.speed,
         recording: logs::recording(args.session.out.as_deref()),
         echo,
         #[cfg(feature = "foxglove")]
         bridge: bridge(args.session.bridge)?,
+    })
+}
+
+/// Serves the dashboards of several robots in one world: those of the scenario, or as many as asked for.
+fn served_fleet(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Lab, Failure> {
+    #[cfg(unix)]
+    let alone = args.pty || args.usb_pty || args.gdb.is_some();
+    #[cfg(not(unix))]
+    let alone = args.gdb.is_some();
+    if alone {
+        return Err(Failure::Input(
+            "--gdb, --pty and --usb-pty are for one robot; leave --robots out, and choose a scenario with one robot".into(),
+        ));
+    }
+    let kind = args.setting.robot.as_deref();
+    args.image.compile(kind, Some(&args.scenario))?;
+    let overrides = Overrides {
+        robot: args.setting.robot.clone(),
+        ..args.image.overrides()
     };
-    rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
-        .map_err(Failure::input)
+    let choice = Choice {
+        scenario: scenario.name.clone(),
+        world: args.setting.world.clone(),
+        rig: args.setting.rig.clone(),
+        seed: args.seed.seed,
+    };
+    let library = Library::new().beside(&args.scenario);
+    let text = match scenario.fleet.len() {
+        0 => {
+            let chosen = Overrides {
+                world: choice.world.clone(),
+                rig: choice.rig.clone(),
+                ..overrides.clone()
+            };
+            let setup = Library::new().setup(&args.scenario, &chosen)?;
+            scenario.text.clone() + &fleet_around(&setup, args.robots.into())?
+        }
+        _ if args.robots > 1 => {
+            return Err(Failure::Input(format!(
+                "--robots {}: scenario {} has robots of its own; leave --robots out",
+                args.robots, scenario.name
+            )));
+        }
+        _ => scenario.text.clone(),
+    };
+    let library = library.holding(Kind::Scenario, &scenario.name, &text);
+    let robots = rumbo_lab::fleet(library, overrides, &choice)?;
+    let mut robots = robots
+        .into_iter()
+        .map(|robot| -> Named { (robot.name(), Box::new(robot)) });
+    let first = robots
+        .next()
+        .ok_or_else(|| Failure::Input("there is no robot".into()))?;
+    let others = robots.collect();
+    rumbo_station::serve_fleet(
+        config(args, None)?,
+        first,
+        others,
+        calibrate::in_dashboard(),
+    )
+    .map_err(Failure::input)
 }
 
 /// The port for a debugger, printed to stderr.

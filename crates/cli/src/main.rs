@@ -15,6 +15,7 @@ mod export;
 mod failure;
 mod figures;
 mod flash;
+mod fleet_table;
 mod ghost;
 mod grade;
 mod identify;

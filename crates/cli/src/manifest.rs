@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use rumbo_experiment::files::{
     Kind as File, Library, NativeProgram, Overrides, Port, Setup, TimedText,
 };
-use rumbo_lab::manifest::hash;
+use rumbo_lab::manifest::{OF_FLEET, hash};
 use rumbo_log::Manifest;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -96,6 +96,13 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
             .ok_or_else(|| wrong(&format!("its {file} is missing; the log is damaged")))?;
         library = library.holding(kind, name, text);
     }
+    let of_fleet = manifest.files.iter();
+    let of_fleet = of_fleet.filter_map(|(file, text)| Some((file.strip_prefix(OF_FLEET)?, text)));
+    let mut robots = 0;
+    for (name, text) in of_fleet {
+        library = library.holding(File::Robot, name, text);
+        robots += 1;
+    }
     let (program, firmware) = match manifest.program.as_str() {
         "rumbo" => (NativeProgram::Rumbo, None),
         // `original` in logs of 0.2.0 and before.
@@ -112,7 +119,8 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         )));
     }
     let overrides = Overrides {
-        robot: Some(robot.clone()),
+        // Several robots of several kinds are those of the scenario.
+        robot: (robots < 2).then(|| robot.clone()),
         rig: manifest.rig.clone(),
         world: Some(world.clone()),
         parameters: manifest.parameters.clone(),

@@ -123,7 +123,19 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
         }
     })?;
     let verdict = match recorded.kind {
-        Kind::Run => same(&log, &run::run(&setup, seed)?, recorder.protocol),
+        Kind::Run => {
+            let result = run::run(&setup, seed)?;
+            let own = match &recorded.member {
+                Some(name) => result.robots.iter().find(|robot| robot.scenario == *name),
+                None => Some(&result),
+            };
+            let own = own.ok_or_else(|| {
+                Failure::Input(format!(
+                    "{shown}: its robot is none of its scenario; the log is damaged or forged"
+                ))
+            })?;
+            same(&log, own, recorder.protocol)
+        }
         Kind::Calibration => {
             let again = calibration_run::run_calibration(&setup, seed)?;
             same(&log, &again.result, recorder.protocol)
@@ -133,6 +145,12 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
                 "{shown}: a session in protocol {protocol}, of which only the bytes could be compared, and this program speaks protocol \
                  {PROTOCOL_VERSION}; run it again with the program that recorded it{}",
                 recorder.version
+            )));
+        }
+        Kind::Lab if recorded.member.is_some() => {
+            return Err(Failure::Input(format!(
+                "{shown}: a session of one of several robots, which depends on what was done with the others; only a log of `rumbo run` can \
+                 be run again with several robots"
             )));
         }
         Kind::Lab => session(&log, &setup, seed, recorded)?,

@@ -42,11 +42,12 @@ impl Results {
         self.file(&format!("-usart{usart}.txt"))
     }
 
-    /// Whether all of them may be written.
+    /// Whether all of them may be written; `fleet`: the robots, if there are several.
     pub(crate) fn check(
         &self,
         guard: &Guard,
         scenario: &ScenarioFile,
+        fleet: &[Setup],
         seed: u64,
     ) -> Result<(), Failure> {
         let result = mark(scenario, seed)?;
@@ -55,16 +56,21 @@ impl Results {
             seed,
         };
         guard.check(&self.json(), &result)?;
-        guard.check(&self.file(".mcap"), &log)?;
-        guard.check(
-            &self.file(".truth.csv"),
-            &Mark::table(&Trace::default().csv()),
-        )?;
         // A program's output can look like anything: it belongs to the result beside it.
         let beside = result.is_on(&self.json());
-        (0..USARTS)
-            .filter(|_| !beside)
-            .try_for_each(|usart| guard.check(&self.usart(usart), &result))
+        let check = |files: &Self| {
+            guard.check(&files.file(".mcap"), &log)?;
+            let truth = Mark::table(&Trace::default().csv());
+            guard.check(&files.file(".truth.csv"), &truth)?;
+            (0..USARTS)
+                .filter(|_| !beside)
+                .try_for_each(|usart| guard.check(&files.usart(usart), &result))
+        };
+        if fleet.is_empty() {
+            return check(self);
+        }
+        let mut robots = fleet.iter().map(|robot| &robot.scenario.name);
+        robots.try_for_each(|robot| check(&self.of_robot(robot)))
     }
 
     /// Writes all of them.
@@ -76,14 +82,37 @@ impl Results {
     ) -> Result<(), Failure> {
         let text = serde_json::to_string(result).map_err(Failure::input)?;
         place::write(&self.json(), text + "\n")?;
+        self.write_signals(result)?;
+        for robot in &result.robots {
+            self.of_robot(&robot.scenario).write_signals(robot)?;
+        }
+        let log = |robot: Option<&str>| match robot {
+            Some(robot) => self.of_robot(robot).file(".mcap"),
+            None => self.file(".mcap"),
+        };
+        source.write(log, setup, result)
+    }
+
+    /// The files of one of several robots.
+    fn of_robot(&self, robot: &str) -> Self {
+        Self {
+            folder: self.folder.clone(),
+            stem: format!("{}-{robot}", self.stem),
+        }
+    }
+
+    /// Writes the true signals of a robot, and the output of its USARTs; of several, each has its own.
+    fn write_signals(&self, result: &RunResult) -> Result<(), Failure> {
         for usart in 0..USARTS {
             let said = result.trace.console(usart);
             if !said.is_empty() {
                 place::write(&self.usart(usart), readable(&said))?;
             }
         }
-        place::write(&self.file(".truth.csv"), result.trace.csv())?;
-        source.write(&self.file(".mcap"), setup, result)
+        if !result.robots.is_empty() {
+            return Ok(());
+        }
+        place::write(&self.file(".truth.csv"), result.trace.csv())
     }
 }
 

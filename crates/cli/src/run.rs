@@ -2,6 +2,7 @@
 
 use crate::args::RunArgs;
 use crate::failure::Failure;
+use crate::fleet_table;
 use crate::interrupt;
 use crate::observe;
 use crate::output::{self, figure};
@@ -73,11 +74,12 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         }
         // A thousand traces would fill the memory; what is printed needs none.
         result.trace = Trace::default();
+        result.robots.clear();
         results.push(result);
         let end = interrupted();
         if results.len() == runs || end {
             let results = std::mem::take(&mut results);
-            progress.suspend(|| report(&setup.scenario, &results))?;
+            progress.suspend(|| report(setup, &results))?;
         }
         match end {
             true => Err(Failure::Interrupted),
@@ -130,9 +132,12 @@ fn check_places(args: &RunArgs, setups: &[Setup]) -> Result<(), Failure> {
     };
     let results: Vec<_> = args.scenarios.iter().zip(setups).map(named).collect();
     place::distinct(&results)?;
-    for Setup { scenario, .. } in setups {
+    for Setup {
+        scenario, fleet, ..
+    } in setups
+    {
         for seed in seeds(args) {
-            Results::of(folder, &scenario.name, seed).check(&guard, scenario, seed)?;
+            Results::of(folder, &scenario.name, seed).check(&guard, scenario, fleet, seed)?;
         }
     }
     Ok(())
@@ -163,7 +168,8 @@ pub(crate) fn progress_bar(runs: usize) -> ProgressBar {
 }
 
 /// All runs of one scenario: each metric's range over the seeds against its limits, and why runs did not pass.
-fn report(scenario: &ScenarioFile, results: &[RunResult]) -> Result<(), Failure> {
+fn report(setup: &Setup, results: &[RunResult]) -> Result<(), Failure> {
+    let scenario = &setup.scenario;
     let passes = results.iter().filter(|result| result.pass).count();
     let seeds = match results {
         [first, .., last] => format!(
@@ -182,6 +188,7 @@ fn report(scenario: &ScenarioFile, results: &[RunResult]) -> Result<(), Failure>
     for (metric, value) in results.iter().flat_map(|result| &result.metrics) {
         values.entry(metric).or_default().push(*value);
     }
+    let of_robots = fleet_table::take(setup, &mut values);
     let mut rows = Vec::new();
     if results.len() > 1 {
         rows.push(
@@ -196,6 +203,9 @@ fn report(scenario: &ScenarioFile, results: &[RunResult]) -> Result<(), Failure>
             .map(|(metric, values)| row(scenario, metric, values)),
     );
     output::table(&rows)?;
+    for table in of_robots {
+        output::table(&table)?;
+    }
     for result in results {
         for failure in &result.failures {
             output::line(&format!("  FAILED, seed {}: {failure}", result.seed))?;
@@ -228,7 +238,7 @@ fn row(scenario: &ScenarioFile, metric: &str, mut values: Vec<f64>) -> Vec<Strin
 }
 
 /// A metric is no number where what it measures did not happen, such as settling.
-fn in_words(value: f64) -> String {
+pub(crate) fn in_words(value: f64) -> String {
     if value.is_nan() {
         "never".into()
     } else {

@@ -11,15 +11,17 @@ use crate::place;
 use rumbo_control::Wheels;
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::run::RunResult;
-use rumbo_lab::{manifest, scene};
-use rumbo_log::{Burst, Choice, Kind, Manifest, MapPose, Outcome, Said, Source as Origin, Truth};
+use rumbo_lab::{manifest, others, scene};
+use rumbo_log::{
+    Burst, Choice, Kind, Manifest, MapPose, Other, Outcome, Said, Scene, Source as Origin, Truth,
+};
 use rumbo_session::Shown;
 use rumbo_session::headless::Run;
-use rumbo_sim::loop_signals;
 use rumbo_sim::trace::{SAMPLE_US, Sample, Trace};
+use rumbo_sim::{READING_US, loop_signals};
 use rumbo_station::headless::{record_run, record_run_in};
 use rumbo_wire::FromRobot;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Most runs of a command that are recorded by default: all of them, or the first that miss a limit.
 const KEPT: usize = 20;
@@ -33,20 +35,44 @@ pub(crate) struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn manifest(&self, setup: &Setup, seed: u64) -> Manifest {
-        Manifest {
+    /// Passes the contents of a run's logs to `write`, one for each robot.
+    fn each_robot(
+        &self,
+        setup: &Setup,
+        result: &RunResult,
+        mut write: impl FnMut(&Manifest, Run<'_>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let manifest = Manifest {
             step_us: SAMPLE_US,
             baud: 9_600,
-            ..manifest::of(self.kind, setup, self.overrides, seed)
+            ..manifest::of(self.kind, setup, self.overrides, result.seed)
+        };
+        if result.robots.is_empty() {
+            return self.with_run(setup, result, Around::default(), |run| {
+                write(&manifest, run)
+            });
         }
+        for (number, (own, robot)) in std::iter::zip(&setup.fleet, &result.robots).enumerate() {
+            let around = Around {
+                others: others(&setup.fleet, number),
+                places: places(&result.robots, number),
+            };
+            let manifest = Manifest {
+                member: Some(robot.scenario.clone()),
+                ..manifest.clone()
+            };
+            self.with_run(own, robot, around, |run| write(&manifest, run))?;
+        }
+        Ok(())
     }
 
-    /// Passes the contents of a run's log to `write`.
+    /// Passes the contents of a robot's log to `write`.
     fn with_run<T>(
         &self,
         setup: &Setup,
         result: &RunResult,
-        write: impl FnOnce(&Manifest, Run<'_>) -> Result<T, Failure>,
+        around: Around,
+        write: impl FnOnce(Run<'_>) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
         let choice = Choice {
             scenario: result.scenario.clone(),
@@ -57,13 +83,19 @@ impl Source<'_> {
         let of_seed = &*setup.of_seed(result.seed)?;
         let trace = &result.trace;
         let link: Vec<_> = trace.link.iter().map(burst).collect();
+        let mut shown = shown(trace);
+        shown.extend(around.places);
+        let scene = Scene {
+            others: around.others,
+            ..scene(self.library, of_seed, choice)?
+        };
         let run = Run {
-            scene: Some(scene(self.library, of_seed, choice)?),
+            scene: Some(scene),
             parameters: trace.parameters,
             truths: &trace.samples.iter().map(truth).collect::<Vec<_>>(),
             messages: &messages(trace),
             said: &trace.consoles.iter().map(said).collect::<Vec<_>>(),
-            shown: &shown(trace),
+            shown: &shown,
             link: &link,
             outcome: Outcome {
                 pass: result.pass,
@@ -71,22 +103,48 @@ impl Source<'_> {
                 failures: result.failures.clone(),
             },
         };
-        write(&self.manifest(setup, result.seed), run)
+        write(run)
     }
 
-    /// Writes the log of a run to the requested path.
+    /// Writes the log of a run, of several robots one for each, to the path that is requested for it.
     pub(crate) fn write(
         &self,
-        path: &Path,
+        path_of: impl Fn(Option<&str>) -> PathBuf,
         setup: &Setup,
         result: &RunResult,
     ) -> Result<(), Failure> {
-        self.with_run(setup, result, |manifest, run| {
+        self.each_robot(setup, result, |manifest, run| {
+            let path = &path_of(manifest.member.as_deref());
             place::make(path, |place| {
                 record_run(place, manifest, run).map_err(|error| Failure::input(error.of(path)))
             })
         })
     }
+}
+
+/// The other robots around one of several.
+#[derive(Default)]
+struct Around {
+    others: Vec<Other>,
+    /// Where they were.
+    places: Vec<(u64, Shown)>,
+}
+
+/// Where the others of a robot were, as often as instruments are read.
+fn places(robots: &[RunResult], number: usize) -> Vec<(u64, Shown)> {
+    let samples = robots[number].trace.samples.len();
+    let others = robots.iter().enumerate();
+    let others: Vec<_> = others.filter(|(other, _)| *other != number).collect();
+    let every = (READING_US / SAMPLE_US) as usize;
+    let at = |index: usize| {
+        let t_us = micros(robots[number].trace.samples[index].t_s);
+        let poses = others.iter().filter_map(|(_, robot)| {
+            let at = truth(robot.trace.samples.get(index)?).1.pose;
+            Some(Other::signals(&robot.scenario, at))
+        });
+        (t_us, (Origin::Others, poses.flatten().collect()))
+    };
+    (0..samples).step_by(every).map(at).collect()
 }
 
 /// The logs that a command adds to those of sessions.
@@ -115,22 +173,22 @@ impl Kept {
         let Some(folder) = &self.folder else {
             return;
         };
-        if self.logs.len() == KEPT || (self.many && result.pass) {
+        if self.logs.len() >= KEPT || (self.many && result.pass) {
             return;
         }
-        let written = source.with_run(setup, result, |manifest, run| {
+        let mut logs = Vec::new();
+        let written = source.each_robot(setup, result, |manifest, run| {
             let manifest = Manifest {
                 started: self.begun.clone(),
                 ..manifest.clone()
             };
-            record_run_in(folder, &manifest, run).map_err(Failure::input)
+            logs.push(record_run_in(folder, &manifest, run).map_err(Failure::input)?);
+            Ok(())
         });
-        match written {
-            Ok(path) => self.logs.push(path),
-            Err(failure) => {
-                self.folder = None;
-                output::note(&format!("not recording: {failure}"));
-            }
+        self.logs.extend(logs);
+        if let Err(failure) = written {
+            self.folder = None;
+            output::note(&format!("not recording: {failure}"));
         }
     }
 

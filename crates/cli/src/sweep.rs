@@ -241,7 +241,13 @@ impl Writer<'_> {
         };
         let setup = sweep.plan.setup(self.setup, row.point)?;
         let result = run::run(&setup, row.seed)?;
-        source.write(path, &setup, &result)
+        // The page leads to the first robot's.
+        let first = result.robots.first().map(|robot| robot.scenario.as_str());
+        let log = |robot: Option<&str>| match robot {
+            Some(other) if robot != first => path.with_extension(format!("{other}.mcap")),
+            _ => path.to_owned(),
+        };
+        source.write(log, &setup, &result)
     }
 }
 

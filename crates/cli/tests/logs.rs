@@ -58,6 +58,49 @@ fn only_log(folder: &Path) -> PathBuf {
 }
 
 #[test]
+fn each_of_several_robots_has_a_log_with_the_others_that_runs_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = "title = \"t\"\nrobot = \"memoria\"\nrig = \"final\"\nworld = \"open\"\nmode = \"wheel_speed\"\nduration_s = 3\n\
+        [[command]]\nat_s = 0.4\nspeed_rpm = 40\n[[command]]\nat_s = 0.5\narm = true\n\
+        [[fleet]]\nname = \"east\"\n[[fleet]]\nname = \"west\"\nstart = { x_m = 0.7, heading_deg = 180 }\n";
+    std::fs::write(folder.path().join("two.toml"), scenario).unwrap();
+    let ran = rumbo(&["run", "two.toml", "--out", "out"], folder.path());
+    assert_eq!(ran.status.code(), Some(0), "{}", text(&ran.stderr));
+    let table = text(&ran.stdout);
+    assert!(
+        table.contains("robot_contacts") && table.contains("east-west"),
+        "{table}"
+    );
+    for (own, other) in [("east", "west"), ("west", "east")] {
+        let path = format!("out/two-1-{own}.mcap");
+        let log = log_file::read(&folder.path().join(&path)).unwrap();
+        assert_eq!(log.manifest.as_ref().unwrap().member.as_deref(), Some(own));
+        let seen: Vec<f64> = log
+            .readings
+            .iter()
+            .filter_map(|each| each.signal(&format!("{other}_x_m")))
+            .collect();
+        assert!(seen.len() > 90, "{}", seen.len());
+        assert!(
+            (seen[0] - seen[50]).abs() > 0.05,
+            "the other drives: {seen:?}"
+        );
+        let again = rumbo(&["rerun", &path], folder.path());
+        assert_eq!(
+            again.status.code(),
+            Some(0),
+            "{}{}",
+            text(&again.stdout),
+            text(&again.stderr)
+        );
+    }
+    // Files of another scenario of that name are kept.
+    std::fs::write(folder.path().join("out/two-1-east.truth.csv"), "mine").unwrap();
+    let refused = rumbo(&["run", "two.toml", "--out", "out"], folder.path());
+    assert_eq!(refused.status.code(), Some(2), "{}", text(&refused.stderr));
+}
+
+#[test]
 fn a_run_is_recorded_whole_and_the_same_run_is_the_same_file() {
     let folder = tempfile::tempdir().unwrap();
     for out in ["one", "two"] {

@@ -49,7 +49,6 @@ pub fn run_calibration(setup: &Setup, seed: u64) -> Result<CalibrationRun, FileE
     }
     trace.link = sim.take_tapped();
     let result = RunResult {
-        path: None,
         scenario: setup.scenario.name.clone(),
         seed,
         pass: found.is_ok(),
@@ -60,9 +59,8 @@ pub fn run_calibration(setup: &Setup, seed: u64) -> Result<CalibrationRun, FileE
             .map(ToString::to_string)
             .into_iter()
             .collect(),
-        notes: Vec::new(),
-        ended: None,
         trace,
+        ..RunResult::default()
     };
     Ok(CalibrationRun { found, sim, result })
 }

@@ -15,6 +15,7 @@ use crate::operator::Operator;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_emulator::observe::waveform::Waveform;
 use rumbo_sim::Sim;
+use rumbo_sim::fleet::Fleet;
 use rumbo_sim::mega::Mega;
 use rumbo_sim::trace::{SAMPLE_US, Trace};
 use serde::Serialize;
@@ -48,18 +49,36 @@ pub struct RunResult {
     /// How the program ended, if it could not go on.
     #[serde(skip)]
     pub ended: Option<String>,
-    /// Ground truth.
+    /// Ground truth; of several robots each has its own.
     #[serde(skip)]
     pub trace: Trace,
+    /// The results of the robots, if there are several, each by its name and without limits.
+    #[serde(skip)]
+    pub robots: Vec<RunResult>,
 }
 
-/// A run in progress.
-pub struct Run<'a> {
+impl RunResult {
+    /// A robot has driven a wheel.
+    fn drove(&self) -> bool {
+        self.trace.drove() || self.robots.iter().any(RunResult::drove)
+    }
+}
+
+/// A robot in a run, its commands, and what is known of it.
+struct Member<'a> {
     setup: &'a Setup,
-    seed: u64,
-    sim: Sim,
     operator: Operator<&'a Setup>,
     trace: Trace,
+}
+
+/// A run in progress: of one robot, or of all in a world.
+pub struct Run<'a> {
+    /// The whole.
+    setup: &'a Setup,
+    seed: u64,
+    fleet: Fleet,
+    /// Its robots, in order.
+    members: Vec<Member<'a>>,
     end_us: u64,
     /// End of the current sample [us].
     sample_us: u64,
@@ -69,67 +88,92 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    pub(crate) fn new(setup: &'a Setup, seed: u64) -> Result<Self, FileError> {
-        let mut sim = setup.sim(seed)?;
-        let mut operator = Operator::new(setup);
-        operator.brief(&mut sim)?;
-        sim.tap_link();
+    /// `robots` are those of `setup`, prepared for the seed.
+    pub(crate) fn new(
+        setup: &'a Setup,
+        robots: impl IntoIterator<Item = &'a Setup>,
+        seed: u64,
+    ) -> Result<Self, FileError> {
         let end_us = (setup.scenario.duration_s * 1e6) as u64;
-        let mut trace = Trace {
-            parameters: parameters(setup)?,
-            ..Trace::default()
-        };
-        trace.samples.reserve((end_us / SAMPLE_US) as usize + 1);
+        let (mut sims, mut members) = (Vec::new(), Vec::new());
+        for robot in robots {
+            let mut sim = robot.sim(seed)?;
+            let mut operator = Operator::new(robot);
+            operator.brief(&mut sim)?;
+            sim.tap_link();
+            let mut trace = Trace {
+                parameters: parameters(robot)?,
+                ..Trace::default()
+            };
+            trace.samples.reserve((end_us / SAMPLE_US) as usize + 1);
+            sims.push(sim);
+            members.push(Member {
+                setup: robot,
+                operator,
+                trace,
+            });
+        }
+        let fleet = Fleet::new(sims).map_err(|error| {
+            FileError::Setting(format!("scenario {}: {error}", setup.scenario.name))
+        })?;
         Ok(Self {
             setup,
             seed,
-            sample_us: sim.now_us(),
-            sim,
-            operator,
-            trace,
+            sample_us: fleet.now_us(),
+            fleet,
+            members,
             end_us,
             waves: None,
             undrawn: Ok(()),
         })
     }
 
-    /// Robot and program.
+    /// Robot and program; of several the first.
     pub fn sim(&mut self) -> &mut Sim {
-        &mut self.sim
+        self.fleet.first_mut()
     }
 
     pub(crate) fn mega(&self) -> Option<&Mega> {
-        self.sim.mega()
+        self.fleet.first().mega()
     }
 
     /// The messages received from the robot so far.
     #[cfg(feature = "host")]
     pub(crate) fn received(&self) -> &[rumbo_sim::trace::TimedMessage] {
-        &self.operator.received
+        &self.members[0].operator.received
     }
 
     /// Ground truth so far.
     #[cfg(feature = "host")]
     pub(crate) fn trace(&self) -> &Trace {
-        &self.trace
+        &self.members[0].trace
     }
 
-    /// The time is over, or the program has ended.
+    /// The time is over, or a program has ended.
     pub fn is_over(&self) -> bool {
-        self.sim.now_us() >= self.end_us || self.sim.verdict().is_some()
+        self.fleet.now_us() >= self.end_us || self.has_ended()
+    }
+
+    fn has_ended(&self) -> bool {
+        let mut robots = self.fleet.robots().iter();
+        robots.any(|robot| robot.verdict().is_some())
     }
 
     /// Advances to the end of a sample, or to where a debugger halts the program.
     pub fn advance(&mut self) {
-        if self.sim.now_us() >= self.sample_us {
-            self.operator.step(&mut self.sim);
-            self.sample_us = (self.sim.now_us() + SAMPLE_US).min(self.end_us);
+        if self.fleet.now_us() >= self.sample_us {
+            for (sim, member) in std::iter::zip(self.fleet.robots_mut(), &mut self.members) {
+                member.operator.step(sim);
+            }
+            self.sample_us = (self.fleet.now_us() + SAMPLE_US).min(self.end_us);
         }
-        self.sim.advance(self.sample_us);
+        self.fleet.advance(self.sample_us);
         self.draw_levels();
-        if self.sim.now_us() >= self.sample_us || self.sim.verdict().is_some() {
-            self.trace.sample(&self.sim);
-            self.trace.listen(&mut self.sim);
+        if self.fleet.now_us() >= self.sample_us || self.has_ended() {
+            for (sim, member) in std::iter::zip(self.fleet.robots_mut(), &mut self.members) {
+                member.trace.sample(sim);
+                member.trace.listen(sim);
+            }
         }
     }
 
@@ -139,7 +183,7 @@ impl<'a> Run<'a> {
     }
 
     fn draw_levels(&mut self) {
-        if let (Some(waves), Some(mega)) = (&mut self.waves, self.sim.mega_mut()) {
+        if let (Some(waves), Some(mega)) = (&mut self.waves, self.fleet.first_mut().mega_mut()) {
             for level in mega.chip_mut().take_levels() {
                 if self.undrawn.is_ok() {
                     self.undrawn = waves.put(level);
@@ -155,54 +199,99 @@ impl<'a> Run<'a> {
     pub(crate) fn finish_drawing(&mut self) -> io::Result<()> {
         self.draw_levels();
         std::mem::replace(&mut self.undrawn, Ok(()))?;
-        match (self.waves.take(), self.sim.mega()) {
+        match (self.waves.take(), self.fleet.first().mega()) {
             (Some(waves), Some(mega)) => waves.finish(mega.chip().cycle()),
             _ => Ok(()),
         }
     }
 
     fn judge(mut self) -> RunResult {
-        let (setup, scenario) = (self.setup, &self.setup.scenario);
-        self.trace.messages = self.operator.received;
-        self.trace.link = self.sim.take_tapped();
-        let metrics = metrics::compute(setup, &self.sim, &self.trace);
-        let mut failures = self.operator.complaints;
-        let verdict = self.sim.verdict();
-        let ended = verdict.is_some();
-        failures.extend(verdict.clone());
-        let mut notes = self.operator.notes;
-        notes.extend(self.sim.mega().map(Mega::notes).into_iter().flatten());
+        let members = std::mem::take(&mut self.members);
+        let robots = std::iter::zip(self.fleet.robots_mut(), members);
+        let mut robots: Vec<RunResult> = robots
+            .map(|(sim, member)| member.result(sim, self.seed))
+            .collect();
+        let mut whole = match &mut robots[..] {
+            [only] => std::mem::take(only),
+            _ => together(&self.fleet, robots),
+        };
+        let scenario = &self.setup.scenario;
+        whole.scenario.clone_from(&scenario.name);
+        whole.path.clone_from(&scenario.path);
         // What its program could no longer do is not judged: the verdict suffices.
-        let limits = scenario.limits.iter().filter(|_| !ended);
-        for (name, bounds) in limits {
-            match metrics.get(name) {
-                Some(value) if bounds.admit(*value) => {}
-                Some(value) if value.is_finite() => {
-                    failures.push(format!("{name} = {value:.4}: limit {bounds}"));
-                }
-                // The measured event did not happen.
-                Some(_) => failures.push(format!("{name} = never: limit {bounds}")),
-                None if !self.trace.drove() => failures.push(format!(
-                    "{name} = never: limit {bounds}; the robot was not armed, or its program drove no wheel"
-                )),
-                None => failures.push(format!(
-                    "{name}: this scenario has no such metric; {}",
-                    instead(name, &metrics)
-                )),
-            }
+        if whole.ended.is_none() {
+            whole.failures.extend(missed(self.setup, &whole));
         }
+        whole.pass = whole.failures.is_empty();
+        whole
+    }
+}
+
+impl Member<'_> {
+    /// What became of it, not yet judged by limits.
+    fn result(mut self, sim: &mut Sim, seed: u64) -> RunResult {
+        self.trace.messages = self.operator.received;
+        self.trace.link = sim.take_tapped();
+        let mut failures = self.operator.complaints;
+        let ended = sim.verdict();
+        failures.extend(ended.clone());
+        let mut notes = self.operator.notes;
+        notes.extend(sim.mega().map(Mega::notes).into_iter().flatten());
         RunResult {
-            scenario: scenario.name.clone(),
-            seed: self.seed,
-            path: scenario.path.clone(),
-            pass: failures.is_empty(),
-            metrics,
+            scenario: self.setup.scenario.name.clone(),
+            seed,
+            metrics: metrics::compute(self.setup, sim, &self.trace),
             failures,
             notes,
-            ended: verdict,
+            ended,
             trace: self.trace,
+            ..RunResult::default()
         }
     }
+}
+
+/// The result of several robots: with the metrics of each and of each pair after their names, and of all.
+fn together(fleet: &Fleet, robots: Vec<RunResult>) -> RunResult {
+    let all = |what: fn(&RunResult) -> &[String]| -> Vec<String> {
+        let robots = robots.iter();
+        let named = robots.flat_map(|robot| what(robot).iter().map(move |text| (robot, text)));
+        named
+            .map(|(robot, text)| format!("{}: {text}", robot.scenario))
+            .collect()
+    };
+    RunResult {
+        seed: robots.first().map_or(0, |first| first.seed),
+        metrics: metrics::of_fleet(fleet, &robots),
+        failures: all(|robot| &robot.failures),
+        notes: all(|robot| &robot.notes),
+        ended: robots.iter().find_map(|robot| robot.ended.clone()),
+        robots,
+        ..RunResult::default()
+    }
+}
+
+/// The limits that a result misses, a line each.
+fn missed(setup: &Setup, result: &RunResult) -> Vec<String> {
+    let metrics = &result.metrics;
+    let mut failures = Vec::new();
+    for (name, bounds) in &setup.scenario.limits {
+        match metrics.get(name) {
+            Some(value) if bounds.admit(*value) => {}
+            Some(value) if value.is_finite() => {
+                failures.push(format!("{name} = {value:.4}: limit {bounds}"));
+            }
+            // The measured event did not happen.
+            Some(_) => failures.push(format!("{name} = never: limit {bounds}")),
+            None if !result.drove() => failures.push(format!(
+                "{name} = never: limit {bounds}; the robot was not armed, or its program drove no wheel"
+            )),
+            None => failures.push(format!(
+                "{name}: this scenario has no such metric; {}",
+                instead(name, metrics)
+            )),
+        }
+    }
+    failures
 }
 
 /// The parameters of a robot before the first command, if it has a table of them.
@@ -240,9 +329,14 @@ pub fn run_by<E: From<FileError>>(
     seed: u64,
     go_on: impl FnOnce(&mut Run<'_>) -> Result<(), E>,
 ) -> Result<RunResult, E> {
-    let setup = &*setup.of_seed(seed)?;
-    let setup = &*prepare(setup, seed)?;
-    let mut run = Run::new(setup, seed)?;
+    let mut robots = Vec::new();
+    for robot in setup.robots() {
+        robots.push(match robot.of_seed(seed)? {
+            Cow::Borrowed(robot) => prepare(robot, seed)?,
+            Cow::Owned(robot) => Cow::Owned(prepare(&robot, seed)?.into_owned()),
+        });
+    }
+    let mut run = Run::new(setup, robots.iter().map(|robot| &**robot), seed)?;
     go_on(&mut run)?;
     Ok(run.judge())
 }

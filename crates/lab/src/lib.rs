@@ -5,17 +5,20 @@
 //! ([`Cable`]), a debugger.
 
 mod calibration;
+mod fleet;
 mod hash;
 pub mod manifest;
 mod prepare;
 mod program;
 mod robot;
 mod scene;
+mod sight;
 mod world;
 
 pub use calibration::calibration;
+pub use fleet::{FleetRobot, fleet};
 pub use hash::{recorded_hash, run_hash};
 pub use program::{Made, Make, OwnProgram, Workshop, problem};
 pub use robot::{Cable, SimulatedRobot, type_to};
-pub use scene::scene;
+pub use scene::{others, scene};
 pub use world::EDITED;

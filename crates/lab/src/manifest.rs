@@ -4,12 +4,21 @@ use rumbo_experiment::MODEL;
 use rumbo_experiment::files::firmware;
 use rumbo_experiment::files::{NativeProgram, Overrides, Port, Setup, TimedText};
 use rumbo_log::{Kind, Manifest};
+use std::collections::BTreeMap;
 use std::path::Path;
+
+/// The names of the robots' files begin with it where there are several robots.
+pub const OF_FLEET: &str = "robot ";
 
 /// The manifest of a setup as these overrides made it; `step_us` and the time are for the one who runs it.
 #[must_use]
 pub fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manifest {
-    let program = match (&overrides.firmware, setup.program) {
+    // Of several robots each may have a program of its own, which the scenario says.
+    let program = match setup.fleet.len() {
+        0 => setup.program,
+        _ => overrides.program,
+    };
+    let program = match (&overrides.firmware, program) {
         (Some(image), _) => image.display().to_string(),
         (None, NativeProgram::Rumbo) => "rumbo".into(),
         (None, NativeProgram::Baseline) => "baseline".into(),
@@ -19,6 +28,11 @@ pub fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manife
         ("robot", &setup.robot.text),
         ("world", &setup.world.text),
     ];
+    let own = |(name, text): (&str, &String)| (name.to_owned(), text.clone());
+    let mut files: BTreeMap<String, String> = files.map(own).into();
+    for robot in setup.fleet.iter().map(|each| &each.robot) {
+        files.insert(format!("{OF_FLEET}{}", robot.name), robot.text.clone());
+    }
     Manifest {
         kind,
         version: env!("CARGO_PKG_VERSION").into(),
@@ -26,7 +40,10 @@ pub fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manife
         scenario: Some(setup.scenario.name.clone()),
         robot: Some(setup.robot.name.clone()),
         world: Some(setup.world.name.clone()),
-        rig: Some(setup.scenario.rig.clone()),
+        rig: match setup.fleet.len() {
+            0 => Some(setup.scenario.rig.clone()),
+            _ => overrides.rig.clone(),
+        },
         wiring: overrides.wiring.clone(),
         program,
         image: overrides.firmware.as_deref().and_then(hash),
@@ -34,9 +51,7 @@ pub fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manife
         parameters: overrides.parameters.clone(),
         texts: lines(&overrides.texts, Port::Link),
         usb_texts: lines(&overrides.texts, Port::Usb),
-        files: files
-            .map(|(name, text)| (name.to_owned(), text.clone()))
-            .into(),
+        files,
         ..Manifest::default()
     }
 }

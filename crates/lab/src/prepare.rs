@@ -2,7 +2,7 @@
 
 use crate::manifest;
 use crate::program::Held;
-use crate::scene::{first_commands, scene};
+use crate::scene::{first_commands, others, scene};
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
 use rumbo_experiment::run;
@@ -10,7 +10,7 @@ use rumbo_log::{Choice, Kind, Manifest, Scene};
 use rumbo_sim::{Config, Sim};
 use rumbo_wire::Command;
 
-/// A simulation at time 0 and its surroundings.
+/// A robot at time 0 and its surroundings.
 pub(crate) struct Prepared {
     pub(crate) sim: Sim,
     pub(crate) mode: ModeId,
@@ -40,6 +40,41 @@ pub(crate) fn prepare(
         manifest.image = Some(held.hash.clone());
     }
     manifest.remember(memory);
+    ready(library, &setup, choice, memory, manifest)
+}
+
+/// Prepares the several robots of the page's choice; `memories` are what their EEPROMs hold, as far as they hold any.
+pub(crate) fn prepare_fleet(
+    library: &Library,
+    overrides: &Overrides,
+    choice: &Choice,
+    memories: &[Vec<u8>],
+) -> Result<Vec<Prepared>, FileError> {
+    let overrides = Overrides {
+        world: choice.world.clone(),
+        rig: choice.rig.clone(),
+        ..overrides.clone()
+    };
+    let setup = library.setup(&choice.scenario, &overrides)?;
+    let robots = setup.fleet.iter().enumerate().map(|(number, own)| {
+        let memory = memories.get(number).map_or(&[][..], Vec::as_slice);
+        let mut manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
+        manifest.member = Some(own.scenario.name.clone());
+        manifest.remember(memory);
+        let mut prepared = ready(library, own, choice.clone(), memory, manifest)?;
+        prepared.scene.others = others(&setup.fleet, number);
+        Ok(prepared)
+    });
+    robots.collect()
+}
+
+fn ready(
+    library: &Library,
+    setup: &Setup,
+    choice: Choice,
+    memory: &[u8],
+    manifest: Manifest,
+) -> Result<Prepared, FileError> {
     let setup = setup.of_seed(choice.seed)?;
     let ready = run::prepare(&setup, choice.seed)?;
     Ok(Prepared {

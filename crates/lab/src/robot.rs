@@ -2,17 +2,16 @@
 
 use crate::prepare::{Prepared, prepare};
 use crate::program::{Held, Make, OwnProgram};
+use crate::sight;
 use crate::world;
-use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_emulator::observe::profile::Profile;
 use rumbo_experiment::files::{FileError, Library, Overrides};
-use rumbo_log::{Choice, Level, Manifest, MapPose, ProgramState, Scene, Source, Truth};
+use rumbo_log::{Choice, Level, Manifest, ProgramState, Scene, Truth};
 use rumbo_session::{Abilities, EditedWorld, LinkNews, Shown, Standing, Target, TargetError};
+use rumbo_sim::Sim;
 use rumbo_sim::boards::Board;
 use rumbo_sim::debugging::Debugging;
-use rumbo_sim::mega::firmware::Language;
-use rumbo_sim::{READING_US, Sim, loop_signals};
 use rumbo_wire::Command;
 use std::collections::VecDeque;
 
@@ -217,47 +216,17 @@ impl Target for SimulatedRobot {
     }
 
     fn abilities(&self) -> Abilities {
-        let firmware = self.sim.mega().map(|mega| mega.firmware());
-        let text = firmware.is_some_and(|firmware| firmware.language() == Language::Text);
-        Abilities {
-            pace: true,
-            reset: true,
-            clock: true,
-            port: false,
-            typing: true,
-            text: text.then_some(self.mode),
-        }
+        sight::abilities(&self.sim, self.mode)
     }
 
     fn truth(&self) -> Option<Truth> {
-        let truth = self.sim.truth();
-        let [left, right] = truth.wheel_rad_s;
-        Some(Truth {
-            pose: MapPose {
-                x_m: truth.pose.x_m,
-                y_m: truth.pose.y_m,
-                heading_rad: truth.pose.heading_rad,
-            },
-            wheel_rad_s: Wheels { left, right },
-            range_m: truth.range_m,
-            servo_rad: truth.servo_rad,
-            contact: truth.touching,
-            battery_v: truth.battery_v,
-        })
+        Some(sight::truth(&self.sim))
     }
 
     fn shown(&mut self) -> Vec<Shown> {
-        let now_us = self.sim.now_us();
-        if now_us < self.reading_due_us {
-            return Vec::new();
-        }
-        self.reading_due_us = now_us + READING_US;
-        match self.sim.loops() {
-            Some(loops) => vec![(Source::Loops, loop_signals(&loops))],
-            None if self.sim.mega().is_some() => {
-                vec![(Source::Truth, self.sim.read_instruments())]
-            }
-            None => Vec::new(),
+        match sight::reading_due(&self.sim, &mut self.reading_due_us) {
+            true => sight::shown(&mut self.sim).into_iter().collect(),
+            false => Vec::new(),
         }
     }
 
@@ -266,11 +235,7 @@ impl Target for SimulatedRobot {
     }
 
     fn consoles(&mut self) -> Vec<(u8, Vec<u8>)> {
-        let Some(mega) = self.sim.mega_mut() else {
-            return Vec::new();
-        };
-        let said = (0..4).map(|usart| (usart, mega.take_console(usart)));
-        let said: Vec<_> = said.filter(|(_, bytes)| !bytes.is_empty()).collect();
+        let said = sight::consoles(&mut self.sim);
         if let (Some(usb), Some((USB, bytes))) = (&mut self.usb, said.first()) {
             usb.write(bytes);
         }

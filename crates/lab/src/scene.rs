@@ -4,7 +4,8 @@ use rumbo_control::SonarId;
 use rumbo_experiment::files::TimedCommand;
 use rumbo_experiment::files::{FileError, Kind, Library, ScenarioFile, Setup, goal_seen_from};
 use rumbo_log::{
-    Choice, Experiment, MapPose, Mover, Obstacle, Repeat, RoutePlan, Scene, SonarMount, TimedPose,
+    Choice, Experiment, MapPose, Mover, Obstacle, Other, Repeat, RoutePlan, Scene, SonarMount,
+    TimedPose,
 };
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::moving;
@@ -68,6 +69,7 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
         },
         obstacles: obstacles.collect(),
         movers: world.movers.iter().map(mover).collect(),
+        others: Vec::new(),
         footprint_m: footprint.corners(&Pose::default()).to_vec(),
         base_m: plant.body.base_m,
         wheel_radius_m: (plant.wheels.left.radius_m + plant.wheels.right.radius_m) / 2.0,
@@ -78,6 +80,24 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
         of_ghost: false,
         choice,
     })
+}
+
+/// The other robots in the world of one of several.
+#[must_use]
+pub fn others(fleet: &[Setup], number: usize) -> Vec<Other> {
+    let others = fleet.iter().enumerate();
+    let others = others.filter(|(other, _)| *other != number);
+    let outline = |setup: &Setup| {
+        let plant = &setup.robot.plant;
+        let footprint = Footprint::new(&plant.body, &plant.wheels);
+        footprint.corners(&Pose::default()).to_vec()
+    };
+    others
+        .map(|(_, setup)| Other {
+            name: setup.scenario.name.clone(),
+            footprint_m: outline(setup),
+        })
+        .collect()
 }
 
 /// Something that moves, as the map needs it.

@@ -12,6 +12,7 @@
 //! | `/link/from_robot`, `/link/to_robot` | `rumbo.Bytes` | the raw bytes of the link, base64 |
 //! | `/console` | `rumbo.Console` | what the USARTs of an emulated chip sent, and what a person typed to them, base64 |
 //! | `/truth` | `rumbo.Truth` | ground truth and pins of an emulated robot, 33 times a second |
+//! | `/pose/others` | `rumbo.Others` | where the other robots in the world are, 33 times a second |
 //! | `/printed` | `rumbo.Printed` | numbers that its program printed, by name |
 //! | `/digest` | `rumbo.Digest` | the checksum of each metadata record |
 //!
@@ -52,8 +53,8 @@ pub use parameters::{Parameter, ParameterState, parameter, parameters};
 pub use reading::{Names, Reading, Source};
 pub use recorded::{CSV, recorded_csv};
 pub use scene::{
-    Choice, Experiment, MapPose, Mover, Obstacle, Place, Repeat, RoutePlan, Scene, SonarMount,
-    TimedPose, Truth, compose,
+    Choice, Experiment, MapPose, Mover, Obstacle, Other, Place, Repeat, RoutePlan, Scene,
+    SonarMount, TimedPose, Truth, compose,
 };
 pub use schema::Topic;
 pub use signals::{Cell, EARLIER_MS, Row, Sample, Spread};

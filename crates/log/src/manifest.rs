@@ -36,6 +36,8 @@ pub struct Manifest {
     pub scenario: Option<String>,
     /// Name of the robot.
     pub robot: Option<String>,
+    /// Name of the one of several robots in the world that the log is of.
+    pub member: Option<String>,
     /// Name of the world.
     pub world: Option<String>,
     /// Name of the rig.
@@ -86,9 +88,9 @@ impl Manifest {
 
     /// What the log's metadata says; `None` where that is no manifest.
     pub(crate) fn from_metadata(metadata: &BTreeMap<String, String>) -> Option<Self> {
-        const TEXTS: [&str; 12] = [
-            "kind", "version", "started", "scenario", "robot", "world", "rig", "wiring", "program",
-            "image", "port", "eeprom",
+        const TEXTS: [&str; 13] = [
+            "kind", "version", "started", "scenario", "robot", "member", "world", "rig", "wiring",
+            "program", "image", "port", "eeprom",
         ];
         let fields = metadata.iter().map(|(key, text)| {
             let value = match TEXTS.contains(&key.as_str()) {
@@ -120,7 +122,7 @@ impl Manifest {
             .collect()
     }
 
-    /// The name of its log, without the ending: when, what, which seed.
+    /// The name of its log, without the ending: when, what, which seed, which of several robots.
     #[must_use]
     pub fn stem(&self) -> String {
         let when = self.started.as_ref().map(|started| {
@@ -135,7 +137,8 @@ impl Manifest {
             Kind::Calibration => "calibration".into(),
         });
         let seed = self.seed.map(|seed| seed.to_string());
-        let parts: Vec<String> = [when, Some(what), seed].into_iter().flatten().collect();
+        let parts = [when, Some(what), seed, self.member.clone()];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
         parts.join("-")
     }
 }

@@ -91,6 +91,7 @@ trait Messages: Sink {
         let topic = match reading.source {
             Source::Truth => Topic::Truth,
             Source::Loops => Topic::Loops,
+            Source::Others => Topic::Others,
             Source::Usart(_) => Topic::Printed,
         };
         self.put_json(topic, to_us(reading.t_ms), &reading.json())

@@ -14,6 +14,8 @@ pub enum Source {
     Truth,
     /// The control loops of our simulated robot: their terms.
     Loops,
+    /// The simulation: where the other robots in the world are.
+    Others,
     /// What the program printed to this USART.
     Usart(u8),
 }
@@ -75,7 +77,7 @@ impl Reading {
     /// What a program printed keeps all its digits.
     fn value(&self, value: f32) -> f64 {
         match self.source {
-            Source::Truth | Source::Loops => tidy(value),
+            Source::Truth | Source::Loops | Source::Others => tidy(value),
             // The shortest digits that give the same `f32`.
             Source::Usart(_) => value.to_string().parse().unwrap_or(f64::NAN),
         }
@@ -92,7 +94,7 @@ impl Reading {
             }
         }
         match self.source {
-            Source::Truth | Source::Loops => Value::Object(message),
+            Source::Truth | Source::Loops | Source::Others => Value::Object(message),
             Source::Usart(usart) => json!({ "usart": usart, "values": message }),
         }
     }

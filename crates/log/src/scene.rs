@@ -75,6 +75,9 @@ pub struct Scene {
     /// What moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub movers: Vec<Mover>,
+    /// The other robots in the world, if there are several.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub others: Vec<Other>,
     /// Outline of the robot in its own frame \[m\], closed by itself.
     pub footprint_m: Vec<[f64; 2]>,
     /// Distance between the wheels \[m\].
@@ -161,6 +164,26 @@ pub struct Mover {
     pub repeat: Repeat,
     /// When it starts \[s\].
     pub start_s: f64,
+}
+
+/// Another robot in the world. Where it is, readings of [`crate::Source::Others`] tell.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Other {
+    /// Its name.
+    pub name: String,
+    /// Its outline in its own frame \[m\], closed by itself.
+    pub footprint_m: Vec<[f64; 2]>,
+}
+
+impl Other {
+    /// The signals of where it stands: x and y in m, the heading in deg.
+    pub fn signals(name: &str, at: MapPose) -> [(String, f64); 3] {
+        [
+            (format!("{name}_x_m"), at.x_m),
+            (format!("{name}_y_m"), at.y_m),
+            (format!("{name}_heading_deg"), at.heading_rad.to_degrees()),
+        ]
+    }
 }
 
 /// A pose with its time.

@@ -37,11 +37,13 @@ pub enum Topic {
     Printed,
     /// Terms of our simulated robot's control loops.
     Loops,
+    /// Where the other robots in the world are.
+    Others,
 }
 
 impl Topic {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Telemetry,
         Self::State,
         Self::Parameters,
@@ -57,6 +59,7 @@ impl Topic {
         Self::Truth,
         Self::Printed,
         Self::Loops,
+        Self::Others,
     ];
 
     /// Its name in the log.
@@ -78,6 +81,7 @@ impl Topic {
             Self::Truth => "/truth",
             Self::Printed => "/printed",
             Self::Loops => "/loops",
+            Self::Others => "/pose/others",
         }
     }
 
@@ -106,6 +110,7 @@ impl Topic {
             Self::Truth => ("rumbo.Truth", object("rumbo.Truth", json!({}))),
             Self::Printed => ("rumbo.Printed", printed()),
             Self::Loops => ("rumbo.Loops", object("rumbo.Loops", json!({}))),
+            Self::Others => ("rumbo.Others", object("rumbo.Others", json!({}))),
         }
     }
 }

@@ -156,7 +156,9 @@ impl Board {
             Entry::Readings(readings) => {
                 for reading in readings {
                     match reading.source {
-                        Source::Truth | Source::Loops => self.shown.push(reading.clone()),
+                        Source::Truth | Source::Loops | Source::Others => {
+                            self.shown.push(reading.clone())
+                        }
                         Source::Usart(_) => self.printed.push(reading.clone()),
                     }
                 }

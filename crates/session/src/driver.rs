@@ -226,8 +226,17 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
         if !self.pace.slice_due() {
             return Ok(false);
         }
-        self.target.advance(SLICE_US)?;
         self.pace.slice_lived();
+        self.step(wall_us)?;
+        Ok(true)
+    }
+
+    /// Advances the target by a slice, whether one is due or not: for one whose time is that of another.
+    ///
+    /// # Errors
+    /// When the target is gone for good.
+    pub fn step(&mut self, wall_us: u64) -> Result<(), TargetError> {
+        self.target.advance(SLICE_US)?;
         let now = self.now(wall_us);
         let sight = Sight {
             truth: self.target.truth(),
@@ -242,7 +251,12 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
         self.session.advance(now);
         self.send()?;
         self.news(wall_us);
-        Ok(true)
+        Ok(())
+    }
+
+    /// Takes over the pace of the one whose time its own is.
+    pub fn follow(&mut self, leader: &Self) {
+        self.pace = leader.pace;
     }
 
     fn news(&mut self, wall_us: u64) {

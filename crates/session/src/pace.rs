@@ -6,7 +6,7 @@ pub const SLICE_US: u64 = 5_000;
 const CATCH_UP_S: f64 = 0.1;
 
 /// How fast the target's time goes.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Pace {
     /// Requested seconds of the target per second of the wall clock.
     pub speed: f64,

@@ -23,6 +23,11 @@ pub enum ToPage<'a> {
         columns: Vec<&'static str>,
         /// The modes to choose from.
         modes: Vec<ModeEntry>,
+        /// The robots in the world, if there are several.
+        #[serde(skip_serializing_if = "<[String]>::is_empty")]
+        robots: &'a [String],
+        /// The one of them that the page is of.
+        robot: usize,
     },
     /// What surrounds the robot.
     Scene {
@@ -85,14 +90,16 @@ pub enum ToPage<'a> {
     },
 }
 
-impl ToPage<'_> {
-    /// The first message.
+impl<'a> ToPage<'a> {
+    /// The first message to a page of one of these robots, which are named if there are several.
     #[must_use]
-    pub fn hello() -> Self {
+    pub fn hello(robots: &'a [String], robot: usize) -> Self {
         Self::Hello {
             version: env!("CARGO_PKG_VERSION"),
             columns: Row::names().collect(),
             modes: catalogue::modes(),
+            robots,
+            robot,
         }
     }
 

@@ -14,7 +14,7 @@ use rumbo_plant::world::{Obstacle, ShapeError};
 /// Longest step, and the grid it keeps to [us].
 const STEP_US: u64 = 1_000;
 
-/// Robots in one world.
+/// Robots in one world, at least one.
 #[derive(Clone, Debug)]
 pub struct Fleet {
     robots: Vec<Sim>,
@@ -33,8 +33,12 @@ pub struct Fleet {
 pub enum FleetError {
     /// These two would stand inside each other.
     Inside(usize, usize),
+    /// There are none.
+    Empty,
     /// There are more than a world has room for.
     TooMany,
+    /// Their clocks show different times.
+    Clocks,
 }
 
 impl std::fmt::Display for FleetError {
@@ -50,6 +54,8 @@ impl std::fmt::Display for FleetError {
             Self::TooMany => {
                 f.write_str("there are more robots and movers than the 63 that fit; leave some out")
             }
+            Self::Empty => f.write_str("there is no robot"),
+            Self::Clocks => f.write_str("the robots' clocks show different times"),
         }
     }
 }
@@ -82,8 +88,14 @@ impl Fleet {
     /// Robots that stand in the same world at the same time.
     ///
     /// # Errors
-    /// Two of them inside each other, or too many.
+    /// Two of them inside each other, clocks that differ, none, or too many.
     pub fn new(mut robots: Vec<Sim>) -> Result<Self, FleetError> {
+        let Some(now_us) = robots.first().map(Sim::now_us) else {
+            return Err(FleetError::Empty);
+        };
+        if robots.iter().any(|robot| robot.now_us() != now_us) {
+            return Err(FleetError::Clocks);
+        }
         let bodies = robots.iter().map(Sim::body).collect::<Result<Vec<_>, _>>();
         let bodies = bodies.map_err(|_: ShapeError| FleetError::TooMany)?;
         let outlines: Vec<Obstacle> = std::iter::zip(&robots, &bodies)
@@ -120,9 +132,29 @@ impl Fleet {
         &self.robots
     }
 
-    /// One of them, to send it bytes or to receive some; only [`Fleet::advance`] passes time.
+    /// The robots, to send them bytes or to receive some; only [`Fleet::advance`] passes time.
+    pub fn robots_mut(&mut self) -> &mut [Sim] {
+        &mut self.robots
+    }
+
+    /// One of them.
     pub fn robot_mut(&mut self, index: usize) -> Option<&mut Sim> {
         self.robots.get_mut(index)
+    }
+
+    /// The first of them.
+    pub fn first(&self) -> &Sim {
+        &self.robots[0]
+    }
+
+    /// The first of them, as [`Fleet::robots_mut`].
+    pub fn first_mut(&mut self) -> &mut Sim {
+        &mut self.robots[0]
+    }
+
+    /// The time of all of them [us].
+    pub fn now_us(&self) -> u64 {
+        self.first().now_us()
     }
 
     /// Advances all robots to this time [us].

@@ -38,4 +38,6 @@ pub use ending::asked_to_end;
 pub use error::{ServeError, SessionError};
 pub use folder::{Folder, serve_folder};
 pub use recorder::{Recording, now_utc};
-pub use serve::{DEFAULT_PORT, Lab, LabConfig, ServeAt, serve, serve_log, serve_with};
+pub use serve::{
+    DEFAULT_PORT, Lab, LabConfig, Named, ServeAt, serve, serve_fleet, serve_log, serve_with,
+};

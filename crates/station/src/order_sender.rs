@@ -16,7 +16,8 @@ pub(crate) const TOO_MANY: &str = "too many orders at once";
 #[derive(Debug)]
 pub(crate) struct OrderSender {
     queue: SyncSender<Order>,
-    stop: Arc<AtomicBool>,
+    /// Those of all robots in the world: STOP stops each.
+    stops: Vec<Arc<AtomicBool>>,
 }
 
 /// The queue is full, or the session is over.
@@ -24,28 +25,31 @@ pub(crate) struct OrderSender {
 pub(crate) struct NotTaken;
 
 impl OrderSender {
-    /// Both sides.
-    pub(crate) fn new() -> (Self, Orders) {
-        let (sender, queue) = sync_channel(WAITING);
-        let stop = Arc::<AtomicBool>::default();
-        let orders = Orders {
-            queue,
-            stop: Arc::clone(&stop),
-        };
-        (
-            Self {
+    /// Both sides, for so many robots in one world.
+    pub(crate) fn of(robots: usize) -> Vec<(Self, Orders)> {
+        let stops: Vec<Arc<AtomicBool>> = (0..robots).map(|_| Arc::default()).collect();
+        let sides = stops.iter().map(|stop| {
+            let (sender, queue) = sync_channel(WAITING);
+            let orders = Orders {
+                queue,
+                stop: Arc::clone(stop),
+            };
+            let sender = Self {
                 queue: sender,
-                stop,
-            },
-            orders,
-        )
+                stops: stops.clone(),
+            };
+            (sender, orders)
+        });
+        sides.collect()
     }
 
-    /// Passes an order on, without waiting. STOP has its own flag: a full queue does not keep it out, and wakes the
-    /// session anyway.
+    /// Passes an order on, without waiting. STOP has its own flags, also those of the other robots in the world: a full
+    /// queue does not keep it out, and wakes the session anyway.
     pub(crate) fn send(&self, order: Order) -> Result<(), NotTaken> {
         if order == Order::Robot(Command::Stop) {
-            self.stop.store(true, Ordering::SeqCst);
+            for stop in &self.stops {
+                stop.store(true, Ordering::SeqCst);
+            }
         }
         self.queue.try_send(order).map_err(|_| NotTaken)
     }

@@ -25,8 +25,8 @@ pub(crate) type Show = fn(String, Log) -> Result<(String, Box<dyn Send>), ServeE
 /// The recordings of a folder.
 pub(crate) struct Recordings {
     folder: PathBuf,
-    /// The one being recorded.
-    current: Mutex<Option<PathBuf>>,
+    /// Those being recorded, one for each robot.
+    current: Mutex<BTreeMap<String, PathBuf>>,
     show: Show,
     replays: Mutex<Vec<Box<dyn Send>>>,
 }
@@ -117,10 +117,10 @@ impl Recordings {
         &self.folder
     }
 
-    /// This one is being recorded from now on.
-    pub(crate) fn set_current(&self, path: &Path) {
+    /// This one is being recorded from now on, of this robot if there are several.
+    pub(crate) fn set_current(&self, robot: Option<String>, path: &Path) {
         let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
-        *current = Some(path.to_owned());
+        current.insert(robot.unwrap_or_default(), path.to_owned());
     }
 
     /// The logs in the folder, the one written last first. A link is none of them.
@@ -146,7 +146,7 @@ impl Recordings {
         let written = std::fs::metadata(path).and_then(|about| about.modified());
         let age = written.ok().and_then(|written| written.elapsed().ok());
         let unfinished = summary.manifest.is_some() && !summary.complete;
-        current.as_deref() == Some(path)
+        current.values().any(|open| open == path)
             || (unfinished && age.is_none_or(|age| age < STILL_WRITTEN))
     }
 

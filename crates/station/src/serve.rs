@@ -11,7 +11,7 @@ use crate::order_sender::OrderSender;
 use crate::recorder::Recording;
 use crate::recordings::Recordings;
 use crate::replay;
-use crate::session::{Orders, Running};
+use crate::session::{Orders, Running, Seat};
 use crate::socket::Hub;
 use crate::subscribers::Subscribers;
 use crate::web;
@@ -81,6 +81,9 @@ impl Default for LabConfig {
         }
     }
 }
+
+/// A target and the name of its robot.
+pub type Named = (String, Box<dyn Target>);
 
 /// A lab being served; dropping it ends it, and stops the robot.
 #[derive(Debug)]
@@ -164,6 +167,21 @@ pub fn serve_with(
     target: Box<dyn Target>,
     extras: Extras,
 ) -> Result<Lab, ServeError> {
+    serve_fleet(config, (String::new(), target), Vec::new(), extras)
+}
+
+/// The same of several robots in one world, with what they are called. The time is the first one's; STOP for any stops
+/// all.
+///
+/// # Errors
+/// As [`serve`].
+pub fn serve_fleet(
+    config: LabConfig,
+    first: Named,
+    others: Vec<Named>,
+    extras: Extras,
+) -> Result<Lab, ServeError> {
+    let robots = std::iter::once(first).chain(others);
     let LabConfig {
         at,
         speed,
@@ -174,15 +192,29 @@ pub fn serve_with(
     let recordings =
         recording.map(|recording| Arc::new(Recordings::new(recording.folder, serve_replay)));
     let shown = recordings.clone();
-    start(at, shown, move |board, orders| {
-        let subscribers = Subscribers {
-            board,
-            echo: echo.and_then(Echo::start),
-            #[cfg(feature = "foxglove")]
-            bridge: config.bridge,
-            recorder: None,
-        };
-        Running::new(target, subscribers, orders, speed, recordings, extras).run()
+    let (names, targets): (Vec<_>, Vec<_>) = robots.into_iter().unzip();
+    start(at, shown, names, move |chairs| {
+        let echo = echo.and_then(Echo::start);
+        #[cfg(feature = "foxglove")]
+        let mut bridge = config.bridge;
+        let seats = std::iter::zip(targets, chairs).map(|(target, (board, orders))| Seat {
+            target,
+            subscribers: Subscribers {
+                board,
+                echo: echo.clone(),
+                // That of the first robot.
+                #[cfg(feature = "foxglove")]
+                bridge: bridge.take(),
+                recorder: None,
+            },
+            orders,
+        });
+        let mut seats: Vec<Seat> = seats.collect();
+        let others = seats.split_off(1);
+        match seats.pop() {
+            Some(first) => Running::new(first, others, speed, recordings, extras).run(),
+            None => Ok(()),
+        }
     })
 }
 
@@ -198,8 +230,10 @@ pub fn serve_log(
     log: Log,
     ghost: Option<Box<dyn Ghost>>,
 ) -> Result<Lab, ServeError> {
-    start(at, None, move |board, orders| {
-        replay::run(Replay::new(name, log, speed, ghost), &board, &orders);
+    start(at, None, vec![String::new()], move |mut chairs| {
+        if let Some((board, orders)) = chairs.pop() {
+            replay::run(Replay::new(name, log, speed, ghost), &board, &orders);
+        }
         Ok(())
     })
 }
@@ -210,16 +244,21 @@ pub(crate) fn serve_replay(name: String, log: Log) -> Result<(String, Box<dyn Se
     Ok((lab.url().to_owned(), Box::new(lab)))
 }
 
-/// Serves a board that `session` writes, in a thread of its own, until there are no more orders.
+/// What a robot's session writes to, and where its orders come from.
+type Chair = (Arc<Board>, Orders);
+
+/// Serves boards that `session` writes, one for each of these robots, in a thread of its own, until there are no more
+/// orders.
 fn start(
     at: ServeAt,
     recordings: Option<Arc<Recordings>>,
-    session: impl FnOnce(Arc<Board>, Orders) -> Result<(), TargetError> + Send + 'static,
+    names: Vec<String>,
+    session: impl FnOnce(Vec<Chair>) -> Result<(), TargetError> + Send + 'static,
 ) -> Result<Lab, ServeError> {
     guard::check_listen(at.address)?;
     let listener = bind(at)?;
     let at = SocketAddr::new(at.address, at.port);
-    start_on(listener, recordings, session).map_err(|error| ServeError::Io(at, error))
+    start_on(listener, recordings, names, session).map_err(|error| ServeError::Io(at, error))
 }
 
 pub(crate) fn bind(at: ServeAt) -> Result<TcpListener, ServeError> {
@@ -233,37 +272,46 @@ pub(crate) fn bind(at: ServeAt) -> Result<TcpListener, ServeError> {
 fn start_on(
     listener: TcpListener,
     recordings: Option<Arc<Recordings>>,
-    session: impl FnOnce(Arc<Board>, Orders) -> Result<(), TargetError> + Send + 'static,
+    names: Vec<String>,
+    session: impl FnOnce(Vec<Chair>) -> Result<(), TargetError> + Send + 'static,
 ) -> io::Result<Lab> {
     let (opens, opened) = mpsc::channel();
     let local = listener.local_addr()?.ip().is_loopback();
     let guard = Guard::new(listener.local_addr()?, opens.clone()).map_err(io::Error::other)?;
     let (url, viewers_url) = (guard.url(), guard.viewers_url());
 
-    let board = Arc::new(Board::default());
-    let lease = Lease::default();
-    let (orders, waiting) = OrderSender::new();
-    let orders = Arc::new(orders);
-    let shown = Arc::clone(&board);
+    let several = names.len() > 1;
+    let (mut chairs, mut hubs) = (Vec::new(), Vec::new());
+    let robots: Arc<[String]> = names.into_iter().filter(|_| several).collect();
+    for (robot, (sender, orders)) in OrderSender::of(robots.len().max(1)).into_iter().enumerate() {
+        let board = Arc::new(Board::default());
+        chairs.push((Arc::clone(&board), orders));
+        hubs.push(Hub {
+            board,
+            orders: Arc::new(sender),
+            lease: Lease::default(),
+            robot,
+            robots: Arc::clone(&robots),
+            local,
+            recordings: recordings.clone(),
+        });
+    }
+    let Hub {
+        board,
+        lease,
+        orders,
+        ..
+    } = hubs[0].clone();
     let session_over = opens.clone();
     let session = std::thread::Builder::new()
         .name("session".into())
         .spawn(move || {
-            let ended = session(shown, waiting);
+            let ended = session(chairs);
             let _ = session_over.send(());
             ended
         })?;
 
-    let router = web::router(
-        Arc::new(guard),
-        Hub {
-            board: Arc::clone(&board),
-            orders: Arc::clone(&orders),
-            lease: lease.clone(),
-            local,
-            recordings,
-        },
-    );
+    let router = web::router(Arc::new(guard), hubs);
     let (web_ends, ended) = oneshot::channel::<()>();
     let ended = async {
         // An error: the lab was dropped.

@@ -53,9 +53,10 @@ impl Host for Around {
     /// Begins the log of the run; the one before is complete.
     fn begin_run(&mut self, manifest: Manifest) -> Option<(Level, String)> {
         let recordings = self.recordings.as_ref()?;
+        let robot = manifest.member.clone();
         Some(match recorder(recordings, manifest) {
             Ok(recorder) => {
-                recordings.set_current(recorder.path());
+                recordings.set_current(robot, recorder.path());
                 let text = format!("recording to {}", recorder.path().display());
                 self.subscribers.record(recorder);
                 (Level::Info, text)
@@ -73,30 +74,51 @@ fn recorder(recordings: &Recordings, manifest: Manifest) -> Result<Recorder, Log
     Recorder::in_folder(recordings.folder(), &manifest)
 }
 
-/// A session in its thread.
+/// The session of one of several robots, whose time is that of the first.
+struct Follower {
+    driver: Driver<Around>,
+    orders: Orders,
+}
+
+/// A session in its thread, perhaps with those of other robots in the same world.
 pub(crate) struct Running {
     driver: Driver<Around>,
     orders: Orders,
+    followers: Vec<Follower>,
     began: Instant,
 }
 
+/// What a session is made of.
+pub(crate) struct Seat {
+    pub(crate) target: Box<dyn Target>,
+    pub(crate) subscribers: Subscribers,
+    pub(crate) orders: Orders,
+}
+
 impl Running {
-    /// A session that has not begun yet.
+    /// A session that has not begun yet, and those of the robots that go with its time.
     pub(crate) fn new(
-        target: Box<dyn Target>,
-        subscribers: Subscribers,
-        orders: Orders,
+        first: Seat,
+        others: Vec<Seat>,
         speed: f64,
         recordings: Option<Arc<Recordings>>,
         extras: Extras,
     ) -> Self {
-        let around = Around {
-            subscribers,
-            recordings,
+        let begin = |seat: Seat| {
+            let around = Around {
+                subscribers: seat.subscribers,
+                recordings: recordings.clone(),
+            };
+            let driver = Driver::new(seat.target, around, speed, extras);
+            (driver, seat.orders)
         };
+        let (driver, orders) = begin(first);
+        let followers = others.into_iter().map(begin);
+        let followers = followers.map(|(driver, orders)| Follower { driver, orders });
         Self {
-            driver: Driver::new(target, around, speed, extras),
+            driver,
             orders,
+            followers: followers.collect(),
             began: Instant::now(),
         }
     }
@@ -106,30 +128,41 @@ impl Running {
     /// # Errors
     /// The target's error when it is gone for good.
     pub(crate) fn run(mut self) -> Result<(), TargetError> {
-        self.driver.begin(self.wall_us());
+        let wall_us = self.wall_us();
+        self.driver.begin(wall_us);
+        for follower in &mut self.followers {
+            follower.driver.begin(wall_us);
+        }
         let ended = self.run_until_ended();
         if let Err(why) = &ended {
             let text = format!("the robot is gone: {why}");
             self.driver.note(Level::Fault, text, self.wall_us());
         }
         self.driver.publish();
+        for follower in &mut self.followers {
+            follower.driver.publish();
+        }
         ended
     }
 
     fn run_until_ended(&mut self) -> Result<(), TargetError> {
         loop {
-            let wait = if self.driver.speed() > 0.0 {
-                WAKE
-            } else {
-                WAKE_PAUSED
+            // Orders to the other robots wake nobody.
+            let wait = match self.driver.speed() > 0.0 || !self.followers.is_empty() {
+                true => WAKE,
+                false => WAKE_PAUSED,
             };
             let first = match self.orders.queue.recv_timeout(wait) {
                 Ok(order) => Some(order),
                 Err(RecvTimeoutError::Timeout) => None,
                 // Do not leave the robot driving. Should this STOP be lost, the missing heartbeat stops it.
                 Err(RecvTimeoutError::Disconnected) => {
-                    let stop = Order::Robot(Command::Stop);
-                    return self.driver.obey([stop], self.wall_us());
+                    let stop = || [Order::Robot(Command::Stop)];
+                    let wall_us = self.wall_us();
+                    for follower in &mut self.followers {
+                        follower.driver.obey(stop(), wall_us)?;
+                    }
+                    return self.driver.obey(stop(), wall_us);
                 }
             };
             let waiting = first
@@ -139,12 +172,22 @@ impl Running {
             let stop = self.orders.stop.swap(false, Ordering::SeqCst);
             let orders = stop_first(waiting, stop);
             self.driver.obey(orders, self.wall_us())?;
+            let wall_us = self.wall_us();
+            for Follower { driver, orders } in &mut self.followers {
+                driver.follow(&self.driver);
+                let stop = orders.stop.swap(false, Ordering::SeqCst);
+                driver.obey(stop_first(orders.queue.try_iter().collect(), stop), wall_us)?;
+            }
             self.advance()?;
             if let Some(trouble) = self.driver.host().subscribers.recording_trouble() {
                 let text = trouble.to_string();
                 self.driver.note(Level::Warning, text, self.wall_us());
             }
-            self.driver.update(self.wall_us());
+            let wall_us = self.wall_us();
+            self.driver.update(wall_us);
+            for follower in &mut self.followers {
+                follower.driver.update(wall_us);
+            }
         }
     }
 
@@ -156,7 +199,12 @@ impl Running {
     fn advance(&mut self) -> Result<(), TargetError> {
         let began = Instant::now();
         self.driver.wall_passed(self.wall_us());
-        while began.elapsed() < ROUND && self.driver.slice(self.wall_us())? {}
+        while began.elapsed() < ROUND && self.driver.slice(self.wall_us())? {
+            let wall_us = self.wall_us();
+            for follower in &mut self.followers {
+                follower.driver.step(wall_us)?;
+            }
+        }
         Ok(())
     }
 }

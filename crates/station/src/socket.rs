@@ -43,6 +43,9 @@ pub(crate) struct Hub {
     pub(crate) board: Arc<Board>,
     pub(crate) orders: Arc<OrderSender>,
     pub(crate) lease: Lease,
+    /// Its number among the robots in its world, and what they are called if there are several.
+    pub(crate) robot: usize,
+    pub(crate) robots: Arc<[String]>,
     /// Only this computer reaches the pages: they may hand in programs, and see and delete recordings.
     pub(crate) local: bool,
     pub(crate) recordings: Option<Arc<Recordings>>,
@@ -174,7 +177,7 @@ async fn publish_news(
 ) -> Option<Closing> {
     let (mut changed, mut moved) = (hub.board.subscribe(), hub.lease.subscribe());
     let mut cursor = Cursor::default();
-    send(out, &ToPage::hello()).await?;
+    send(out, &ToPage::hello(&hub.robots, hub.robot)).await?;
     let (mut shown, mut run, mut t_s) = (None, 0, 0.0);
     let mut pings = interval(PING);
     loop {
@@ -245,8 +248,10 @@ mod tests {
     fn hub() -> Hub {
         Hub {
             board: Arc::new(Board::default()),
-            orders: Arc::new(OrderSender::new().0),
+            orders: Arc::new(OrderSender::of(1).remove(0).0),
             lease: Lease::default(),
+            robot: 0,
+            robots: Arc::default(),
             local: true,
             recordings: None,
         }

@@ -7,7 +7,7 @@ use crate::guard::{Denied, Guard};
 use crate::socket::{self, Hub};
 use axum::Router;
 use axum::body::Body;
-use axum::extract::{Extension, Request, State, WebSocketUpgrade};
+use axum::extract::{Extension, FromRef, Request, State, WebSocketUpgrade};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
@@ -46,8 +46,19 @@ const SECURITY_HEADERS: [(HeaderName, HeaderValue); 7] = [
 /// The WebSocket's protocol, as the page asks for it: this name, and its key as if it were another one.
 const PROTOCOL: &str = "rumbo";
 
+/// Those of all robots, at least one.
+#[derive(Clone)]
+struct Hubs(Arc<[Hub]>);
+
+/// What is no robot's own is the first one's.
+impl FromRef<Hubs> for Hub {
+    fn from_ref(Hubs(hubs): &Hubs) -> Self {
+        hubs[0].clone()
+    }
+}
+
 /// The routes; nothing is reachable around the guard.
-pub(crate) fn router(guard: Arc<Guard>, hub: Hub) -> Router {
+pub(crate) fn router(guard: Arc<Guard>, hubs: Vec<Hub>) -> Router {
     Router::new()
         .route("/ws", get(upgrade))
         .route("/key", post(key))
@@ -58,7 +69,7 @@ pub(crate) fn router(guard: Arc<Guard>, hub: Hub) -> Router {
         )
         .route("/recordings/{name}/replay", post(recordings::replay))
         .fallback(file)
-        .with_state(hub)
+        .with_state(Hubs(hubs.into()))
         .layer(middleware::from_fn_with_state(Arc::clone(&guard), admit))
         .layer(Extension(guard))
 }
@@ -98,13 +109,21 @@ fn bearer(headers: &HeaderMap) -> &str {
     shown.unwrap_or_default()
 }
 
+/// A page of the robot that the address names, or of the first one.
 async fn upgrade(
-    State(hub): State<Hub>,
+    State(Hubs(hubs)): State<Hubs>,
+    uri: Uri,
     Extension(guard): Extension<Arc<Guard>>,
     headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Result<Response, Denied> {
     guard.check_origin(&headers)?;
+    let named = uri.query().and_then(|query| query.strip_prefix("robot="));
+    let named = named.and_then(|name| {
+        hubs.iter()
+            .find(|hub| hub.robots.get(hub.robot).is_some_and(|own| own == name))
+    });
+    let hub = named.unwrap_or(&hubs[0]).clone();
     let protocols = headers.get_all(header::SEC_WEBSOCKET_PROTOCOL).iter();
     let role = protocols
         .filter_map(|value| value.to_str().ok())

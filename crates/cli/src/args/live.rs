@@ -12,6 +12,7 @@ Examples:
   rumbo lab
   rumbo lab --scenario mode5 --speed 4
   rumbo lab --scenario mode1 --rig final --world room
+  rumbo lab --scenario mode8-obstacles --robots 4
   rumbo lab --scenario mode1 --sketch my_sketch
   rumbo lab --scenario mode1 --firmware my_sketch.elf --wiring final
   rumbo lab --scenario mode5 --firmware my_sketch.elf --gdb 1234
@@ -23,6 +24,9 @@ pub(crate) struct LabArgs {
     /// Scenario that the robot starts in: name or path
     #[arg(long, value_name = "NAME", default_value = "mode1")]
     pub(crate) scenario: String,
+    /// So many robots in its world, each disarmed and with a page of its own; STOP on any page stops all
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=32))]
+    pub(crate) robots: u8,
     #[command(flatten)]
     pub(crate) setting: SettingArgs,
     #[command(flatten)]

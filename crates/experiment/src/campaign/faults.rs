@@ -361,7 +361,7 @@ fn one(
     at_s: f64,
     failure: Failure,
 ) -> Result<Drive, FileError> {
-    let mut run = Run::new(setup, seed)?;
+    let mut run = Run::new(setup, [setup], seed)?;
     let mut named = None;
     let mut end_s = f64::INFINITY;
     let mut read = 0;

@@ -104,6 +104,11 @@ impl Library {
         }
     }
 
+    /// Where a path leads that is relative to its folder.
+    pub(super) fn path(&self, path: &Path) -> PathBuf {
+        self.base.join(path)
+    }
+
     /// The same with a file of this name, in place of a built-in one.
     #[must_use]
     pub fn holding(mut self, kind: Kind, name: &str, text: &str) -> Self {

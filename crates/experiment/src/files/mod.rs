@@ -10,6 +10,7 @@ pub mod commands;
 mod dropped;
 mod error;
 pub mod firmware;
+mod fleet;
 mod kept;
 mod library;
 mod mover;
@@ -26,6 +27,7 @@ mod word;
 mod world;
 
 pub use error::{FileError, Problem};
+pub use fleet::{Member, fleet_around};
 pub(crate) use kept::Calibrated;
 pub use kept::Calibrations;
 pub use library::{Kind, Library};

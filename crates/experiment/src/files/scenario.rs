@@ -20,10 +20,13 @@
 //! kind = "stuck"         # or "cut", or "spiking" with share = 0.3
 //! [limits]
 //! "step1.settling_s" = { max = 2.4 }
+//! [[fleet]]              # several robots: see `fleet.rs`
+//! name = "north"
 //! ```
 
 use super::commands::read_commands;
 use super::error::FileError;
+use super::fleet::{Member, read_fleet};
 use super::names::find_mode;
 use super::parameters::read_parameters;
 use super::read::{Allowed, Source, Table};
@@ -81,6 +84,9 @@ pub struct ScenarioFile {
     pub spread: Spread,
     /// Plant values that hold in every run, set after the draw, from `[plant]`; dotted keys of `Params`.
     pub plant: BTreeMap<String, f64>,
+    /// The robots in its world, if there are several: then the values above are those that an entry of `[[fleet]]` does
+    /// not give itself.
+    pub fleet: Vec<Member>,
 }
 
 /// The pose at the start, in the world frame.
@@ -148,8 +154,8 @@ pub enum Spread {
 
 const DURATION: Allowed = Allowed::new(0.1, 3600.0, "s");
 /// A person types no more in an hour.
-const MOST_COMMANDS: usize = 10_000;
-const MOST_FAULTS: usize = 1_000;
+pub(super) const MOST_COMMANDS: usize = 10_000;
+pub(super) const MOST_FAULTS: usize = 1_000;
 const BOUND: Allowed = Allowed::new(-1e9, 1e9, "");
 
 impl ScenarioFile {
@@ -165,7 +171,7 @@ impl ScenarioFile {
         root.require("duration_s", &DURATION.remedy());
         // A wrong one does not shorten anything else.
         let duration_s = root.number("duration_s", DURATION).unwrap_or(DURATION.max);
-        let scenario = Self {
+        let mut scenario = Self {
             name: name.into(),
             path: None,
             title: root
@@ -197,7 +203,9 @@ impl ScenarioFile {
             parameters: read_parameters(&root.table("parameters")),
             spread: read_spread(&root.table("spread")),
             plant: read_plant(&root.table("plant"), ""),
+            fleet: Vec::new(),
         };
+        scenario.fleet = read_fleet(&root, &scenario);
         root.finish();
         source.verdict()?;
         Ok(scenario)
@@ -210,6 +218,11 @@ fn read_mode(root: &Table<'_, '_>) -> Option<ModeId> {
             "mode is missing: name or number of a mode, e.g. \"front_distance\" or 1",
         );
     }
+    read_given_mode(root)
+}
+
+/// The mode, if one is given.
+pub(super) fn read_given_mode(root: &Table<'_, '_>) -> Option<ModeId> {
     root.word("mode")
         .and_then(|word| match find_mode(&word.value) {
             Ok(mode) => Some(mode),
@@ -233,7 +246,10 @@ pub(super) fn read_start(table: &Table<'_, '_>) -> Start {
     start
 }
 
-fn read_sonar_faults(tables: Vec<Table<'_, '_>>, duration_s: f64) -> Vec<TimedSonarFault> {
+pub(super) fn read_sonar_faults(
+    tables: Vec<Table<'_, '_>>,
+    duration_s: f64,
+) -> Vec<TimedSonarFault> {
     let mut faults = Vec::new();
     for table in tables {
         let at_s = table.required_number("at_s", Allowed::new(0.0, duration_s, "s"));
@@ -271,7 +287,7 @@ fn read_sonar_faults(tables: Vec<Table<'_, '_>>, duration_s: f64) -> Vec<TimedSo
     faults
 }
 
-fn read_wire_faults(tables: Vec<Table<'_, '_>>, duration_s: f64) -> Vec<TimedWireFault> {
+pub(super) fn read_wire_faults(tables: Vec<Table<'_, '_>>, duration_s: f64) -> Vec<TimedWireFault> {
     let mut faults = Vec::new();
     for table in tables {
         let at_s = table.required_number("at_s", Allowed::new(0.0, duration_s, "s"));

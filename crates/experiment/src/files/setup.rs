@@ -94,6 +94,11 @@ pub struct Setup {
     pub ground_truth: bool,
     /// The calibrations made so far; copies share them.
     pub calibrations: Calibrations,
+    /// Its number among the robots in its world, from 0.
+    pub number: u32,
+    /// All robots in its world, if there are several. The fields above are then those of the first one, but for the
+    /// scenario's name, path, text and limits, which are those of the whole.
+    pub fleet: Vec<Setup>,
 }
 
 impl Library {
@@ -105,6 +110,32 @@ impl Library {
     pub fn setup(&self, name_or_path: &str, overrides: &Overrides) -> Result<Setup, FileError> {
         let mut scenario = self.scenario(name_or_path)?;
         let beside = self.beside(name_or_path);
+        let members = std::mem::take(&mut scenario.fleet);
+        if members.is_empty() {
+            return self.assemble(scenario, &beside, overrides, true);
+        }
+        let fleet = (0..).zip(members).map(|(number, member)| {
+            let own = member.overrides(&beside, overrides);
+            let setup = self.assemble(member.scenario, &beside, &own, false)?;
+            Ok::<_, FileError>(Setup { number, ..setup })
+        });
+        let fleet = fleet.collect::<Result<Vec<_>, _>>()?;
+        stand_apart(&scenario.name, &fleet)?;
+        let mut first = fleet[0].clone();
+        (first.scenario.name, first.scenario.path) = (scenario.name, scenario.path);
+        (first.scenario.text, first.scenario.limits) = (scenario.text, scenario.limits);
+        Ok(Setup { fleet, ..first })
+    }
+
+    /// Puts a robot's scenario together, whose paths are relative to `beside`. The start of a world is for a robot that
+    /// is alone in it.
+    fn assemble(
+        &self,
+        mut scenario: ScenarioFile,
+        beside: &Self,
+        overrides: &Overrides,
+        alone: bool,
+    ) -> Result<Setup, FileError> {
         let robot = match &overrides.robot {
             Some(robot) => self.robot(robot)?,
             None => beside.robot(&scenario.robot)?,
@@ -129,10 +160,10 @@ impl Library {
             }
             apply(&mut scenario, name, *value)?;
         }
-        if let Some(start) = world.start {
+        if let Some(start) = world.start.filter(|_| alone) {
             scenario.start = start;
         }
-        stands_free(&scenario, &robot, &world)?;
+        stands_free(&scenario, &robot, &world, alone)?;
         has_its_goal(&scenario, &world)?;
         let rig = robot
             .rigs
@@ -158,6 +189,8 @@ impl Library {
             texts,
             ground_truth: overrides.ground_truth,
             calibrations: Calibrations::default(),
+            number: 0,
+            fleet: Vec::new(),
         })
     }
 }
@@ -172,7 +205,19 @@ impl Setup {
         for (name, value) in values {
             apply(&mut setup.scenario, name, *value)?;
         }
+        let fleet = setup.fleet.iter();
+        setup.fleet = fleet
+            .map(|robot| robot.with_parameters(values))
+            .collect::<Result<_, _>>()?;
         Ok(setup)
+    }
+
+    /// The robots in its world.
+    pub fn robots(&self) -> &[Self] {
+        match &self.fleet[..] {
+            [] => std::slice::from_ref(self),
+            fleet => fleet,
+        }
     }
 
     /// The setup of a seed: with boxes and goal in place where the world is random, otherwise unchanged.
@@ -245,8 +290,15 @@ impl Setup {
     /// its noise, and a random world.
     ///
     /// # Errors
-    /// If the files' values do not fit together.
+    /// If the files' values do not fit together, or there are several robots.
     pub fn config(&self, seed: u64) -> Result<Config, FileError> {
+        if !self.fleet.is_empty() {
+            return Err(FileError::Setting(format!(
+                "scenario {}: has {} robots, and here one is driven; choose a scenario without [[fleet]]",
+                self.scenario.name,
+                self.fleet.len()
+            )));
+        }
         let setup = &*self.of_seed(seed)?;
         let scenario = &setup.scenario;
         let world = setup
@@ -271,18 +323,14 @@ impl Setup {
             plant: setup.drawn_params(seed)?,
             rig: setup.rig,
             world,
-            start: Pose {
-                x_m: scenario.start.x_m,
-                y_m: scenario.start.y_m,
-                heading_rad: scenario.start.heading_rad,
-            },
+            start: pose(&scenario.start),
             wheels_in_air: scenario.wheels_in_air,
             program,
             memory: Vec::new(),
             sonar_faults: scenario.sonar_faults.clone(),
             wire_faults: scenario.wire_faults.clone(),
             seed,
-            day: 0,
+            day: self.number,
         })
     }
 
@@ -299,7 +347,7 @@ impl Setup {
     /// The robot file's parameters, drawn for the seed, with the scenario's own values on top.
     pub(crate) fn drawn_params(&self, seed: u64) -> Result<Params, FileError> {
         let mut params = match self.scenario.spread {
-            Spread::Drawn => self.robot.plant.draw(seed, 0),
+            Spread::Drawn => self.robot.plant.draw(seed, self.number),
             Spread::None => self.robot.plant,
         };
         for (key, value) in &self.scenario.plant {
@@ -419,25 +467,17 @@ fn stands_free(
     scenario: &ScenarioFile,
     robot: &RobotFile,
     world: &WorldFile,
+    alone: bool,
 ) -> Result<(), FileError> {
     let obstacles = world
         .world()
         .map_err(|error| FileError::Setting(format!("world {}: {error}", world.name)))?;
-    let Start {
-        x_m,
-        y_m,
-        heading_rad,
-    } = scenario.start;
+    let Start { x_m, y_m, .. } = scenario.start;
     if scenario.wheels_in_air {
         return Ok(());
     }
     let footprint = Footprint::new(&robot.plant.body, &robot.plant.wheels);
-    let pose = Pose {
-        x_m,
-        y_m,
-        heading_rad,
-    };
-    let corners = footprint.corners(&pose);
+    let corners = footprint.corners(&pose(&scenario.start));
     let within =
         |outline: &Obstacle| Obstacle::convex(&corners).is_ok_and(|own| own.overlaps(outline));
     let inside = if obstacles.obstacles().iter().any(within) {
@@ -450,6 +490,7 @@ fn stands_free(
         world.movers[index].called(index)
     };
     let whose = match world.start {
+        _ if !alone => format!("robot {}", scenario.name),
         Some(_) => format!("world {}", world.name),
         None => format!("scenario {}", scenario.name),
     };
@@ -457,6 +498,41 @@ fn stands_free(
         "{whose}: its start x_m = {x_m}, y_m = {y_m} is inside {inside} of world {}; move [start] or choose another world",
         world.name
     )))
+}
+
+/// Reports two robots that start inside each other, and a world that is another one for each seed.
+fn stand_apart(scenario: &str, fleet: &[Setup]) -> Result<(), FileError> {
+    let refused = |text: String| Err(FileError::Setting(format!("scenario {scenario}: {text}")));
+    let mut outlines: Vec<(&str, Obstacle)> = Vec::new();
+    for setup in fleet {
+        let (name, world) = (setup.scenario.name.as_str(), &setup.world);
+        if world.random.is_some() {
+            return refused(format!(
+                "a fleet has no room in world {}, whose boxes each seed draws anew; give it a world without [random]",
+                world.name
+            ));
+        }
+        let footprint = Footprint::new(&setup.robot.plant.body, &setup.robot.plant.wheels);
+        let corners = footprint.corners(&pose(&setup.scenario.start));
+        let Ok(outline) = Obstacle::convex(&corners) else {
+            continue;
+        };
+        if let Some((other, _)) = outlines.iter().find(|(_, other)| other.overlaps(&outline)) {
+            return refused(format!(
+                "robots {other} and {name} start inside each other; move the start of one"
+            ));
+        }
+        outlines.push((name, outline));
+    }
+    Ok(())
+}
+
+fn pose(start: &Start) -> Pose {
+    Pose {
+        x_m: start.x_m,
+        y_m: start.y_m,
+        heading_rad: start.heading_rad,
+    }
 }
 
 /// Sets one parameter, of the plant or of the control core, whichever has the name.

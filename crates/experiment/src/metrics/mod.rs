@@ -5,6 +5,7 @@
 
 mod align;
 mod curve;
+mod fleet;
 mod journey;
 mod lane;
 mod mission;
@@ -14,6 +15,8 @@ mod start;
 mod step;
 mod straight;
 mod wall;
+
+pub(crate) use fleet::of_fleet;
 
 use crate::files::Setup;
 use rumbo_control::mode::MetricGroup;

@@ -254,8 +254,8 @@ impl Intake {
             Topic::State | Topic::Parameters | Topic::Events | Topic::Scene => 2 * data.len(),
             Topic::FromRobot | Topic::ToRobot => size_of::<Burst>() + data.len(),
             Topic::Console => size_of::<Said>() + data.len(),
-            Topic::Telemetry | Topic::Digest | Topic::Truth | Topic::Loops | Topic::Printed => 0,
-            Topic::Estimated | Topic::True | Topic::World => 0,
+            Topic::Telemetry | Topic::Digest | Topic::Truth | Topic::Loops | Topic::Others => 0,
+            Topic::Printed | Topic::Estimated | Topic::True | Topic::World => 0,
         };
         match topic {
             Topic::Telemetry => {
@@ -308,9 +308,10 @@ impl Intake {
                     bytes: decoded(&data)?,
                 });
             }
-            Topic::Truth | Topic::Loops => {
+            Topic::Truth | Topic::Loops | Topic::Others => {
                 let source = match topic {
                     Topic::Loops => Source::Loops,
+                    Topic::Others => Source::Others,
                     _ => Source::Truth,
                 };
                 log.readings.push(self.readings.shown(t_ms, source, data)?);

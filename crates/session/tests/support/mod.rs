@@ -353,6 +353,7 @@ impl Target for Toy {
                 closed: false,
             }],
             movers: Vec::new(),
+            others: Vec::new(),
             footprint_m: vec![[0.1, 0.075], [-0.1, 0.075], [-0.1, -0.075], [0.1, -0.075]],
             base_m: 0.1,
             wheel_radius_m: 0.0325,

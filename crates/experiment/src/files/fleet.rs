@@ -1,0 +1,228 @@
+//! `[[fleet]]` of a scenario: several robots in one world, each with its own program, place and commands.
+//!
+//! ```toml
+//! [[fleet]]
+//! name = "north"               # in metrics, results and messages
+//! start = { x_m = 1, y_m = 1, heading_deg = -135 }
+//! program = "baseline"         # or "rumbo", ours, which is the default
+//! [[fleet]]
+//! name = "south"
+//! firmware = "sketch.hex"      # an image beside this file, on an emulated chip
+//! wiring = "memoria"           # may be missing, as with --wiring
+//! [[fleet.command]]
+//! at_s = 0.5
+//! arm = true
+//! ```
+//!
+//! An entry may have most keys of a scenario: robot, rig, mode, start, commands, parameters, plant, failing sonars and
+//! wires. What it does not have is that of the scenario around it; its parameters and plant values come on top of those.
+
+use super::commands::read_commands;
+use super::parameters::read_parameters;
+use super::read::Table;
+use super::robot::read_plant;
+use super::scenario::{
+    MOST_COMMANDS, MOST_FAULTS, ScenarioFile, read_given_mode, read_sonar_faults, read_start,
+    read_wire_faults,
+};
+use super::setup::{NativeProgram, Overrides};
+use super::{FileError, Library, Setup, Start};
+use rumbo_plant::contact::{Footprint, Pose};
+use rumbo_plant::world::Obstacle;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Robots of a scenario.
+const MOST_ROBOTS: usize = 32;
+/// It stands in the names of metrics and files.
+const LONGEST_NAME: usize = 20;
+
+/// A robot of a scenario with several.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Member {
+    /// The scenario as this robot has it, by the robot's name.
+    pub scenario: ScenarioFile,
+    /// The native program that drives it.
+    pub program: NativeProgram,
+    /// An image on an emulated chip that replaces it, by its path beside the scenario.
+    pub firmware: Option<PathBuf>,
+    /// The wiring of the image; `None`: chosen by its language and the mode.
+    pub wiring: Option<String>,
+}
+
+impl Member {
+    /// The overrides of the command line for this robot: the scenario's programs unless another is given there.
+    pub(super) fn overrides(&self, beside: &Library, given: &Overrides) -> Overrides {
+        let mut own = given.clone();
+        if given.program == NativeProgram::Rumbo && given.firmware.is_none() {
+            own.program = self.program;
+            own.firmware = self.firmware.as_ref().map(|path| beside.path(path));
+            own.wiring = own.wiring.or_else(|| self.wiring.clone());
+        }
+        own
+    }
+}
+
+/// Reads the robots, in order; `around` is the scenario without them.
+pub(super) fn read_fleet(root: &Table<'_, '_>, around: &ScenarioFile) -> Vec<Member> {
+    let mut lines = BTreeMap::new();
+    let tables = root.tables("fleet", MOST_ROBOTS);
+    let members = tables.iter().map(|table| {
+        let name = table.required_text("name", "what the robot is called, e.g. \"north\"");
+        let fits = |name: &str| {
+            let may_be = |at: char| at.is_ascii_lowercase() || at.is_ascii_digit() || at == '_';
+            name.len() <= LONGEST_NAME && name.chars().all(may_be)
+        };
+        if !fits(&name.value) {
+            let remedy = "write at most 20 of a to z, 0 to 9 and _";
+            table.complain("name", name.line, &name.value, remedy);
+        }
+        if let Some(first) = lines.insert(name.value.clone(), name.line)
+            && !name.value.is_empty()
+        {
+            let remedy = format!("the robot of line {first} has that name; give each its own");
+            table.complain("name", name.line, &name.value, &remedy);
+        }
+        read_member(table, name.value, around)
+    });
+    members.collect()
+}
+
+/// Distance between the places that are tried for a robot's start, in m.
+const GRID_M: f64 = 0.5;
+
+/// The entries of `[[fleet]]`, as text, that make so many robots of the scenario's one: the first at its start, the others
+/// on a grid around it, free of walls, boxes, movers and each other, in the world's arena.
+///
+/// # Errors
+/// The world has no room for so many.
+pub fn fleet_around(setup: &Setup, robots: usize) -> Result<String, FileError> {
+    let Setup {
+        scenario,
+        robot,
+        world,
+        ..
+    } = setup;
+    let Start {
+        x_m,
+        y_m,
+        heading_rad,
+    } = scenario.start;
+    let obstacles = world
+        .world()
+        .map_err(|error| FileError::Setting(format!("world {}: {error}", world.name)))?;
+    let footprint = Footprint::new(&robot.plant.body, &robot.plant.wheels);
+    let steps = |from_m: f64, to_m: f64, at_m: f64| {
+        let [first, last] = [from_m, to_m].map(|end_m| ((end_m - at_m) / GRID_M) as i32);
+        first..=last
+    };
+    let [[left_m, low_m], [right_m, high_m]] = [world.arena.from_m, world.arena.to_m];
+    let columns = steps(left_m, right_m, x_m);
+    let mut places: Vec<(i32, i32)> = columns
+        .flat_map(|column| steps(low_m, high_m, y_m).map(move |row| (column, row)))
+        .collect();
+    places.sort_by_key(|(column, row)| (column * column + row * row, *row, *column));
+    let starts = places.into_iter().map(|(column, row)| Pose {
+        x_m: x_m + GRID_M * f64::from(column),
+        y_m: y_m + GRID_M * f64::from(row),
+        heading_rad,
+    });
+    let bodies = obstacles
+        .bodies()
+        .iter()
+        .map(|body| body.outline(&body.at(0).pose));
+    let taken: Vec<Obstacle> = obstacles
+        .obstacles()
+        .iter()
+        .cloned()
+        .chain(bodies)
+        .collect();
+    let is_free = |at: &Pose| {
+        let corners = footprint.corners(at);
+        let inside = corners
+            .iter()
+            .all(|[x_m, y_m]| (left_m..=right_m).contains(x_m) && (low_m..=high_m).contains(y_m));
+        inside
+            && Obstacle::convex(&corners)
+                .is_ok_and(|own| !taken.iter().any(|each| each.overlaps(&own)))
+    };
+    let free: Vec<Pose> = starts.filter(is_free).take(robots).collect();
+    if free.len() < robots {
+        return Err(FileError::Setting(format!(
+            "world {}: has room for {} of {robots} robots; ask for fewer, or choose a larger world",
+            world.name,
+            free.len()
+        )));
+    }
+    let entries = (1..).zip(free).map(|(number, Pose { x_m, y_m, heading_rad })| {
+        let heading_deg = heading_rad.to_degrees();
+        format!(
+            "\n[[fleet]]\nname = \"robot{number}\"\nstart = {{ x_m = {x_m:?}, y_m = {y_m:?}, heading_deg = {heading_deg:?} }}\n"
+        )
+    });
+    Ok(entries.collect())
+}
+
+fn read_member(table: &Table<'_, '_>, name: String, around: &ScenarioFile) -> Member {
+    let mut own = ScenarioFile {
+        name,
+        text: String::new(),
+        limits: BTreeMap::new(),
+        ..around.clone()
+    };
+    if let Some(robot) = table.text("robot") {
+        own.robot = robot.value;
+    }
+    if let Some(rig) = table.text("rig") {
+        own.rig = rig.value;
+    }
+    if let Some(mode) = read_given_mode(table) {
+        own.mode = mode;
+    }
+    let start = read_start(&table.table("start"));
+    if table.has("start") {
+        own.start = start;
+    }
+    let commands = table.tables("command", MOST_COMMANDS);
+    if !commands.is_empty() {
+        own.commands = read_commands(commands, Some(own.mode), own.duration_s);
+    }
+    let sonar_faults = table.tables("sonar_fault", MOST_FAULTS);
+    if !sonar_faults.is_empty() {
+        own.sonar_faults = read_sonar_faults(sonar_faults, own.duration_s);
+    }
+    let wire_faults = table.tables("wire_fault", MOST_FAULTS);
+    if !wire_faults.is_empty() {
+        own.wire_faults = read_wire_faults(wire_faults, own.duration_s);
+    }
+    own.parameters
+        .extend(read_parameters(&table.table("parameters")));
+    own.plant.extend(read_plant(&table.table("plant"), ""));
+    let member = Member {
+        program: read_program(table),
+        firmware: table.text("firmware").map(|path| path.value.into()),
+        wiring: table.text("wiring").map(|wiring| wiring.value),
+        scenario: own,
+    };
+    table.finish();
+    member
+}
+
+fn read_program(table: &Table<'_, '_>) -> NativeProgram {
+    let Some(program) = table.text("program") else {
+        return NativeProgram::Rumbo;
+    };
+    if table.has("firmware") {
+        let remedy = "an image is a program: leave one of program and firmware out";
+        table.complain("program", program.line, &program.value, remedy);
+    }
+    match program.value.as_str() {
+        "rumbo" => NativeProgram::Rumbo,
+        "baseline" => NativeProgram::Baseline,
+        other => {
+            let remedy = "write \"rumbo\" or \"baseline\", or firmware = \"image.hex\"";
+            table.complain("program", program.line, other, remedy);
+            NativeProgram::Rumbo
+        }
+    }
+}

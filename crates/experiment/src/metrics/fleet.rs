@@ -1,0 +1,80 @@
+//! Metrics of several robots in one world: those of each, of each pair, and of all.
+
+use super::{Metrics, bare};
+use crate::run::RunResult;
+use rumbo_sim::fleet::{Fleet, Met};
+
+/// A robot's metrics begin with its name, a pair's with both: `north.contacts`, `north-south.closest_m`.
+pub(crate) fn of_fleet(fleet: &Fleet, robots: &[RunResult]) -> Metrics {
+    let mut metrics = Metrics::new();
+    let named = |robot: &RunResult, metric: &str| format!("{}.{metric}", robot.scenario);
+    for robot in robots {
+        let own = robot.metrics.iter();
+        metrics.extend(own.map(|(metric, value)| (named(robot, metric), *value)));
+    }
+    let (mut closest_m, mut met, mut fastest_m_s) = (f64::INFINITY, 0, 0.0_f64);
+    for (second, robot) in robots.iter().enumerate() {
+        for (first, other) in robots[..second].iter().enumerate() {
+            let pair = Pair::of(fleet, first, second);
+            let mut put = |metric: &str, value: f64| {
+                let name = format!("{}-{}.{metric}", other.scenario, robot.scenario);
+                metrics.insert(name, rounded(value));
+            };
+            put("closest_m", pair.closest_m);
+            put("contacts", pair.contacts as f64);
+            if pair.contacts > 0 {
+                put("contact_speed_m_s", pair.fastest_m_s);
+            }
+            closest_m = closest_m.min(pair.closest_m);
+            met += pair.contacts;
+        }
+        let encounters = fleet.encounters(second);
+        let speeds = encounters.iter().map(|encounter| encounter.speed_m_s);
+        fastest_m_s = speeds.fold(fastest_m_s, f64::max);
+    }
+    let arrived = robots.iter().filter(|robot| has_arrived(robot));
+    metrics.insert("arrived".into(), arrived.count() as f64);
+    metrics.insert("closest_m".into(), rounded(closest_m));
+    metrics.insert("contact_speed_m_s".into(), rounded(fastest_m_s));
+    metrics.insert("robot_contacts".into(), met as f64);
+    metrics
+}
+
+/// It has reached each of its goals.
+fn has_arrived(robot: &RunResult) -> bool {
+    let metrics = &robot.metrics;
+    let mut times = metrics.iter().filter(|(name, _)| bare(name) == "time_s");
+    metrics.get("reached").is_some_and(|reached| *reached > 0.0)
+        && times.all(|(_, time_s)| time_s.is_finite())
+}
+
+/// How near two robots came.
+struct Pair {
+    closest_m: f64,
+    /// Contacts that either felt: those of the one that felt more.
+    contacts: usize,
+    /// Largest closing speed of them [m/s].
+    fastest_m_s: f64,
+}
+
+impl Pair {
+    fn of(fleet: &Fleet, first: usize, second: usize) -> Self {
+        let felt = |robot: usize, other: usize| {
+            let mut encounters = fleet.encounters(robot);
+            encounters.retain(|encounter| encounter.met == Met::Robot(other));
+            encounters
+        };
+        let (one, other) = (felt(first, second), felt(second, first));
+        let speeds = one.iter().chain(&other).map(|each| each.speed_m_s);
+        Self {
+            closest_m: fleet.closest_m(first, second),
+            contacts: one.len().max(other.len()),
+            fastest_m_s: speeds.fold(0.0, f64::max),
+        }
+    }
+}
+
+/// A billionth of any unit is rounding, not behaviour.
+fn rounded(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9 + 0.0
+}
