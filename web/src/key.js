@@ -48,7 +48,7 @@ export async function askForKey() {
     if (token !== '') {
       refused = !answer.ok;
       token = '';
-      history.replaceState(null, '', location.pathname);
+      history.replaceState(null, '', location.pathname + location.hash);
     }
     return answer.ok ? { key: store(key) } : { key: null, why: refused ? 'used' : 'locked' };
   } catch {

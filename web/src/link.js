@@ -37,7 +37,7 @@ export class Link {
   async #open() {
     const answer = await askForKey();
     if (answer.key === null) return this.#again(answer.why);
-    const socket = new WebSocket(`ws://${location.host}/ws`, ['rumbo', answer.key]);
+    const socket = new WebSocket(`ws://${location.host}/ws${location.hash.replace(/^#(?=robot=)/, '?')}`, ['rumbo', answer.key]);
     this.#socket = socket;
     socket.addEventListener('open', () => {
       this.#retryMs = RETRY_MS;

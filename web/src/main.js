@@ -30,6 +30,7 @@ import { ProfilePanel } from './profile.js';
 import { ProgramPanel, isOwn } from './program.js';
 import { Recordings } from './recordings.js';
 import { ReplayBar } from './replay.js';
+import { offerRobots } from './robots.js';
 import { RobotPort } from './robot_port.js';
 import { Seat } from './seat.js';
 import { Share } from './share.js';
@@ -59,6 +60,9 @@ let state = null;
 let version = null;
 /** What is simulated around the robot. @type {import('./types.js').Scene | null} */
 let simulated = null;
+/** There are several robots in the world; the page is of one that goes with the time of the first. */
+let several = false;
+let follows = false;
 /** The robot's, as far as they are known. @type {import('./types.js').Parameter[]} */
 let table = [];
 /** The sonars that the robot carries, by number. */
@@ -221,6 +225,9 @@ function receive(message) {
       stateLine.modes = message.modes;
       machine.modes = message.modes;
       parameters.setModes(message.modes);
+      several = (message.robots ?? []).length > 0;
+      follows = message.robot > 0;
+      offerRobots(message.robots ?? [], message.robot);
       meter.clear();
       break;
     case 'scene':
@@ -229,9 +236,10 @@ function receive(message) {
       if (message.run !== consoleRun) consoles.clear();
       simulated = message.scene?.of_ghost ? null : message.scene;
       recordings.titles = new Map(message.scene?.experiments.map(({ name, title }) => [name, title]));
-      header.setScene(simulated);
+      // The first robot's page has the time and the choice for all.
+      header.setScene(follows ? null : simulated);
       map.setScene(message.scene);
-      editor.setScene(simulated);
+      editor.setScene(several ? null : simulated);
       panel.setScene(message.scene);
       stateLine.setScene(simulated);
       setBody();
@@ -336,6 +344,8 @@ Object.assign(window, {
     onMap: (at) => map.toCanvas(at),
     /** Where a place of the world is on the map [px]. @param {[number, number]} at */
     worldOnMap: (at) => map.worldToCanvas(at),
+    /** The other robots in the world. */
+    others: () => map.others().map(({ other: { name }, at }) => ({ name, ...at })),
     /** The plots and what is seen of them. */
     plots: () => ({ layout: plots.layout, range_s: plots.range_s, mark_s: plots.mark_s, following: plots.following }),
     /** The figures of every step of the setpoint. */

@@ -191,6 +191,7 @@ export class WorldMap {
     sketch.drawGrid(view, px);
     if (this.#tool) return this.#tool.draw(sketch, px);
     sketch.drawWorld(px, this.#store.latest?.t_s ?? 0);
+    for (const { other, at } of this.others()) sketch.drawOther(other, at, px);
     sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
     sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
     sketch.drawTrail(this.#store.trails.ghost, colours.goal, px);
@@ -205,6 +206,15 @@ export class WorldMap {
     if (latest.truth) sketch.drawRobot(latest.truth, px, 'real', latest.contact);
     if (estimated && latest.spread) sketch.drawSpread(estimated, latest.origin, latest.spread, px);
     if (this.#pick && canvas.matches(':focus-visible')) sketch.drawAim();
+  }
+
+  /** The other robots, where they are known to be. */
+  others() {
+    const t_s = this.#store.latest?.t_s ?? 0;
+    return (this.#sketch.scene?.others ?? []).flatMap((other) => {
+      const at = this.#store.readings.placeOf(other.name, t_s);
+      return at ? [{ other, at }] : [];
+    });
   }
 
   /** @param {number} px */
@@ -291,6 +301,7 @@ export class WorldMap {
         return next ? nextTo(corner, next, [start.x_m, start.y_m], ALONG_M) : [];
       })) ?? []),
       ...(this.#sketch.scene?.movers?.flatMap(({ waypoints }) => waypoints.map(({ at }) => /** @type {Point} */ ([at.x_m, at.y_m]))) ?? []),
+      ...this.others().map(({ at }) => /** @type {Point} */ ([at.x_m, at.y_m].map((each) => Math.round(each / GROWTH_M) * GROWTH_M))),
       [start.x_m - around_m, start.y_m - around_m], [start.x_m + around_m, start.y_m + around_m],
       ...[[robot.x_m, robot.y_m], ...this.#trailCorners(), ...(goal ? [place(frame, goal)] : []), ...(route?.waypoints.map(({ x_m, y_m }) => place(frame, [x_m, y_m])) ?? [])]
         .map((point) => point.map((each) => Math.round(each / GROWTH_M) * GROWTH_M)),

@@ -39,6 +39,8 @@ export class Readings {
   truth;
   /** What control loops add up. */
   loops;
+  /** Where other robots are; not plotted. */
+  others;
   /** By port. @type {Map<number, Table>} */
   #printed = new Map();
   #kept_s;
@@ -50,17 +52,27 @@ export class Readings {
     this.#kept_s = kept_s;
     this.truth = new Table([], kept_s);
     this.loops = new Table([], kept_s);
+    this.others = new Table([], kept_s);
   }
 
   clear() {
     this.truth = new Table([], this.#kept_s);
     this.loops = new Table([], this.#kept_s);
+    this.others = new Table([], this.#kept_s);
     this.#printed.clear();
     this.#heading_deg = 0;
   }
 
   get #tables() {
     return [this.truth, this.loops, ...this.#printed.values()];
+  }
+
+  /** Where another robot was at an instant, as far as it is known. @param {string} robot @param {number} t_s @returns {Pose | null} */
+  placeOf(robot, t_s) {
+    const { t, columns } = this.others;
+    const at = Math.min(this.others.indexAt(t_s), t.length - 1);
+    const [x_m, y_m, heading_deg] = ['x_m', 'y_m', 'heading_deg'].map((part) => columns.get(`${robot}_${part}`)?.[at]);
+    return typeof x_m === 'number' && typeof y_m === 'number' && typeof heading_deg === 'number' ? { x_m, y_m, heading_rad: heading_deg / DEG_PER_RAD } : null;
   }
 
   /** The table that a signal is in. @param {string} name */
@@ -97,6 +109,11 @@ export class Readings {
       const signals = names.map((name) => `serial${usart}:${name}`);
       table.offer(signals);
       for (const [t_s, cells] of rows) table.push(t_s, Object.fromEntries(signals.map((name, index) => [name, number(cells[index])])));
+      return [];
+    }
+    if (source === 'others') {
+      this.others.offer(names);
+      for (const [t_s, cells] of rows) this.others.push(t_s, Object.fromEntries(names.map((name, index) => [name, number(cells[index])])));
       return [];
     }
     const signals = names.map(seen);

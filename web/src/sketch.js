@@ -210,6 +210,32 @@ export class Sketch {
   }
 
   /**
+   * Another robot, with its name.
+   * @param {{name: string, footprint_m: Point[]}} other
+   * @param {Pose} at
+   * @param {number} px
+   */
+  drawOther({ name, footprint_m }, at, px) {
+    const context = this.context;
+    this.drawOutlines(px, [{ corners_m: footprint_m.map((corner) => place(at, corner)), closed: true }]);
+    context.save();
+    context.translate(at.x_m, at.y_m);
+    // Fonts of a few hundredths of a unit are badly set.
+    context.scale(px, -px);
+    context.fillStyle = colours.text;
+    context.font = '11px sans-serif';
+    context.textAlign = 'center';
+    context.fillText(name, 0, -0.16 / px);
+    context.restore();
+    context.beginPath();
+    context.moveTo(at.x_m, at.y_m);
+    context.lineTo(...place(at, [0.09, 0]));
+    context.lineWidth = 2 * px;
+    context.strokeStyle = colours.text;
+    context.stroke();
+  }
+
+  /**
    * The 95 % regions of the estimated position and heading.
    * @param {Pose} at
    * @param {Pose} origin

@@ -50,6 +50,7 @@
  * @property {Pose} start Origin of the odometry in the world.
  * @property {Obstacle[]} obstacles
  * @property {Mover[]} [movers] What moves, whatever the robot does.
+ * @property {{name: string, footprint_m: [number, number][]}[]} [others] The other robots in the world.
  * @property {[number, number][]} footprint_m
  * @property {number} base_m
  * @property {number} wheel_radius_m
@@ -103,7 +104,7 @@
  * @property {{name: string, calls: number, own: number, total: number}[]} functions
  * @property {{vector: number, name: string, count: number, total: number, mean: number, longest: number, worst_latency: number}[]} interrupts
  *
- * @typedef {{source: 'truth' | 'loops' | {usart: number}, names: string[], rows: [number, Cell[]][]}} ReadingGroup Time [s] and values of signals beside the telemetry; `usart`: the port that printed them.
+ * @typedef {{source: 'truth' | 'loops' | 'others' | {usart: number}, names: string[], rows: [number, Cell[]][]}} ReadingGroup Time [s] and values of signals beside the telemetry; `usart`: the port that printed them.
  *
  * @typedef {{name: string, bytes: number, written_s: number, open: boolean, readable: boolean, duration_s: number, started: string | null, scenario: string | null, robot: string | null, seed: number | null}} Recording
  * @typedef {{name: string, duration_s: number, metrics: Record<string, number | null>, parameters: Record<string, number>, columns: string[], rows: Cell[][]}} RecordingContent
@@ -116,7 +117,7 @@
  *
  * @typedef {{usart: number, text: string}} ConsoleText Output of a USART of an emulated chip.
  *
- * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[]}
+ * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[], robots?: string[], robot: number}
  *   | {type: 'scene', run: number, scene: Scene | null}
  *   | {type: 'parameters', parameters: Parameter[]}
  *   | {type: 'state', state: State}

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-use rumbo_experiment::files::{FileError, Kind, Library, NativeProgram, Overrides, Setup};
+use rumbo_experiment::files::{
+    FileError, Kind, Library, NativeProgram, Overrides, Setup, Start, fleet_around,
+};
 use rumbo_experiment::run::{RunResult, run, run_all_on};
 
 /// To a wall 1.5 m ahead, without the robot.
@@ -170,6 +172,31 @@ fn robots_that_cannot_be_together_are_refused_by_name() {
         .map(|number| format!("[[fleet]]\nname = \"r{number}\"\nstart = {{ x_m = {number} }}\n"));
     let text = refusal(&many.collect::<String>());
     assert!(text.contains("32"), "{text}");
+}
+
+#[test]
+fn copies_of_a_robot_stand_free_on_a_grid_around_it() {
+    let room = TO_THE_WALL.replace("\"open\"", "\"room\"");
+    let setup = setup_of(&room).unwrap();
+    let entries = fleet_around(&setup, 6).unwrap();
+    let fleet = setup_of(&(room + &entries)).unwrap().fleet;
+    let starts: Vec<_> = fleet.iter().map(|robot| robot.scenario.start).collect();
+    assert_eq!(starts[0], setup.scenario.start);
+    assert_eq!(fleet[5].scenario.name, "robot6");
+    let apart = |one: &Start, other: &Start| (one.x_m - other.x_m).hypot(one.y_m - other.y_m);
+    for (index, start) in starts.iter().enumerate() {
+        assert!(
+            starts[..index]
+                .iter()
+                .all(|other| apart(start, other) > 0.49),
+            "{starts:?}"
+        );
+    }
+    let error = fleet_around(&setup, 60).unwrap_err().to_string();
+    assert!(
+        error.starts_with("world room: has room for ") && error.contains("of 60 robots"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -70,6 +70,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/replay.js": SCRIPT,
     "src/response.js": SCRIPT,
     "src/robot_port.js": SCRIPT,
+    "src/robots.js": SCRIPT,
     "src/run_link.js": SCRIPT,
     "src/seat.js": SCRIPT,
     "src/serial_ports.js": SCRIPT,
