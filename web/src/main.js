@@ -30,8 +30,9 @@ import { ProfilePanel } from './profile.js';
 import { ProgramPanel, isOwn } from './program.js';
 import { Recordings } from './recordings.js';
 import { ReplayBar } from './replay.js';
-import { offerRobots } from './robots.js';
+import { ReportDialog } from './report_dialog.js';
 import { RobotPort } from './robot_port.js';
+import { offerRobots } from './robots.js';
 import { Seat } from './seat.js';
 import { Share } from './share.js';
 import { isEmbedded, linkPages } from './site.js';
@@ -178,6 +179,7 @@ element('checkup', HTMLButtonElement).addEventListener('click', () => checkup.op
 const recordings = new Recordings(() => plots.modes, askLab, showRecording);
 const calibration = new CalibrationDialog(send);
 new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
+new ReportDialog();
 const robotPort = new RobotPort(askLab);
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
 makeEnlargeable();

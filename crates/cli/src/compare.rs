@@ -7,10 +7,11 @@ use crate::args::CompareArgs;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
 use crate::figures;
-use crate::mark::Stamp;
+use crate::mark::Mark;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
 use rumbo_log::{Log, Row};
+use rumbo_report::Stamp;
 use rumbo_station::log_file;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -36,7 +37,7 @@ fn compare_logs(args: &CompareArgs) -> Result<(), Failure> {
     let names: Vec<String> = args.logs.iter().map(|path| output::shown(path)).collect();
     let stamp = Stamp::of("compare", &names);
     if let Some(path) = &args.out {
-        Guard::new(&args.logs, args.overwrite.force).check(path, &stamp.mark())?;
+        Guard::new(&args.logs, args.overwrite.force).check(path, &Mark::of(&stamp))?;
     }
     let logs = args.logs.iter().map(|path| {
         let log = log_file::read(path).map_err(Failure::input)?;

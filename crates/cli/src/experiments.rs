@@ -2,7 +2,7 @@
 
 use crate::args::{ExperimentsArgs, LanguageName};
 use crate::failure::Failure;
-use crate::mark::Stamp;
+use crate::mark::Mark;
 use crate::output;
 use crate::place::{self, Guard};
 use crate::recorded;
@@ -12,6 +12,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::files::{Library, Overrides};
 use rumbo_lab::manifest;
 use rumbo_log::Kind;
+use rumbo_report::Stamp;
 use rumbo_report::real::{self, Real};
 use rumbo_report::text::Language;
 use rumbo_report::{Data, Plan, Request, html};
@@ -70,27 +71,13 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
 /// Refuses, before anything runs, what would write over something else than an older report of the same. Gives what the
 /// report is known by.
 fn check_places(args: &ExperimentsArgs, plan: &Plan) -> Result<Stamp, Failure> {
-    let language = match language(args.language) {
-        Language::English => "en",
-        Language::Spanish => "es",
-    };
-    let about = [
-        language.into(),
-        args.seed.seed.to_string(),
-        args.robot.clone().unwrap_or_default(),
-        args.image
-            .firmware
-            .as_deref()
-            .map(output::shown)
-            .unwrap_or_default(),
-    ];
-    let stamp = Stamp::of("experiments", &[&about[..], &args.only].concat());
+    let stamp = plan.stamp(language(args.language));
     let inputs = args.robot.iter().map(Into::into);
     let guard = Guard::new(
         inputs.chain(args.image.firmware.clone()),
         args.overwrite.force,
     );
-    guard.check(&args.out.join(REPORT), &stamp.mark())?;
+    guard.check(&args.out.join(REPORT), &Mark::of(&stamp))?;
     for scenario in plan.scenarios().filter(|_| args.data) {
         let seed = args.seed.seed;
         Results::of(&args.out, &scenario.name, seed).check(&guard, scenario, &[], seed)?;

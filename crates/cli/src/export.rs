@@ -3,11 +3,12 @@
 use crate::args::{ExportArgs, Format};
 use crate::failure::Failure;
 use crate::figures;
-use crate::mark::{Mark, Stamp};
+use crate::mark::Mark;
 use crate::output;
 use crate::place::{self, Guard};
 use crate::ros2bag::Bag;
 use rumbo_log::{Kind, Log, Manifest, Reading, Row, Source};
+use rumbo_report::Stamp;
 use rumbo_station::log_file;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -85,8 +86,8 @@ fn files(format: Format, stamp: &Stamp) -> Vec<(&'static str, Mark)> {
             ("csv", Mark::table(&signals(&nothing))),
             ("events.csv", Mark::table(&events(&nothing))),
         ],
-        Format::Svg => vec![("svg", stamp.mark())],
-        Format::Png => vec![("png", stamp.mark())],
+        Format::Svg => vec![("svg", Mark::of(stamp))],
+        Format::Png => vec![("png", Mark::of(stamp))],
     }
 }
 

@@ -8,12 +8,13 @@ mod hand_ins;
 use crate::args::GradeArgs;
 use crate::experiments::language;
 use crate::failure::Failure;
-use crate::mark::Stamp;
+use crate::mark;
 use crate::output;
 use crate::place::{self, Guard};
 use crate::run::set_threads;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::grade::{Assignment, Mark, grade as grade_all};
+use rumbo_report::Stamp;
 use rumbo_report::grade::{class, student};
 use rumbo_sketch::sandbox::{Limits, Sandbox};
 use rumbo_sketch::{Compiler, SketchError, Toolchain};
@@ -96,7 +97,7 @@ fn check_places(args: &GradeArgs, assignment: &Assignment) -> Result<Stamp, Fail
     let stamp = Stamp::of("grade", std::slice::from_ref(&assignment.name));
     let guard = Guard::new([args.assignment.clone()], args.overwrite.force);
     let page = args.out.join(PAGE);
-    guard.check(&page, &stamp.mark())?;
+    guard.check(&page, &mark::Mark::of(&stamp))?;
     let is_filled = std::fs::read_dir(&args.out).is_ok_and(|mut inside| inside.next().is_some());
     if is_filled && !page.is_file() && !args.overwrite.force {
         let out = args.out.display();

@@ -6,7 +6,7 @@ mod session;
 use crate::args::IdentifyArgs;
 use crate::failure::Failure;
 use crate::logs;
-use crate::mark::Stamp;
+use crate::mark::Mark;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
 use drive::Driving;
@@ -16,6 +16,7 @@ use rumbo_identify::sonar_stats::{self, Comparison};
 use rumbo_identify::{AgainstTruth, Identification, Outcome, Progress, Recordings};
 use rumbo_plant::params::Params;
 use rumbo_plot::{Sheet, WIDTH, Words};
+use rumbo_report::Stamp;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -166,8 +167,8 @@ fn check_plots(args: &IdentifyArgs, logs: &Recordings, folder: &Path) -> Result<
     let mut results = Vec::new();
     for (number, log) in (1..).zip(&logs.drive) {
         let [svg, png] = places(folder, &log.name);
-        guard.check(&svg, &stamp(&log.name).mark())?;
-        guard.check(&png, &stamp(&log.name).mark())?;
+        guard.check(&svg, &Mark::of(&stamp(&log.name)))?;
+        guard.check(&png, &Mark::of(&stamp(&log.name)))?;
         results.push((svg, format!("run {number}")));
     }
     place::distinct(&results)

@@ -9,8 +9,8 @@
 //! | PNG | the same as a text chunk |
 //! | profile | nothing but chains of functions with their cycles |
 
-use rumbo_lab::manifest::crc32;
 use rumbo_log::Kind;
+use rumbo_report::Stamp;
 use rumbo_station::log_file;
 use std::fs::File;
 use std::io::Read;
@@ -18,9 +18,6 @@ use std::path::Path;
 
 /// A mark stands within so many bytes of a file's beginning.
 const BEGINNING: u64 = 4_096;
-/// How an image begins, up to the end of its header.
-const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
-const PNG_HEADER: usize = 33;
 
 /// The mark of a file of Rumbo.
 #[derive(Clone, Debug)]
@@ -34,6 +31,11 @@ pub(crate) enum Mark {
 }
 
 impl Mark {
+    /// That of a stamped file.
+    pub(crate) fn of(stamp: &Stamp) -> Self {
+        Self::Text(stamp.text().to_owned())
+    }
+
     /// A table that begins with the names of its columns.
     pub(crate) fn table(text: &str) -> Self {
         let header = text.split_inclusive('\n').next().unwrap_or_default();
@@ -53,41 +55,6 @@ impl Mark {
                 }),
             Self::Text(text) => beginning(path).is_some_and(|beginning| beginning.contains(text)),
             Self::Profile => beginning(path).is_some_and(|beginning| is_profile(&beginning)),
-        }
-    }
-}
-
-/// The mark added to a file whose contents have none: the command, and a checksum of its arguments.
-#[derive(Clone, Debug)]
-pub(crate) struct Stamp(pub(crate) String);
-
-impl Stamp {
-    /// What a command makes of these.
-    pub(crate) fn of(command: &str, about: &[String]) -> Self {
-        let sum = crc32(about.join("\n").as_bytes());
-        Self(format!("rumbo {command} {sum:08x}"))
-    }
-
-    /// The mark of a file that has it.
-    pub(crate) fn mark(&self) -> Mark {
-        Mark::Text(self.0.clone())
-    }
-
-    /// A PNG, SVG or HTML file with it.
-    pub(crate) fn put_on(&self, file: impl Into<Vec<u8>>) -> Vec<u8> {
-        let (file, text) = (file.into(), &self.0);
-        if file.starts_with(PNG) && file.len() >= PNG_HEADER {
-            let (header, rest) = file.split_at(PNG_HEADER);
-            return [header, &text_chunk(text), rest].concat();
-        }
-        let comment = format!("<!-- {text} -->\n");
-        // Nothing but the document's type comes before a comment in HTML.
-        match file.iter().position(|byte| *byte == b'\n') {
-            Some(end) if file.starts_with(b"<!") => {
-                let (first, rest) = file.split_at(end + 1);
-                [first, comment.as_bytes(), rest].concat()
-            }
-            _ => [comment.as_bytes(), &file].concat(),
         }
     }
 }
@@ -112,14 +79,6 @@ fn is_profile(text: &str) -> bool {
     lines().next().is_some() && lines().all(is_chain)
 }
 
-/// A `tEXt` chunk (PNG specification, 11.3.4.3).
-fn text_chunk(text: &str) -> Vec<u8> {
-    let body = [b"tEXtSoftware\0", text.as_bytes()].concat();
-    let length = (body.len() - 4) as u32;
-    let sum = crc32(&body);
-    [&length.to_be_bytes(), &body[..], &sum.to_be_bytes()].concat()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,18 +97,18 @@ mod tests {
         for file in [png.clone(), svg.into_bytes(), html] {
             let stamp = |about: &str| Stamp::of("compare", &["a".into(), about.into()]);
             std::fs::write(&path, stamp("b").put_on(file.clone())).unwrap();
-            assert!(stamp("b").mark().is_on(&path));
-            assert!(!stamp("c").mark().is_on(&path));
+            assert!(Mark::of(&stamp("b")).is_on(&path));
+            assert!(!Mark::of(&stamp("c")).is_on(&path));
             std::fs::write(&path, file).unwrap();
-            assert!(!stamp("b").mark().is_on(&path));
+            assert!(!Mark::of(&stamp("b")).is_on(&path));
         }
-        let stamp = Stamp("rumbo x 01234567".into());
+        let stamp = Stamp::of("x", &[]);
         let decoder = png::Decoder::new(std::io::Cursor::new(stamp.put_on(png)));
         let reader = decoder.read_info().unwrap();
         let chunk = &reader.info().uncompressed_latin1_text[0];
         assert_eq!(
-            (chunk.keyword.as_str(), &chunk.text),
-            ("Software", &stamp.0)
+            (chunk.keyword.as_str(), chunk.text.as_str()),
+            ("Software", stamp.text())
         );
     }
 

@@ -2,12 +2,13 @@
 
 use crate::args::RunArgs;
 use crate::failure::Failure;
-use crate::mark::{Mark, Stamp};
+use crate::mark::Mark;
 use crate::output;
 use crate::place::{self, Guard};
 use rumbo_experiment::files::Setup;
 use rumbo_experiment::observe::{self, Seen, Wanted};
 use rumbo_experiment::run::{RunResult, run_by};
+use rumbo_report::Stamp;
 use std::fs::File;
 use std::io::Write;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -21,7 +22,7 @@ pub(crate) fn is_wanted(args: &RunArgs) -> bool {
 /// Checks that the requested files may be written.
 pub(crate) fn check_places(args: &RunArgs, guard: &Guard) -> Result<(), Failure> {
     let files = [
-        (&args.vcd, "--vcd", stamp(args).mark()),
+        (&args.vcd, "--vcd", Mark::of(&stamp(args))),
         (&args.profile, "--profile", Mark::Profile),
     ];
     let mut results = Vec::new();
@@ -96,7 +97,7 @@ fn drawn<T>(
     place::make(path, |place| {
         let unwritable = |error: std::io::Error| place::unwritable(path, &error);
         let mut file = File::create(place).map_err(unwritable)?;
-        writeln!(file, "$comment {} $end", stamp.0).map_err(unwritable)?;
+        writeln!(file, "$comment {} $end", stamp.text()).map_err(unwritable)?;
         seen = Some(look(Some(file))?);
         Ok(())
     })?;

@@ -1,10 +1,11 @@
 //! `rumbo export --ros2bag`: a log as a bag of ROS 2.
 
 use crate::failure::Failure;
-use crate::mark::Stamp;
+use crate::mark::Mark;
 use crate::output;
 use crate::place::{self, Guard, unwritable};
 use rumbo_log::Log;
+use rumbo_report::Stamp;
 use rumbo_ros::{bag, convert};
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -34,7 +35,7 @@ impl Bag {
 
     /// Whether its files may be written.
     pub(crate) fn check(&self, guard: &Guard) -> Result<(), Failure> {
-        let mark = self.stamp.mark();
+        let mark = Mark::of(&self.stamp);
         self.paths()
             .iter()
             .try_for_each(|path| guard.check(path, &mark))
@@ -50,7 +51,7 @@ impl Bag {
             let written = File::create(place)
                 .map_err(mcap::McapError::Io)
                 .and_then(|file| {
-                    let mut file = bag::write(BufWriter::new(file), &messages, &self.stamp.0)?;
+                    let mut file = bag::write(BufWriter::new(file), &messages, self.stamp.text())?;
                     Ok(file.flush()?)
                 });
             written.map_err(|error| match error {
@@ -59,7 +60,7 @@ impl Bag {
             })
         })?;
         let text = bag::metadata(&messages, &self.file);
-        place::write(&metadata, format!("# {}\n{text}", self.stamp.0))?;
+        place::write(&metadata, format!("# {}\n{text}", self.stamp.text()))?;
         output::line(&self.folder.display().to_string())
     }
 }

@@ -16,6 +16,8 @@ mod complaints;
 mod content;
 mod data;
 mod drawing;
+#[cfg(target_family = "wasm")]
+pub mod exports;
 #[cfg(feature = "host")]
 pub mod grade;
 mod judge;
@@ -27,6 +29,7 @@ mod plan;
 pub mod real;
 mod respond;
 mod signals;
+mod stamp;
 mod summary;
 #[cfg(feature = "host")]
 pub mod sweep;
@@ -40,4 +43,5 @@ pub use content::ContentError;
 pub use data::Data;
 pub use plan::{Plan, Request};
 pub use signals::Outcome;
+pub use stamp::Stamp;
 pub use summary::html;

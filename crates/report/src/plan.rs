@@ -4,6 +4,8 @@ use crate::chapters::{EXPERIMENTS, Experiment};
 use crate::data::Data;
 use crate::real::{Real, Recording};
 use crate::signals::Outcome;
+use crate::stamp::Stamp;
+use crate::text::Language;
 #[cfg(feature = "host")]
 use rayon::prelude::*;
 use rumbo_experiment::files::{FileError, Library, Overrides, ScenarioFile, Setup, TimedCommand};
@@ -77,6 +79,25 @@ impl Plan {
             experiments,
             jobs,
         })
+    }
+
+    /// What the report in this language is known by.
+    #[must_use]
+    pub fn stamp(&self, language: Language) -> Stamp {
+        let Request {
+            only,
+            seed,
+            overrides,
+            ..
+        } = &self.request;
+        let image = overrides.firmware.as_ref();
+        let about = [
+            language.tag().into(),
+            seed.to_string(),
+            overrides.robot.clone().unwrap_or_default(),
+            image.map_or(String::new(), |path| path.display().to_string()),
+        ];
+        Stamp::of("experiments", &[&about[..], only].concat())
     }
 
     /// The scenarios that are run as they are, not with the references of a recorded run.

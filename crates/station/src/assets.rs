@@ -68,6 +68,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/readings.js": SCRIPT,
     "src/recordings.js": SCRIPT,
     "src/replay.js": SCRIPT,
+    "src/report_dialog.js": SCRIPT,
     "src/response.js": SCRIPT,
     "src/robot_port.js": SCRIPT,
     "src/robots.js": SCRIPT,

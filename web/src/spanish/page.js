@@ -29,6 +29,13 @@ export const PAGE = {
   'Open a recording…': 'Abrir una grabación…', 'Show a saved recording, .mcap, as a replay; dropping it on the page does the same': 'Reproduce una grabación guardada, .mcap; también se puede soltar en la página',
   'Back to the lab': 'Volver al laboratorio', 'Close the recording: the lab goes on where it was': 'Cierra la grabación: el laboratorio sigue donde estaba',
   'Save this run': 'Guardar esta grabación', 'Save the recording of the run so far as a file': 'Guarda en un archivo lo grabado hasta ahora',
+  'Report': 'Memoria', 'Every experiment of the course, run and written up as one page': 'Todos los experimentos del curso, ejecutados y redactados en una página', 'Experiments': 'Experimentos', 'all': 'todos', 'Cancel': 'Cancelar',
+  'Runs the experiments of the course, faster than real time, and writes them up with their figures as one page, in the language of this one. On a computer `rumbo experiments` writes the same page, byte for byte.':
+    'Ejecuta los experimentos del curso, más rápido que en tiempo real, y los redacta con sus figuras en una sola página, en español. En un ordenador `rumbo experiments` escribe la misma página, byte a byte.',
+  'Make the report': 'Redactar la memoria', 'Open the report': 'Abrir la memoria', 'choose an experiment': 'elige un experimento',
+  'The report is not here: {}. Without a network it can be made where it has been made before.': 'La memoria no está aquí: {}. Sin red se puede redactar donde ya se haya redactado antes.',
+  'Rumbo writes the report on this computer: every experiment of the course, run faster than real time, with its figures, as one page.': 'Rumbo escribe la memoria en este ordenador: todos los experimentos del curso, ejecutados más rápido que en tiempo real, con sus figuras, en una sola página.',
+  '`--only mode1 mode5` writes chosen chapters, `--real FOLDER` puts recorded runs of a robot beside ours.': '`--only mode1 mode5` escribe solo esos capítulos; `--real CARPETA` pone al lado ejecuciones grabadas de un robot.',
   'Pages': 'Páginas', 'Lessons': 'Lecciones', 'Guides': 'Guías', 'Theory': 'Teoría',
   'Write the program of an Arduino Mega': 'Grabar el programa de un Arduino Mega', 'Choose a port and write…': 'Elegir un puerto y grabar…', 'written': 'grabado', 'Another program…': 'Otro programa…',
   'Over the USB cable, by the board\'s own boot loader. All of it is read back. Should the cable go meanwhile, the board stands still until it is written again. Parameters saved on the robot stay.': 'Por el cable USB, con el cargador de arranque de la propia placa. Todo se vuelve a leer. Si el cable se suelta entretanto, la placa se queda parada hasta que se grabe otra vez. Los parámetros guardados en el robot se conservan.',

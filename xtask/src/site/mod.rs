@@ -4,7 +4,8 @@
 //! The crate `browser` is compiled to WebAssembly with the Rust of the firmware, which has the sources of the library:
 //! no further target need be installed. Beside it stand the files of `web/`; `index.html` gets a content policy, which
 //! the station sends as a header, and the note that its session runs in the page. [`pages`] are all the others; `api/` is
-//! what rustdoc makes of the crates that others can use. The image for the Mega is part of the site if it has been built.
+//! what rustdoc makes of the crates that others can use. The image for the Mega is part of the site if it
+//! has been built.
 
 mod links;
 mod pages;
@@ -13,6 +14,8 @@ use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
 use sha2::{Digest, Sha256};
 
 use crate::firmware::toolchain::Toolchain;
@@ -38,11 +41,15 @@ const LIST: &str = "const FILES = [];\nconst VERSION = '';\n";
 const FOLDERS: [&str; 5] = ["src", "src/spanish", "lab", "vendor/uplot", "pages"];
 /// The program for the Mega, as `cargo xtask firmware` builds it, and how the page calls it.
 const IMAGE: [&str; 2] = ["firmware/rumbo.hex", "rumbo.hex"];
+/// The lab and the report as WebAssembly, each with its script.
+const MODULES: [&str; 2] = ["rumbo", "rumbo_report"];
+/// What stands between `<style>`, after a line break, and `</style>` of a report.
+const STYLES: [&str; 2] = ["crates/plot/src/plot.css", "crates/report/src/style.css"];
 /// Where the additions to `index.html` go.
 const MARK: &str = "<meta charset=\"utf-8\">\n";
-/// Everything comes from the site itself; blobs are pictures that the page made. Browsers count the compilation of
-/// WebAssembly as a kind of `eval`.
-const HEAD: &str = r#"  <meta http-equiv="Content-Security-Policy" content="default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; img-src 'self' blob:; base-uri 'none'; form-action 'none'; object-src 'none'">
+/// Everything comes from the site itself; blobs are what the page made: pictures, and reports, whose style stands in them.
+/// Browsers count the compilation of WebAssembly as a kind of `eval`.
+const HEAD: &str = r#"  <meta http-equiv="Content-Security-Policy" content="default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' '{style}'; img-src 'self' blob: data:; base-uri 'none'; form-action 'none'; object-src 'none'">
   <meta name="referrer" content="no-referrer">
   <meta name="rumbo-session" content="page">
   <link rel="manifest" href="app.webmanifest">
@@ -61,7 +68,7 @@ pub(crate) fn run(project: &Project) -> Result<bool, String> {
 
 /// Builds the site anew and returns its folder.
 pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
-    let wasm = compile(project)?;
+    let modules = compile(project)?;
     let site = project.root.join("site");
     match fs::remove_dir_all(&site) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
@@ -76,12 +83,17 @@ pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
     for file in FILES {
         copy(&web.join(file), &site.join(file))?;
     }
-    let head = format!("{HEAD}{}", carry_image(project, &site)?);
+    let head = HEAD.replace("{style}", &report_style(project)?) + &carry_image(project, &site)?;
     complete(&site.join("index.html"), &head)?;
     let lab = site.join("lab");
-    let mut bindgen = project.cargo(&["run", "--quiet", "--locked", "-p", "rumbo-bindgen", "--"]);
-    run_command(bindgen.arg(&wasm).arg(&lab).arg("rumbo"))?;
+    for (wasm, name) in modules.iter().zip(MODULES) {
+        let mut bindgen =
+            project.cargo(&["run", "--quiet", "--locked", "-p", "rumbo-bindgen", "--"]);
+        run_command(bindgen.arg(wasm).arg(&lab).arg(name))?;
+    }
     let mut kept = names_below(&site)?;
+    // Kept when it is asked for.
+    kept.retain(|name| !name.starts_with(&format!("lab/{}", MODULES[1])));
     pages::write(project, &site)?;
     let lessons = names_below(&site.join(LESSONS))?;
     // A folder's first page is asked for by the folder.
@@ -156,8 +168,8 @@ fn files_below(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(files)
 }
 
-/// The lab as WebAssembly; with it the report, which no page has yet, so that it stays fit for one.
-pub(crate) fn compile(project: &Project) -> Result<PathBuf, Stop> {
+/// The lab and the report as WebAssembly, in the order of [`MODULES`]: the report is loaded when it is asked for.
+pub(crate) fn compile(project: &Project) -> Result<[PathBuf; 2], Stop> {
     let toolchain = Toolchain::find(project)?;
     // Apart, so that this compiler and the usual one do not build each other's crates again.
     let target = project.target.join("wasm");
@@ -182,7 +194,7 @@ pub(crate) fn compile(project: &Project) -> Result<PathBuf, Stop> {
     }
     run_command(&mut build)?;
     let folder = target.join(TARGET).join(PROFILE);
-    Ok(folder.join("rumbo_browser.wasm"))
+    Ok(["rumbo_browser.wasm", "rumbo_report.wasm"].map(|file| folder.join(file)))
 }
 
 /// Debian's compiler has no linker for WebAssembly: that of the Rust in use, or else LLVM's.
@@ -223,6 +235,17 @@ fn carry_image(project: &Project, site: &Path) -> Result<String, String> {
     Ok(format!(
         "  <meta name=\"rumbo-image\" content=\"{digits}\">\n"
     ))
+}
+
+/// The style of reports as a content policy names it: by its hash. They are shown by the policy of the page that made them.
+fn report_style(project: &Project) -> Result<String, String> {
+    let mut hasher = Sha256::new();
+    hasher.update("\n");
+    for file in STYLES {
+        let path = project.root.join(file);
+        hasher.update(fs::read(&path).map_err(|error| wrong(&path, &error))?);
+    }
+    Ok(format!("sha256-{}", BASE64.encode(hasher.finalize())))
 }
 
 /// The additions to the page.

@@ -5,7 +5,7 @@ use crate::args::CompareArgs;
 use crate::experiments::language;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::mark::Stamp;
+use crate::mark::Mark;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
 use crate::run::{progress_bar, set_threads};
@@ -17,6 +17,7 @@ use rumbo_experiment::files::{
     Library, NativeProgram, Overrides, ScenarioFile, Setup, parameters, unknown,
 };
 use rumbo_plant::params::Params;
+use rumbo_report::Stamp;
 use rumbo_report::compare::page;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -60,7 +61,8 @@ pub(super) fn compare(args: &CompareArgs, scenario: &str) -> Result<(), Failure>
     ];
     let stamp = Stamp::of("compare", &about);
     if let Some(path) = &args.out {
-        Guard::new([PathBuf::from(scenario)], args.overwrite.force).check(path, &stamp.mark())?;
+        Guard::new([PathBuf::from(scenario)], args.overwrite.force)
+            .check(path, &Mark::of(&stamp))?;
     }
     set_threads(args.threads)?;
     let progress = progress_bar(variants.len() * seeds.len());
