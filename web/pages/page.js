@@ -4,6 +4,8 @@
  * The lab is loaded when one of them is used, again for each.
  */
 
+import { create } from '../src/dom.js';
+
 /** Text and lab side by side, both readable. */
 const wide = matchMedia('(min-width: 1080px)');
 const spanish = document.documentElement.lang === 'es';
@@ -17,13 +19,6 @@ function speak() {
   } catch {
     // Storage is forbidden to the page: the lab speaks the browser's language.
   }
-}
-
-/** @template {keyof HTMLElementTagNameMap} K @param {K} tag @param {Partial<HTMLElementTagNameMap[K]>} properties @param {(Node | string)[]} children */
-function create(tag, properties, ...children) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...children);
-  return made;
 }
 
 /** Shows the lab of a link beside the text. @param {HTMLAnchorElement} link */

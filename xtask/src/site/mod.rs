@@ -4,11 +4,12 @@
 //! The crate `browser` is compiled to WebAssembly with the Rust of the firmware, which has the sources of the library:
 //! no further target need be installed. Beside it stand the files of `web/`; `index.html` gets a content policy, which
 //! the station sends as a header, and the note that its session runs in the page. [`pages`] are all the others; `api/` is
-//! what rustdoc makes of the crates that others can use. The image for the Mega is part of the site if it
-//! has been built.
+//! what rustdoc makes of the crates that others can use; [`search`] makes the index of both. The image for the Mega is part
+//! of the site if it has been built.
 
 mod links;
 mod pages;
+mod search;
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -103,6 +104,7 @@ pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
             .map(|name| format!("{LESSONS}{}", name.trim_end_matches("index.html"))),
     );
     document(project, &site.join("api"))?;
+    search::write(&site)?;
     list_files(&site, kept)?;
     links::check(&site)?;
     Ok(site)
