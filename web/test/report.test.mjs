@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { chromium } from 'playwright-core';
-import { BROWSER_ARGS, folder, program } from './dashboard.mjs';
+import { BROWSER_ARGS, folder, open, program } from './dashboard.mjs';
 
 /** @param {string} language */
 function report(language) {
@@ -62,3 +62,14 @@ for (const language of ['en', 'es']) {
     assert.deepEqual(complaints, []);
   });
 }
+
+test('the lab at a station says which command writes the report', async (context) => {
+  const { page, complaints, close } = await open(['lab', '--out', folder()], { locale: 'es-ES' });
+  context.after(() => close());
+  await page.waitForSelector('#connection.good');
+  await page.getByRole('button', { name: 'Memoria' }).click();
+  assert.equal(await page.locator('#report-dialog code').textContent(), 'rumbo experiments --language es');
+  assert.equal(await page.locator('#report-dialog form').count(), 0);
+  assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
+  assert.deepEqual(complaints, []);
+});
