@@ -10,7 +10,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { violations } from './axe.mjs';
-import { folder, program } from './dashboard.mjs';
+import { eventually, folder, program } from './dashboard.mjs';
 import { open, skip } from './site.mjs';
 
 /** @typedef {Awaited<ReturnType<typeof open>>} Site */
@@ -114,11 +114,14 @@ test('it shows how far it is, and is cancelled', { skip }, async () => {
   assert.ok(between.length > 5, parts.join(' '));
   assert.deepEqual(between, between.toSorted((/** @type {number} */ one, /** @type {number} */ other) => one - other));
 
-  // At once, before it is done.
+  // At once, before it is done: the worker is gone, and with it what it makes.
+  const workers = () => page.workers().filter((worker) => worker.url().includes('lab/report.js')).length;
+  assert.equal(workers(), 1);
   await page.evaluate(() => {
     document.getElementById('report-make')?.click();
     document.getElementById('report-cancel')?.click();
   });
+  await eventually(async () => assert.equal(workers(), 0));
   assert.equal(await page.locator('#report-cancel').isVisible(), false);
   assert.equal(await page.locator('#report-make').isEnabled(), true);
   assert.equal(await page.locator('#report-result').isVisible(), false);
