@@ -24,7 +24,8 @@ worker.addEventListener('activate', (/** @type {any} */ event) => {
     const old = names.filter((name) => name.startsWith('rumbo-') && name !== CACHE);
     return Promise.all(old.map((name) => caches.delete(name)));
   });
-  event.waitUntil(clean);
+  // The page of the first visit too: what it asks for is kept.
+  event.waitUntil(clean.then(() => worker.clients.claim()));
 });
 
 /** @param {Request} request */
