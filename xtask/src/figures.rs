@@ -14,7 +14,6 @@ pub(crate) fn check(project: &Project) -> Result<(), String> {
 
 /// Built as the tests are: the bytes are the same with any optimisation, and CI has already built these crates.
 fn draw(project: &Project, args: &[String]) -> Result<(), String> {
-    run_command(project.whole("build").args(["--bin", "figures"]))?;
-    let program = format!("debug/figures{}", std::env::consts::EXE_SUFFIX);
-    run_command(project.command(project.target.join(program)).args(args))
+    let program = project.program("figures")?;
+    run_command(project.command(program).args(args))
 }

@@ -60,6 +60,13 @@ impl Project {
         self.cargo(&[command, "--workspace", features, "--locked"])
     }
 
+    /// Builds a program of the workspace as the tests are built, so that they share all crates, and returns its path.
+    pub(crate) fn program(&self, name: &str) -> Result<PathBuf, String> {
+        run(self.whole("build").args(["--quiet", "--bin", name]))?;
+        let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
+        Ok(self.target.join("debug").join(name))
+    }
+
     /// Builds the release binary of `rumbo` (does nothing when it is fresh) and returns its path.
     pub(crate) fn release_binary(&self) -> Result<PathBuf, String> {
         run(&mut self.cargo(&["build", "--release", "--locked"]))?;

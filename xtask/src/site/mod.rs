@@ -88,8 +88,7 @@ pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
     complete(&site.join("index.html"), &head)?;
     let lab = site.join("lab");
     for (wasm, name) in modules.iter().zip(MODULES) {
-        let mut bindgen =
-            project.cargo(&["run", "--quiet", "--locked", "-p", "rumbo-bindgen", "--"]);
+        let mut bindgen = project.command(project.program("rumbo-bindgen")?);
         run_command(bindgen.arg(wasm).arg(&lab).arg(name))?;
     }
     let mut kept = names_below(&site)?;

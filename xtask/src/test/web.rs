@@ -2,7 +2,6 @@
 
 use super::{Stop, tools};
 use crate::project::{Project, run};
-use std::env::consts::EXE_SUFFIX;
 
 /// Checks the types that the JSDoc comments of `web/` declare.
 pub(crate) fn types(project: &Project) -> Result<(), Stop> {
@@ -21,8 +20,7 @@ pub(crate) fn browser(project: &Project) -> Result<(), Stop> {
     let chromium = tools::chromium(project)?;
     let rumbo = project.release_binary()?;
     let site = crate::site::build(project)?;
-    let hashes = ["build", "--locked", "-p", "rumbo-tools", "--bin", "hashes"];
-    run(&mut project.cargo(&hashes))?;
+    let hashes = project.program("hashes")?;
     let web = project.root.join("web");
     let tests = test_files(&web.join("test"))?;
     let mut test = project.command(node);
@@ -32,13 +30,7 @@ pub(crate) fn browser(project: &Project) -> Result<(), Stop> {
         .env("SKETCHES", project.target.join("sketches"))
         .env("SITE", site)
         .env("FIRMWARE", project.target.join("firmware/rumbo.elf"))
-        .env(
-            "HASHES",
-            project
-                .target
-                .join("debug")
-                .join(format!("hashes{EXE_SUFFIX}")),
-        );
+        .env("HASHES", hashes);
     Ok(run(test
         .args(["--test", "--test-concurrency=2", "--test-reporter=spec"])
         .args(tests))?)
