@@ -71,12 +71,12 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == GRADE) {
         tools::arduino_core(project).map_err(said)?;
         tools::bubblewrap(project).map_err(said)?;
-        met &= made_longer(project, "grade", "RUMBO_MISTAKES", "all")?;
+        met &= made_longer(project, "grade::", "RUMBO_MISTAKES", "all")?;
         met &= tool(project, GRADE, &[])?;
     }
     if only.is_empty() || only.iter().any(|name| name == IDENTIFY) {
         let robots = seeds.unwrap_or(IDENTIFY_ROBOTS).min(IDENTIFY_ROBOTS);
-        met &= made_longer(project, "identify", "RUMBO_ROBOTS", &robots.to_string())?;
+        met &= made_longer(project, "identify::", "RUMBO_ROBOTS", &robots.to_string())?;
     }
     if only.is_empty() || only.iter().any(|name| name == TUNE) {
         let starts = seeds.unwrap_or(TUNE_STARTS).min(TUNE_STARTS);
@@ -109,7 +109,7 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     Ok(met)
 }
 
-/// Runs a test of the command line that this variable makes longer; true if it passed.
+/// Runs tests of the command line, of which this variable makes one longer; true if they passed.
 fn made_longer(project: &Project, test: &str, variable: &str, value: &str) -> Result<bool, String> {
     let mut command = project.cargo(&[
         "test",
@@ -119,6 +119,7 @@ fn made_longer(project: &Project, test: &str, variable: &str, value: &str) -> Re
         "--package",
         "rumbo-cli",
         "--test",
+        "cli",
         test,
         "--",
         "--nocapture",

@@ -12,8 +12,8 @@
 //! | `math` | sine and cosine, the normal's quantile | arguments near multiples of a quarter turn |
 //!
 //! Every operation of a lane is that of the scalar source, in its order: no fused multiply-add, true division, libm's
-//! polynomials. `tests/lanes.rs` compares both bit for bit. Everything is `#[inline(always)]`: a function that is not
-//! inlined is compiled without the wide instructions, and costs six times.
+//! polynomials. `tests/plant/lanes.rs` compares both bit for bit. Everything is `#[inline(always)]`: a function that is
+//! not inlined is compiled without the wide instructions, and costs six times.
 
 #[cfg(target_arch = "x86_64")]
 mod body;

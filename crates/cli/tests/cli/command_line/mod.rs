@@ -1,0 +1,10 @@
+//! The command's output, its stream, and its exit status.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod import;
+mod information;
+mod observe;
+mod run;
+mod sketch;
+mod wrong_input;

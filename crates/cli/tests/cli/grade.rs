@@ -1,0 +1,323 @@
+//! `rumbo grade`: the model solutions get full marks, mistakes lose points where they should, and nobody gains by harm.
+#![cfg(target_os = "linux")]
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use crate::support;
+use rumbo_sketch::Toolchain;
+use rumbo_sketch::sandbox::{Limits, Sandbox};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+use support::{folder, program, stderr, stdout};
+
+fn assignment(name: &str) -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/assignments");
+    root.join(name).canonicalize().unwrap()
+}
+
+/// A fresh folder for hand-ins; `None` where compiler or sandbox are not installed.
+fn bench(name: &str) -> Option<PathBuf> {
+    let found = Toolchain::find().and_then(|found| Sandbox::walled(&found, Limits::default()));
+    if let Err(error) = found {
+        assert!(std::env::var_os("CI").is_none(), "{error}");
+        return None;
+    }
+    let bench = folder().join("grade").join(name);
+    let _ = fs::remove_dir_all(&bench);
+    fs::create_dir_all(bench.join("in")).unwrap();
+    Some(bench)
+}
+
+fn hand_in(bench: &Path, name: &str, text: &str) {
+    let folder = bench.join("in").join(name);
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("sketch.ino"), text).unwrap();
+}
+
+fn grade(bench: &Path, name: &str, more: &[&str]) -> Output {
+    let mut command = program();
+    command.current_dir(bench).arg("grade");
+    command.arg(assignment(name).join("assignment.toml"));
+    command.args(["in", "--language", "en"]).args(more);
+    command.env("RUMBO_CACHE", folder().join("sketches"));
+    command.output().unwrap()
+}
+
+/// Gradescope's results of each hand-in.
+fn results(out: &Path) -> BTreeMap<String, Value> {
+    let files = fs::read_dir(out.join("gradescope")).unwrap();
+    files
+        .map(|file| {
+            let path = file.unwrap().path();
+            let text = fs::read_to_string(&path).unwrap();
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            (name, serde_json::from_str(&text).unwrap())
+        })
+        .collect()
+}
+
+/// All files of a folder, by name.
+fn bytes(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            match path.is_dir() {
+                true => folders.push(path),
+                false => {
+                    let inner = path.strip_prefix(folder).unwrap().to_owned();
+                    all.insert(inner, fs::read(&path).unwrap());
+                }
+            }
+        }
+    }
+    all
+}
+
+/// The mistakes of an assignment: name, source, and what it loses points for.
+fn mistakes(name: &str) -> Vec<(String, String, String)> {
+    let folder = assignment(name);
+    let model = fs::read_to_string(folder.join("model/model.ino")).unwrap();
+    let text = fs::read_to_string(folder.join("bugs.toml")).unwrap();
+    let file: toml::Table = text.parse().unwrap();
+    let bugs = file["bug"].as_array().unwrap().iter();
+    bugs.map(|bug| {
+        let of = |key: &str| bug[key].as_str().unwrap().to_owned();
+        assert_eq!(model.matches(&of("find")).count(), 1, "{}", of("name"));
+        let source = model.replace(&of("find"), &of("replace"));
+        (of("name"), source, of("loses"))
+    })
+    .collect()
+}
+
+/// Of the mistakes every so many is tried; all of them where the environment's `RUMBO_MISTAKES` is `all`.
+const SAMPLE: usize = 4;
+
+#[test]
+fn model_solutions_get_full_marks_and_mistakes_lose_points_on_their_line() {
+    let is_all = std::env::var("RUMBO_MISTAKES").is_ok_and(|which| which == "all");
+    let every = if is_all { 1 } else { SAMPLE };
+    let (mut seen, mut missed, mut graded) = (0, Vec::new(), 0);
+    for name in ["wall", "speed", "box"] {
+        let Some(bench) = bench(name) else {
+            return;
+        };
+        let model = fs::read_to_string(assignment(name).join("model/model.ino")).unwrap();
+        hand_in(&bench, "model", &model);
+        let mistakes = mistakes(name);
+        seen += mistakes.len();
+        let mistakes: Vec<_> = mistakes.into_iter().step_by(every).collect();
+        for (number, (_, source, _)) in mistakes.iter().enumerate() {
+            hand_in(&bench, &format!("bug{number}"), source);
+        }
+        let output = grade(&bench, name, &["--out", "out"]);
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        let results = results(&bench.join("out"));
+        let points = |hand_in: &str| results[hand_in]["score"].as_f64().unwrap();
+        assert_eq!(points("model"), 10.0, "{name}: {}", results["model"]);
+        for (number, (what, _, loses)) in mistakes.iter().enumerate() {
+            let result = &results[&format!("bug{number}")];
+            let of = format!(": {loses} = ");
+            let mut lines = result["tests"].as_array().unwrap().iter();
+            let line = lines.find(|line| line["output"].as_str().unwrap().contains(&of));
+            let lost = line.is_some_and(|line| line["score"].as_f64() < line["max_score"].as_f64());
+            graded += 1;
+            if !lost {
+                missed.push(format!("{name}, {what}: {result}"));
+            }
+        }
+    }
+    // Ten in a hundred may be missed: of a sample, none.
+    assert!(
+        seen >= 20 && 10 * missed.len() <= graded,
+        "of {graded}: {missed:#?}"
+    );
+}
+
+/// The assignment `wall` for the robot with an Arduino Uno, and its model: another pin, one serial port, and by the clock
+/// what comes over Bluetooth on a Mega.
+fn for_an_uno(bench: &Path) -> String {
+    let read = |name: &str| fs::read_to_string(assignment("wall").join(name)).unwrap();
+    let replaced = |text: String, changes: &[(&str, &str)]| {
+        changes.iter().fold(text, |text, (from, to)| {
+            assert!(text.contains(from), "{from}");
+            text.replace(from, to)
+        })
+    };
+    let file = replaced(
+        read("assignment.toml"),
+        &[
+            ("board = \"mega\"", "board = \"uno\""),
+            ("wiring = \"mode_1\"", "wiring = \"uno\""),
+        ],
+    );
+    fs::write(bench.join("assignment.toml"), file).unwrap();
+    let scenario = replaced(
+        read("scenario.toml"),
+        &[("robot = \"memoria\"", "robot = \"uno\"")],
+    );
+    fs::write(bench.join("scenario.toml"), scenario).unwrap();
+    replaced(
+        read("model/model.ino"),
+        &[
+            ("BACKWARD[] = {2, 8}", "BACKWARD[] = {10, 8}"),
+            ("Serial1", "Serial"),
+            // Timer 0 makes a faster PWM than the Mega's pins have: the motors' dead zone is wider.
+            ("DEAD_ZONE = 66", "DEAD_ZONE = 90"),
+            (
+                "  listen();\n",
+                "  on = millis() > 500;\n  wantedCm = millis() < 5500 ? 30 : 50;\n",
+            ),
+        ],
+    )
+}
+
+#[test]
+fn hand_ins_for_an_uno_are_compiled_and_driven_on_one() {
+    let Some(bench) = bench("uno") else {
+        return;
+    };
+    let model = for_an_uno(&bench);
+    hand_in(&bench, "model", &model);
+    hand_in(&bench, "lazy", "void setup() {}\nvoid loop() {}\n");
+    hand_in(
+        &bench,
+        "mega",
+        &model.replace("Serial.begin", "Serial1.begin"),
+    );
+    let mark = |more: &[&str]| {
+        let mut command = program();
+        command.current_dir(&bench);
+        command.args(["grade", "assignment.toml", "in", "--language", "en"]);
+        command.args(more);
+        command.env("RUMBO_CACHE", folder().join("sketches"));
+        command.output().unwrap()
+    };
+    let output = mark(&["--out", "out"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let results = results(&bench.join("out"));
+    let points = |hand_in: &str| results[hand_in]["score"].as_f64().unwrap();
+    assert!(points("model") > 8.5, "{}", results["model"]);
+    assert_eq!(points("lazy"), 0.0);
+    // A Uno has one serial port.
+    assert_eq!(points("mega"), 0.0);
+    let said = results["mega"].to_string();
+    assert!(said.contains("Serial1"), "{said}");
+
+    // An assignment says the board of its robots or none.
+    let file = fs::read_to_string(bench.join("assignment.toml")).unwrap();
+    let wrong = file.replace("board = \"uno\"", "board = \"mega\"");
+    fs::write(bench.join("assignment.toml"), wrong).unwrap();
+    let output = mark(&[]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(
+        said.contains("board = mega: the robots of its scenarios have the board \"uno\""),
+        "{said}"
+    );
+}
+
+#[test]
+fn hostile_hand_ins_gain_nothing_and_change_no_other_mark() {
+    let Some(bench) = bench("hostile") else {
+        return;
+    };
+    let model = fs::read_to_string(assignment("speed").join("model/model.ino")).unwrap();
+    hand_in(&bench, "ana", &model);
+    hand_in(&bench, "dora", &format!("{model}// the same program\n"));
+    let alone = grade(&bench, "speed", &["--out", "alone"]);
+    assert_eq!(alone.status.code(), Some(0), "{}", stderr(&alone));
+
+    let rest = "\nvoid loop() { }\n";
+    for (name, text) in [
+        ("hang", "void setup() { cli(); for (;;); }"),
+        ("crash", "void setup() { ((void (*)())0x1f000)(); }"),
+        (
+            "toggles",
+            "void setup() { DDRE = 0xff; for (;;) PORTE ^= 0xff; }",
+        ),
+        (
+            "resets",
+            "#include <avr/wdt.h>\nvoid setup() { wdt_enable(WDTO_15MS); for (;;); }",
+        ),
+        (
+            "lies",
+            "void setup() { Serial1.begin(9600); for (;;) Serial1.println(\"50, 60.0, 60.0, 60.0, 5, 120, 120\"); }",
+        ),
+        ("reads", "#include \"/etc/passwd\"\nvoid setup() { }"),
+        ("<b>&\"", "void setup() { }"),
+        ("=1+1", "int f( {"),
+    ] {
+        hand_in(&bench, name, &format!("{text}{rest}"));
+    }
+    std::os::unix::fs::symlink("/etc", bench.join("in/linked")).unwrap();
+    fs::create_dir(bench.join("in/empty")).unwrap();
+    let first = grade(&bench, "speed", &["--out", "out", "--threads", "1"]);
+    let second = grade(&bench, "speed", &["--out", "again"]);
+    assert_eq!(first.status.code(), Some(1), "{}", stderr(&first));
+    assert_eq!(stdout(&first).replace("out/", "again/"), stdout(&second));
+    // On one thread and on all of them, to the byte.
+    assert_eq!(bytes(&bench.join("out")), bytes(&bench.join("again")));
+    let results = results(&bench.join("out"));
+    for file in [
+        "students/ana.html",
+        "gradescope/ana.json",
+        "students/dora.html",
+    ] {
+        let read = |folder: &str| fs::read(bench.join(folder).join(file)).unwrap();
+        assert_eq!(read("alone"), read("out"), "{file}");
+    }
+    assert_eq!(results["ana"]["tests"], results["dora"]["tests"]);
+    for (name, result) in &results {
+        if name != "ana" && name != "dora" {
+            assert_eq!(result["score"], 0.0, "{name}: {result}");
+        }
+    }
+    assert_eq!(results.len(), 11, "{:?}", results.keys());
+    for (file, bytes) in bytes(&bench.join("out")) {
+        let text = String::from_utf8(bytes).unwrap();
+        assert!(!text.contains("root:"), "{file:?}");
+        assert!(!text.contains(bench.to_str().unwrap()), "{file:?}");
+        let is_markup = file.extension().is_some_and(|ending| ending != "csv");
+        assert!(!(is_markup && text.contains("<b>&")), "{file:?}");
+    }
+    let csv = fs::read_to_string(bench.join("out/marks.csv")).unwrap();
+    assert!(csv.contains("\"'=1+1\""), "{csv}");
+    let junit = fs::read_to_string(bench.join("out/junit.xml")).unwrap();
+    assert!(
+        junit.contains("<testsuite name=\"&lt;b&gt;&amp;&quot;\" tests=\"6\" failures=\"6\">"),
+        "{junit}"
+    );
+}
+
+#[test]
+fn a_wrong_assignment_is_said_with_lines_keys_and_near_names() {
+    let bench = folder().join("grade/wrong");
+    fs::create_dir_all(bench.join("in")).unwrap();
+    let text = "title = \"T\"\nstatement = \"S\"\npontis = 5\n[[scenario]]\nscenario = \"mode1\"\npublic_seeds = [1]\n\
+                [[criterion]]\ntitle = \"C\"\nmetric = \"step1.setling_s\"\npoints = 1\nfull = 2\nnone = 2\n\
+                [[criterion]]\ntitle = \"D\"\nmetric = \"telemetry_hz\"\npoints = -1\nfull = 2\n";
+    fs::write(bench.join("a.toml"), text).unwrap();
+    let mut command = program();
+    let output = command
+        .current_dir(&bench)
+        .args(["grade", "a.toml", "in"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    for expected in [
+        "a.toml:3: pontis = 5: unknown key; did you mean",
+        "a.toml:9: criterion[1].metric = step1.setling_s: no such metric in its scenario; did you mean",
+        "step1.settling_s",
+        "a.toml:7: [criterion[1]] full and none are the same",
+        "a.toml:15: criterion[2].metric = telemetry_hz: is what the program says of itself",
+        "a.toml:16: criterion[2].points = -1: must be within",
+        "criterion[2].none is missing",
+    ] {
+        assert!(said.contains(expected), "{expected} in:\n{said}");
+    }
+}

@@ -1,0 +1,329 @@
+//! `sweep` and `compare --with`: what is run, kept, gone on with and refused.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use crate::support;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use support::{Running, program, rumbo, stderr, stdout};
+
+/// An empty folder of this test's, as text.
+fn out(name: &str) -> (PathBuf, String) {
+    let path = support::folder().join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    let text = path.display().to_string();
+    (path, text)
+}
+
+fn sweep(out: &str, more: &[&str]) -> std::process::Output {
+    let axes = ["sweep", "mode5", "kv=0.015:0.025:3", "--runs", "2"];
+    rumbo(&[&axes[..], &["--by", "rms_rad_s", "--out", out], more].concat())
+}
+
+fn read(folder: &Path, name: &str) -> String {
+    std::fs::read_to_string(folder.join(name)).unwrap()
+}
+
+#[test]
+fn a_sweep_writes_tables_a_page_and_logs_and_its_runs_are_those_of_run() {
+    let (folder, text) = out("sweep");
+    let done = sweep(&text, &["--language", "en"]);
+    assert!(done.status.success(), "{}", stderr(&done));
+    assert!(stdout(&done).ends_with("index.html\n"));
+    let csv = read(&folder, "runs.csv");
+    let mut rows = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = rows.next().unwrap();
+    assert_eq!(header[..4], ["point", "seed", "kv", "pass"]);
+    let rows: Vec<_> = rows.collect();
+    assert_eq!(rows.len(), 6);
+    assert_eq!(rows[3][..3], ["1", "2", "0.02"]);
+    let run = rumbo(&[
+        "run",
+        "mode5",
+        "--seed",
+        "2",
+        "--param",
+        "kv=0.02",
+        "--json",
+        "--no-record",
+    ]);
+    let run: Value = serde_json::from_slice(&run.stdout).unwrap();
+    for (name, value) in header.iter().zip(&rows[3]).skip(4) {
+        let expected = run["metrics"][name].as_f64();
+        assert_eq!(value.parse::<f64>().ok(), expected, "{name}");
+    }
+    let parquet = std::fs::read(folder.join("runs.parquet")).unwrap();
+    assert!(parquet.starts_with(b"PAR1") && parquet.ends_with(b"PAR1"));
+    let page = read(&folder, "index.html");
+    let logs: Vec<&str> = page.split("href=\"logs/").skip(1).collect();
+    assert!(logs.len() >= 6);
+    for log in logs {
+        let name = log.split('"').next().unwrap();
+        let log = folder.join("logs").join(name).display().to_string();
+        let again = rumbo(&["rerun", &log]);
+        assert!(again.status.success(), "{name}: {}", stderr(&again));
+    }
+}
+
+#[test]
+fn a_sweep_that_was_cut_off_goes_on_to_the_same_bytes() {
+    let (whole, whole_text) = out("sweep-whole");
+    assert!(sweep(&whole_text, &[]).status.success());
+    let (part, part_text) = out("sweep-part");
+    std::fs::create_dir_all(&part).unwrap();
+    let journal = read(&whole, "runs.jsonl");
+    // The header, three runs, and half of a line.
+    let cut = journal.match_indices('\n').nth(3).unwrap().0 + 40;
+    std::fs::write(part.join("runs.jsonl"), &journal[..cut]).unwrap();
+    let refused = sweep(&part_text, &[]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(stderr(&refused).contains("has 3 of 6 runs of this sweep; go on with --resume"));
+    assert!(
+        sweep(&part_text, &["--resume", "--threads", "1"])
+            .status
+            .success()
+    );
+    for name in ["runs.jsonl", "runs.csv", "runs.parquet", "index.html"] {
+        let [one, other] = [&whole, &part].map(|folder| std::fs::read(folder.join(name)).unwrap());
+        assert!(one == other, "{name}");
+    }
+    // A complete one is made again.
+    let again = sweep(&part_text, &[]);
+    assert!(again.status.success(), "{}", stderr(&again));
+    assert_eq!(read(&part, "runs.jsonl"), journal);
+    // Another sweep is not gone on with, and a run that is none is named.
+    let other = sweep(&part_text, &["--resume", "--seed", "9"]);
+    assert!(
+        stderr(&other).contains("another seed"),
+        "{}",
+        stderr(&other)
+    );
+    std::fs::write(
+        part.join("runs.jsonl"),
+        journal.replacen("\"point\":1", "\"point\":7", 1),
+    )
+    .unwrap();
+    let wrong = sweep(&part_text, &["--resume"]);
+    assert!(
+        stderr(&wrong).contains("line 4: is a run of another sweep"),
+        "{}",
+        stderr(&wrong)
+    );
+}
+
+#[test]
+fn a_sweep_without_sense_is_refused_and_nothing_is_written() {
+    let (folder, text) = out("sweep-refused");
+    for (arguments, why) in [
+        (&["kq=1,2"][..], "unknown parameter `kq`"),
+        (&["kv=0.02:0.01:3"], "from a lower to a higher"),
+        (&["kv=0.01:0.02"], "needs a count"),
+        (
+            &["kv=0.01,0.02", "--by", "setling_s"],
+            "did you mean `settling_s`",
+        ),
+        (&["kv=0.01:9:3"], "must be within"),
+        (
+            &["kv=0.01,0.02", "--param", "kv=0.03"],
+            "is an axis and has a --param",
+        ),
+        (
+            &["kv=0.01,0.02", "--program", "baseline"],
+            "does not drive here",
+        ),
+    ] {
+        let begin = ["sweep", "mode5", "--out", &text];
+        let refused = rumbo(&[&begin[..], arguments].concat());
+        assert_eq!(refused.status.code(), Some(2));
+        let said = stderr(&refused);
+        assert!(said.contains(why), "{said}");
+    }
+    assert!(!folder.exists());
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("index.html"), "mine").unwrap();
+    let kept = sweep(&text, &[]);
+    assert!(stderr(&kept).contains("not of the same run or report"));
+    assert_eq!(read(&folder, "index.html"), "mine");
+}
+
+#[test]
+fn the_page_of_a_sweep_is_served_and_a_click_on_a_run_leads_to_its_replay() {
+    let (_, text) = out("sweep-served");
+    assert!(sweep(&text, &[]).status.success());
+    let served = Running::of(program().args(["replay", &text, "--port", "0", "--no-browser"]));
+    let get = |address: &str| {
+        let rest = address.strip_prefix("http://").unwrap();
+        let (host, path) = rest.split_once('/').unwrap();
+        support::get(host, &format!("/{path}"))
+    };
+    let page = get(&served.said);
+    assert!(page.starts_with("HTTP/1.1 200"), "{page}");
+    let log = page
+        .split("href=\"logs/")
+        .nth(1)
+        .unwrap()
+        .split('"')
+        .next()
+        .unwrap();
+    let answer = get(&format!("{}logs/{log}", served.said));
+    assert!(answer.starts_with("HTTP/1.1 303"), "{answer}");
+    let place = answer
+        .lines()
+        .find_map(|line| line.strip_prefix("location: "))
+        .unwrap();
+    assert!(get(place).contains("<title>Rumbo"), "{place}");
+    // No address without the secret, no other file.
+    let host = served.said.split('/').nth(2).unwrap();
+    assert!(support::get(host, "/").starts_with("HTTP/1.1 404"));
+    for name in ["..%2Fruns.csv", "nope.mcap"] {
+        let answer = get(&format!("{}logs/{name}", served.said));
+        assert!(answer.starts_with("HTTP/1.1 404"), "{answer}");
+    }
+    served.end();
+}
+
+#[test]
+fn variants_are_compared_pair_by_pair() {
+    let (folder, _) = out("compare");
+    std::fs::create_dir_all(&folder).unwrap();
+    let page = folder.join("page.html").display().to_string();
+    let variants = ["compare", "mode5", "--with", "kv=0", "--with", "kv=0.02"];
+    let run = |more: &[&str]| rumbo(&[&variants[..], &["--runs", "4"], more].concat());
+    let done = run(&["--out", &page, "--language", "es"]);
+    assert!(done.status.success(), "{}", stderr(&done));
+    let said = stdout(&done);
+    assert!(
+        said.contains("1: kv=0, ") && said.contains("2: kv=0.02, "),
+        "{said}"
+    );
+    assert!(read(&folder, "page.html").contains("Diferencia media"));
+    let json: Value = serde_json::from_slice(&run(&["--json"]).stdout).unwrap();
+    let rise = json["differences"].as_array().unwrap();
+    let rise = rise
+        .iter()
+        .find(|one| one["metric"] == "step1.rise_s")
+        .unwrap();
+    assert_eq!(rise["pairs"], 4);
+    // Less feedforward rises later.
+    assert_eq!(rise["better"], 1.0);
+    let single = run(&["--threads", "1", "--json"]);
+    assert_eq!(
+        serde_json::from_slice::<Value>(&single.stdout).unwrap(),
+        json
+    );
+    // The first of a pair is the run of that seed.
+    let alone = rumbo(&["run", "mode5", "--param", "kv=0", "--json", "--no-record"]);
+    let alone: Value = serde_json::from_slice(&alone.stdout).unwrap();
+    assert_eq!(json["variants"][0]["runs"][0]["metrics"], alone["metrics"]);
+}
+
+#[test]
+fn wrong_variants_are_refused() {
+    for (arguments, why) in [
+        (&["mode1"][..], "one log has nothing to be compared with"),
+        (
+            &["mode1", "mode5", "--with", "kv=0.02"],
+            "variants of one scenario",
+        ),
+        (
+            &["mode1", "--with", "front_kq=5"],
+            "did you mean `front_kp`",
+        ),
+        (&["mode1", "--with", "robt=x"], "did you mean `robot`"),
+        (&["mode1", "--with", "front_kp"], "write NAME=VALUE"),
+        (
+            &["mode1", "--with", "front_kp=x"],
+            "front_kp: `x` is not a number",
+        ),
+        (
+            &["mode1", "--with", "front_kp=5", "--with", "front_kp=5"],
+            "is there twice",
+        ),
+        (
+            &["mode1", "--with", "program=other"],
+            "program is rumbo or baseline",
+        ),
+        (
+            &["mode1", "--with", "program=baseline,front_kp=5"],
+            "does not drive here",
+        ),
+    ] {
+        let refused = rumbo(&[&["compare"][..], arguments].concat());
+        assert_eq!(refused.status.code(), Some(2), "{arguments:?}");
+        let said = stderr(&refused);
+        assert!(said.contains(why), "{said}");
+    }
+    let twice = rumbo(&[
+        "run",
+        "mode1",
+        "--param",
+        "front_kp=5",
+        "--param",
+        "front_kp=8",
+    ]);
+    assert_eq!(twice.status.code(), Some(2));
+    assert!(stderr(&twice).contains("front_kp is given twice"));
+}
+
+#[test]
+fn a_gain_that_is_far_too_small_is_tuned_and_written_to_a_robot_file() {
+    let (folder, _) = out("tune");
+    std::fs::create_dir_all(&folder).unwrap();
+    let robot = folder.join("mine.toml").display().to_string();
+    let tune = |more: &[&str]| {
+        let begin = ["tune", "mode1", "--for", "settling_s", "--over", "front_kp"];
+        let quick = ["--runs", "2000", "--held-out", "10"];
+        rumbo(&[&begin[..], &quick, more].concat())
+    };
+    let done = tune(&["--param", "front_kp=1", "--out", &robot]);
+    assert!(done.status.success(), "{}", stderr(&done));
+    let said = stdout(&done);
+    assert!(said.contains("0 passed, 10 pass"), "{said}");
+    let text = read(&folder, "mine.toml");
+    assert!(text.contains("# Tuned by `rumbo tune`"), "{text}");
+    let run = rumbo(&[
+        "run",
+        "mode1",
+        "--robot",
+        &robot,
+        "--seed",
+        "77",
+        "--no-record",
+    ]);
+    assert!(run.status.success(), "{}", stdout(&run));
+    // A file with parameters of one's own is kept.
+    let own = text.replace("# Tuned by `rumbo tune`", "# mine");
+    std::fs::write(&robot, &own).unwrap();
+    let kept = tune(&["--out", &robot]);
+    assert_eq!(kept.status.code(), Some(2));
+    assert!(stderr(&kept).contains("were not found by this command"));
+    assert_eq!(read(&folder, "mine.toml"), own);
+}
+
+#[test]
+fn a_tuning_without_sense_is_refused() {
+    for (arguments, why) in [
+        (&["--over", "front_kq"][..], "did you mean `front_kp`"),
+        (&["--over", "front_kp,front_kp"], "given twice"),
+        (
+            &["--over", "front_kp=1,2"],
+            "unknown parameter of the control core `2`",
+        ),
+        (&["--over", "front_kp=1:99"], "must lie within 0.1..20"),
+        (&["--over", "waypoint_tracker"], "switch or a choice"),
+        (
+            &["--over", "front_kp", "--for", "setling_s"],
+            "did you mean `settling_s`",
+        ),
+        (
+            &["--over", "front_kp", "--for", "settling_s < x"],
+            "its limit is not a number",
+        ),
+        (&["--over", "front_kp", "--runs", "5"], "at least 2000 runs"),
+    ] {
+        let refused = rumbo(&[&["tune", "mode1"][..], arguments].concat());
+        assert_eq!(refused.status.code(), Some(2), "{arguments:?}");
+        let said = stderr(&refused);
+        assert!(said.contains(why), "{said}");
+    }
+}

@@ -1,0 +1,670 @@
+//! The built-in files are valid, and errors in others are reported line by line.
+
+use rumbo_control::mode::Movement;
+use rumbo_control::params::ParamId;
+use rumbo_experiment::files::{Kind, Library, Overrides, RobotFile, ScenarioFile, WorldFile};
+use rumbo_wire::message::{Command, Level};
+
+#[test]
+fn every_built_in_file_can_be_set_up() {
+    let library = Library::new();
+    for name in library.list(Kind::Robot) {
+        library.robot(&name).unwrap();
+    }
+    for name in library.list(Kind::World) {
+        library.world(&name).unwrap().world().unwrap();
+    }
+    let scenarios = library.list(Kind::Scenario);
+    assert!(scenarios.len() >= 20);
+    for name in scenarios {
+        library.setup(&name, &Overrides::default()).unwrap();
+    }
+}
+
+#[test]
+fn the_front_sonar_of_mode_1_starts_107_cm_from_the_wall() {
+    let setup = Library::new()
+        .setup("mode1", &Overrides::default())
+        .unwrap();
+    let sonar_x_m = setup.scenario.start.x_m + setup.rig.front.unwrap().x_m;
+    assert!((setup.world.walls[0].from_m[0] - sonar_x_m - 1.07).abs() < 1e-9);
+}
+
+#[test]
+fn a_ramp_is_one_command_per_count_of_pwm() {
+    let scenario = Library::new()
+        .scenario("manual-deadzone-left-forward")
+        .unwrap();
+    let duties: Vec<f32> = scenario
+        .commands
+        .iter()
+        .filter_map(|timed| match timed.command {
+            Command::Move {
+                movement: Movement::PivotRightForward,
+                level: Level::Duty(duty),
+            } => Some(duty * 255.0),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(duties.len(), 78);
+    assert!(
+        duties
+            .iter()
+            .enumerate()
+            .all(|(count, duty)| (duty - count as f32).abs() < 1e-3)
+    );
+}
+
+#[test]
+fn a_scenario_may_let_sonars_fail() {
+    use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
+    let text = format!(
+        "{SCENARIO}[[sonar_fault]]\nat_s = 2\nsonar = \"left\"\nkind = \"spiking\"\nshare = 0.5\n"
+    );
+    let scenario = ScenarioFile::parse("x", "x.toml", &text).unwrap();
+    let expected = TimedSonarFault {
+        at_s: 2.0,
+        sonar: rumbo_control::SonarId::Left,
+        fault: SonarFault::Spiking(0.5),
+    };
+    assert_eq!(scenario.sonar_faults, [expected]);
+}
+
+#[test]
+fn a_scenario_may_let_wires_fail() {
+    use rumbo_sim::wire_fault::{TimedWireFault, Wire, WireFault};
+    let text = format!(
+        "{SCENARIO}[[wire_fault]]\nat_s = 2\nwire = \"right_encoder\"\nkind = \"noisy\"\nrate_hz = 200\n"
+    );
+    let scenario = ScenarioFile::parse("x", "x.toml", &text).unwrap();
+    let expected = TimedWireFault {
+        at_s: 2.0,
+        wire: Wire::Encoder(rumbo_plant::drivetrain::Side::Right),
+        fault: WireFault::Noisy(200.0),
+    };
+    assert_eq!(scenario.wire_faults, [expected]);
+}
+
+#[test]
+fn a_wire_that_fails_stops_the_native_robot_too() {
+    let library = Library::new();
+    let faults = |wire: &str, kind: &str| {
+        let mut setup = library.setup("mode1-final", &Overrides::default()).unwrap();
+        let text =
+            format!("{SCENARIO}[[wire_fault]]\nat_s = 1.4\nwire = \"{wire}\"\nkind = \"{kind}\"\n");
+        let parsed = ScenarioFile::parse("x", "x.toml", &text).unwrap();
+        setup.scenario.wire_faults = parsed.wire_faults;
+        let result = rumbo_experiment::run::run(&setup, 1).unwrap();
+        assert_eq!(result.metrics["contacts"], 0.0);
+        result.failures.join("; ")
+    };
+    for level in ["high", "low"] {
+        let said = faults("front_echo", level);
+        assert!(said.contains("fault: sonar"), "{said}");
+    }
+    let said = faults("left_encoder", "low");
+    assert!(said.contains("fault: left encoder silent"), "{said}");
+}
+
+#[test]
+fn the_robot_with_an_uno_has_the_body_and_motors_of_the_report_s() {
+    let library = Library::new();
+    let [report, uno] = ["memoria", "uno"].map(|name| library.robot(name).unwrap());
+    assert_eq!(
+        uno.plant, report.plant,
+        "copy [plant] of robots/memoria.toml"
+    );
+    assert_eq!((report.board.name, uno.board.name), ("mega", "uno"));
+    let wrong = uno.text.replace("front_echo = 13", "front_echo = 20");
+    let error = RobotFile::parse("uno", "uno.toml", &wrong).unwrap_err();
+    assert!(error.to_string().contains("0..19"), "{error}");
+    let wrong = uno.text.replace("board = \"uno\"", "board = \"due\"");
+    let error = RobotFile::parse("uno", "uno.toml", &wrong).unwrap_err();
+    assert!(error.to_string().contains("`mega` or `uno`"), "{error}");
+}
+
+#[test]
+fn a_wiring_may_have_a_divider_for_the_battery() {
+    use rumbo_sim::wiring::Divider;
+    let text = |pin: u32| {
+        format!(
+            "title = \"t\"\n[rig.a.front]\nx_m = 0.1\n[wiring.final]\nbattery = {{ pin = {pin}, ratio = 2.5 }}\n"
+        )
+    };
+    let robot = RobotFile::parse("x", "x.toml", &text(57)).unwrap();
+    let divider = Divider {
+        input: 3,
+        ratio: 2.5,
+    };
+    assert_eq!(robot.wirings["final"].battery, Some(divider));
+    // Only pins with an analogue input will do.
+    let error = RobotFile::parse("x", "x.toml", &text(3))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("wiring.final.battery.pin = 3: must be a whole number within 54..69"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_route_is_its_beginning_and_a_command_per_waypoint() {
+    use rumbo_wire::message::Waypoint;
+    let text = SCENARIO.replace("\"manual\"", "\"waypoints\"")
+        + "[[command]]\nat_s = 1\nroute_m = [[1, 0], [1, 0.5, 90]]\nrepeat = true\nframe = \"relative\"\n";
+    let scenario = ScenarioFile::parse("x", "scenarios/x.toml", &text).unwrap();
+    let waypoint = |x_m, y_m, heading_rad| {
+        Command::Waypoint(Waypoint {
+            x_m,
+            y_m,
+            heading_rad,
+        })
+    };
+    let sent: Vec<Command> = scenario
+        .commands
+        .iter()
+        .map(|timed| timed.command)
+        .collect();
+    assert_eq!(
+        sent,
+        [
+            Command::Route {
+                repeat: true,
+                relative: true
+            },
+            waypoint(1.0, 0.0, None),
+            waypoint(1.0, 0.5, Some(std::f32::consts::FRAC_PI_2)),
+        ]
+    );
+}
+
+#[test]
+fn a_file_on_disk_works_as_well_as_a_name() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/mode1.toml");
+    let library = Library::new();
+    let mut from_disk = library.setup(path, &Overrides::default()).unwrap();
+    assert_eq!(from_disk.scenario.path.take().as_deref(), Some(path));
+    assert_eq!(
+        from_disk,
+        library.setup("mode1", &Overrides::default()).unwrap()
+    );
+}
+
+const SCENARIO: &str = r#"title = "t"
+robot = "memoria"
+rig = "front_single"
+world = "open"
+mode = "manual"
+duration_s = 5
+"#;
+
+fn scenario_error(text: &str) -> String {
+    ScenarioFile::parse("x", "scenarios/x.toml", text)
+        .map_or_else(|error| error.to_string(), |_| "no problem".into())
+}
+
+/// An addition to a valid scenario, and the error that it must give.
+const WRONG_SCENARIOS: &[(&str, &str)] = &[
+    (
+        "[[sonar_fault]]\nat_s = 1\nsonar = \"front\"\nkind = \"broken\"",
+        "scenarios/x.toml:10: sonar_fault[1].kind = broken: write \"cut\", \"stuck\", \"clear\", or \"spiking\" with share = 0.3",
+    ),
+    (
+        "[[wire_fault]]\nat_s = 1\nwire = \"echo\"\nkind = \"low\"",
+        "scenarios/x.toml:9: wire_fault[1].wire = echo: write one of left_encoder, right_encoder, left_echo, right_echo, front_echo",
+    ),
+    (
+        "[start]\nx_m = -400",
+        "scenarios/x.toml:8: start.x_m = -400: must be within -50..50 m",
+    ),
+    (
+        "[start]\nx_cm = -40",
+        "scenarios/x.toml:8: start.x_cm = -40: unknown key; the key is `x_m`, in m and not in cm: x_m = -0.4",
+    ),
+    (
+        "[start]\nheading = 90",
+        "scenarios/x.toml:8: start.heading = 90: unknown key; the key is `heading_deg`, with its unit: deg",
+    ),
+    (
+        "[start]\nx_m = \"1 m\"",
+        "scenarios/x.toml:8: start.x_m = \"1 m\": must be a number in m, without quotes",
+    ),
+    (
+        "[start]\nx_m = nan",
+        "scenarios/x.toml:8: start.x_m = nan: must be within -50..50 m",
+    ),
+    (
+        "wheel_in_air = true",
+        "scenarios/x.toml:7: wheel_in_air = true: unknown key; did you mean `wheels_in_air`?",
+    ),
+    (
+        "wheels_in_air = 1",
+        "scenarios/x.toml:7: wheels_in_air = 1: must be true or false",
+    ),
+    (
+        "[[command]]\nat_s = 2\narm = true\n[[command]]\nat_s = 1\nstop = true",
+        "scenarios/x.toml:11: command[2].at_s = 1: must be 2 or more: commands stand in order of time, after the end of a ramp",
+    ),
+    (
+        "[[command]]\nat_s = 6\narm = true",
+        "scenarios/x.toml:8: command[1].at_s = 6: must be within 0..5 s",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmove = \"turn_lef\"\nduty = 0.4",
+        "scenarios/x.toml:9: command[1].move = \"turn_lef\": unknown movement; did you mean `turn_left`?",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmove = \"forward\"",
+        "scenarios/x.toml:7: [command[1]] needs either duty (0..1, open loop) or speed_rpm (closed loop)",
+    ),
+    (
+        "[[command]]\nat_s = 1\nreference_m = 0.3",
+        "scenarios/x.toml:7: [command[1]] reference_m is for mode `front_distance` or `front_align` or `wall_follow`, and the mode here is `manual`",
+    ),
+    (
+        "[[command]]\nat_s = 1\nreference_cm = 30",
+        "scenarios/x.toml:9: command[1].reference_cm = 30: unknown key; the key is `reference_m`, in m and not in cm: reference_m = 0.3",
+    ),
+    (
+        "[[command]]\nat_s = 1\narm = true\nstop = true",
+        "scenarios/x.toml:7: [command[1]] has more than one action (arm, stop): give each its own [[command]]",
+    ),
+    (
+        "[[command]]\nat_s = 1\nroute_m = [[1, 0]]",
+        "scenarios/x.toml:7: [command[1]] route_m is for mode `waypoints`, and the mode here is `manual`",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = [\n  [1, 0],\n  [1, 30],\n]",
+        "scenarios/x.toml:14: command[2].route_m[2] = 30: must be within -20..20 m",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = [[1, 0],\n5]",
+        "scenarios/x.toml:13: command[2].route_m[2] = 5: must be [x, y] in m or [x, y, heading_deg]",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = 1",
+        "scenarios/x.toml:12: command[2].route_m = 1: must be a list of waypoints [x, y] in m or [x, y, heading_deg]",
+    ),
+    (
+        "[[command]]\nat_s = 1\nmode = 7\n[[command]]\nat_s = 2\nroute_m = [[1, 0]]\nframe = \"map\"",
+        "scenarios/x.toml:13: command[2].frame = \"map\": must be \"absolute\" (from the origin) or \"relative\" (from where the robot starts)",
+    ),
+    (
+        "[limits]\n\"a.b_m\" = { max = \"2\" }",
+        "scenarios/x.toml:8: limits.a.b_m.max = \"2\": must be a number, without quotes",
+    ),
+    (
+        "[plant.battery]\nopen_circuit_mv = 7400",
+        "scenarios/x.toml:8: plant.battery.open_circuit_mv = 7400: unknown key; the key is `open_circuit_v`, in v and not in mv: open_circuit_v = 7.4",
+    ),
+    (
+        "[[command]]\nat_s = 0\nmode = \"mission\"\n[[command]]\nat_s = 1\ngoal = \"here\"",
+        "scenarios/x.toml:12: command[2].goal = \"here\": must be \"world\", the goal of a random world; a place is goal_m = [x, y]",
+    ),
+    (
+        "[parameters]\nwaypoint_tracker = \"pursuit\"",
+        "scenarios/x.toml:8: parameters.waypoint_tracker = \"pursuit\": must be `straight` or `pure_pursuit`",
+    ),
+    (
+        "[parameters]\nrig = 2.5",
+        "scenarios/x.toml:8: parameters.rig = 2.5: must be `front_single`, `front_pair`, `side_pair_left`, `side_pair_right` or `final`",
+    ),
+    (
+        "[parameters]\nmission_reset_origin = 2",
+        "scenarios/x.toml:8: parameters.mission_reset_origin = 2: must be `no` or `yes`",
+    ),
+    (
+        "[parameters]\nkv = \"high\"",
+        "scenarios/x.toml:8: parameters.kv = \"high\": must be a number in s/rad, without quotes",
+    ),
+    (
+        "[[command]]\nat_s = 1\nparameter = \"rig\"\nvalue = \"finale\"",
+        "scenarios/x.toml:10: command[1].value = \"finale\": must be `front_single`, `front_pair`, `side_pair_left`, `side_pair_right` or `final`",
+    ),
+    (
+        "[[command]]\nat_s = 1\nparameter = \"rig\"",
+        "scenarios/x.toml:7: command[1].value is missing: must be `front_single`, `front_pair`, `side_pair_left`, `side_pair_right` or `final`",
+    ),
+    (
+        "[start\nx_m = 1",
+        "scenarios/x.toml:7: not valid TOML: unclosed table, expected `]`",
+    ),
+];
+
+#[test]
+fn errors_in_a_scenario_name_line_key_value_and_what_is_allowed() {
+    for &(wrong, expected) in WRONG_SCENARIOS {
+        assert_eq!(scenario_error(&format!("{SCENARIO}{wrong}\n")), expected);
+    }
+}
+
+#[test]
+fn a_switch_or_a_choice_is_given_by_name_or_number() {
+    let parsed = |parameters: &str| {
+        let text = format!("{SCENARIO}[parameters]\n{parameters}\n");
+        ScenarioFile::parse("x", "scenarios/x.toml", &text)
+            .unwrap()
+            .parameters
+    };
+    let expected = [
+        (ParamId::BatteryInput, 3.0),
+        (ParamId::WaypointTracker, 1.0),
+        (ParamId::MissionResetOrigin, 0.0),
+    ];
+    for values in [
+        ["\"A3\"", "\"pure_pursuit\"", "false"],
+        ["3", "1", "\"no\""],
+    ] {
+        let [input, tracker, reset] = values;
+        let text = format!(
+            "battery_input = {input}\nwaypoint_tracker = {tracker}\nmission_reset_origin = {reset}"
+        );
+        assert_eq!(parsed(&text), expected);
+    }
+}
+
+#[test]
+fn all_problems_of_a_file_are_reported_at_once_in_the_order_of_lines() {
+    let text = "title = 1\nrobot = \"memoria\"\nrig = \"final\"\nworld = \"open\"\nmode = \"weel_speed\"\nduration_s = -1\n";
+    assert_eq!(
+        scenario_error(text),
+        "scenarios/x.toml:1: title = 1: must be text in quotes\n\
+         scenarios/x.toml:5: mode = weel_speed: unknown mode; did you mean `wheel_speed` (5)?\n\
+         scenarios/x.toml:6: duration_s = -1: must be within 0.1..3600 s"
+    );
+}
+
+#[test]
+fn what_is_missing_is_named_with_what_belongs_there() {
+    let error = scenario_error("title = \"t\"\n");
+    assert!(
+        error.contains("scenarios/x.toml: duration_s is missing: must be within 0.1..3600 s"),
+        "{error}"
+    );
+    assert!(
+        error.contains("scenarios/x.toml: robot is missing: name of a robot, e.g. \"memoria\""),
+        "{error}"
+    );
+}
+
+#[test]
+fn errors_in_worlds_and_robots_are_reported() {
+    let world = |text: &str| {
+        WorldFile::parse("x", "worlds/x.toml", text)
+            .unwrap_err()
+            .to_string()
+    };
+    assert_eq!(
+        world("title = \"t\"\n[[box]]\ncentre_m = [0, 0]\nsize_m = [0.4, -0.4]\n"),
+        "worlds/x.toml:4: box[1].size_m = -0.4: must be within 0.01..50 m"
+    );
+    assert_eq!(
+        world("title = \"t\"\n[[wall]]\nfrom = [0, 0]\nto_m = [1, 0]\n"),
+        "worlds/x.toml:2: wall[1].from_m is missing: two numbers [x, y], each must be within -50..50 m\n\
+         worlds/x.toml:3: wall[1].from = [0, 0]: unknown key; the key is `from_m`, with its unit: m"
+    );
+    let robot = |text: &str| {
+        RobotFile::parse("x", "robots/x.toml", text)
+            .unwrap_err()
+            .to_string()
+    };
+    assert_eq!(
+        robot(
+            "title = \"t\"\n[rig.a.front]\nx_m = 0.1\n[wiring.w]\nservo = 9\nleft_echo = 9\n[plant.encoder]\nedges_per_motor_turn = 7.5\n"
+        ),
+        "robots/x.toml:6: wiring.w.left_echo = 9: servo is on that pin already: give each signal its own\n\
+         robots/x.toml:8: plant.encoder.edges_per_motor_turn = 7.5: must be a whole number within 1..32"
+    );
+    assert_eq!(
+        robot("title = \"t\"\n[rig.a]\nfornt = { x_m = 0.1 }\n"),
+        "robots/x.toml:3: rig.a.fornt = {...}: unknown key; did you mean `front`?"
+    );
+}
+
+#[test]
+fn errors_of_what_moves_are_reported() {
+    let mover = |keys: &str| {
+        let text = format!(
+            "title = \"t\"\n[[box]]\ncentre_m = [1, 0]\nsize_m = [0.4, 0.4]\n[[mover]]\n{keys}"
+        );
+        match WorldFile::parse("x", "x.toml", &text) {
+            Ok(world) => panic!("{:?}", world.movers),
+            Err(error) => error.to_string(),
+        }
+    };
+    let round = "diameter_m = 0.3\nspeed_m_s = 0.4\n";
+    for (keys, error) in [
+        (
+            format!("{round}path_m = [[0, 0]]\n"),
+            "x.toml:8: mover[1].path_m = 1 point: a path has 2 to 100 points [x, y] in m",
+        ),
+        (
+            format!("{round}path_m = [[0, 0], [0, 1], [0, 1]]\n"),
+            "x.toml:8: mover[1].path_m[3] = [0, 1]: is the point before; pause_s makes it wait there",
+        ),
+        (
+            "diameter_m = 0.3\nspeed_m_s = -0.4\npath_m = [[0, 0], [0, 1]]\n".to_owned(),
+            "x.toml:7: mover[1].speed_m_s = -0.4: must be within 0.01..3 m/s",
+        ),
+        (
+            "diameter_m = 0.3\npath_m = [[0, 0], [0, 1]]\n".to_owned(),
+            "x.toml:5: mover[1].speed_m_s is missing: must be within 0.01..3 m/s",
+        ),
+        (
+            format!("{round}path_m = [[0, 0], [0, 1]]\nrepaet = \"loop\"\n"),
+            "x.toml:9: mover[1].repaet = \"loop\": unknown key; did you mean `repeat`?",
+        ),
+        (
+            format!("{round}path_m = [[0, 0], [0, 1]]\nrepeat = \"twice\"\n"),
+            "x.toml:9: mover[1].repeat = \"twice\": write \"once\", \"loop\" or \"back_and_forth\"",
+        ),
+        (
+            format!("{round}path_m = [[1, 0.3], [0, 1]]\n"),
+            "x.toml:5: [mover[1]] starts inside a wall or box; move the first point of its path_m",
+        ),
+        (
+            "speed_m_s = 0.4\npath_m = [[0, 0], [0, 1]]\n".to_owned(),
+            "x.toml:5: [mover[1]] needs either size_m = [length, width] or diameter_m, in m",
+        ),
+        (
+            "size_m = [0.8, 0.04]\nhinge_m = [0, 0]\nangles_deg = [30, 30]\nspeed_deg_s = 45\n"
+                .to_owned(),
+            "x.toml:5: [mover[1]] angles_deg are the same: a door needs two different ones",
+        ),
+    ] {
+        assert_eq!(mover(&keys), error);
+    }
+}
+
+#[test]
+fn what_moves_is_where_its_file_says() {
+    let text = "title = \"t\"\n\
+        [[mover]]\nsize_m = [0.8, 0.04]\nhinge_m = [2, 1]\nangles_deg = [0, 90]\nspeed_deg_s = 45\nrepeat = \"back_and_forth\"\npause_s = 1\n\
+        [[mover]]\ndiameter_m = 0.3\npath_m = [[0, 0], [3, 0], [3, 4]]\nspeed_m_s = 0.5\nrepeat = \"loop\"\nstart_s = 2\n";
+    let world = WorldFile::parse("x", "x.toml", text)
+        .unwrap()
+        .world()
+        .unwrap();
+    let [door, person] = world.bodies() else {
+        panic!("{:?}", world.bodies());
+    };
+    let tip = |t_us| {
+        door.outline(&door.at(t_us).pose)
+            .corners()
+            .map(|[x, y]| [x - 2.0, y - 1.0])
+            .fold([0.0_f64; 2], |most, [x, y]| {
+                [most[0].max(x), most[1].max(y)]
+            })
+    };
+    let near = |one: [f64; 2], other: [f64; 2]| {
+        assert!(
+            (one[0] - other[0]).abs() < 1e-9 && (one[1] - other[1]).abs() < 1e-9,
+            "{one:?} {other:?}"
+        );
+    };
+    near(tip(500_000), [0.8, 0.02]);
+    near(tip(3_500_000), [0.02, 0.8]);
+    let middle = |t_us| {
+        let pose = person.at(t_us).pose;
+        [pose.x_m, pose.y_m]
+    };
+    near(middle(1_000_000), [0.0, 0.0]);
+    near(middle(10_000_000), [3.0, 1.0]);
+    near(middle(21_000_000), [1.5, 2.0]);
+    near(middle(26_000_000), [0.0, 0.0]);
+}
+
+#[test]
+fn a_random_world_is_checked_and_a_fixed_one_has_no_goal_to_give() {
+    let text = "title = \"t\"\n[random]\ngroups = [6, 2]\ngoal_away_m = [0, 4]\nblocked = 2\n";
+    assert_eq!(
+        WorldFile::parse("x", "worlds/x.toml", text)
+            .unwrap_err()
+            .to_string(),
+        "worlds/x.toml:2: [random] groups: the smaller value stands first\n\
+         worlds/x.toml:4: random.goal_away_m = 0: must be within 0.5..15 m\n\
+         worlds/x.toml:5: random.blocked = 2: must be within 0..1"
+    );
+    let overrides = Overrides {
+        world: Some("room".into()),
+        ..Overrides::default()
+    };
+    let error = Library::new()
+        .setup("mode8-random", &overrides)
+        .unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "scenario mode8-random: its goal is that of the world, and world room has none; give a world with goal_m or [random], or goal_m in place of goal"
+    );
+}
+
+#[test]
+fn a_random_world_without_room_is_an_error() {
+    let mut setup = Library::new()
+        .setup("mode8-random", &Overrides::default())
+        .unwrap();
+    setup.world.arena.to_m = [0.5, 0.5];
+    let error = setup.of_seed(1).unwrap_err().to_string();
+    assert!(
+        error.starts_with("world random: no room for boxes and a goal with seed 1;"),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_goal_of_the_world_is_sent_relative_to_the_start() {
+    let mut setup = Library::new()
+        .setup("mode8-random", &Overrides::default())
+        .unwrap();
+    setup.scenario.start.y_m = 0.5;
+    setup.scenario.start.heading_rad = std::f64::consts::FRAC_PI_2;
+    let own = setup.of_seed(4).unwrap();
+    let [goal_x_m, goal_y_m] = own.world.journey.as_ref().unwrap().goal_m;
+    let Command::Goal { x_m, y_m } = own.scenario.commands[1].command else {
+        panic!("{:?}", own.scenario.commands);
+    };
+    assert!(
+        (f64::from(x_m) - (goal_y_m - 0.5)).abs() < 1e-6,
+        "ahead is the world's y"
+    );
+    assert!(
+        (f64::from(y_m) + goal_x_m).abs() < 1e-6,
+        "left is against the world's x"
+    );
+}
+
+#[test]
+fn a_robot_cannot_start_inside_a_box() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("inside.toml");
+    let text = SCENARIO.replace("\"open\"", "\"room\"") + "[start]\nx_m = 1.6\n";
+    std::fs::write(&path, text).unwrap();
+    let error = Library::new()
+        .setup(path.to_str().unwrap(), &Overrides::default())
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "scenario inside: its start x_m = 1.6, y_m = 0 is inside a wall or box of world room; move [start] or choose another world"
+    );
+}
+
+#[test]
+fn a_robot_cannot_start_inside_what_moves() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let world = "title = \"t\"\n[[mover]]\nname = \"cat\"\ndiameter_m = 0.3\npath_m = [[0.2, 0], [2, 0]]\nspeed_m_s = 0.3\n";
+    std::fs::write(folder.join("cat.toml"), world).unwrap();
+    let path = folder.join("inside_cat.toml");
+    std::fs::write(&path, SCENARIO.replace("\"open\"", "\"cat.toml\"")).unwrap();
+    let error = Library::new()
+        .setup(path.to_str().unwrap(), &Overrides::default())
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "scenario inside_cat: its start x_m = 0, y_m = 0 is inside mover \"cat\" of world cat; move [start] or choose another world"
+    );
+}
+
+#[test]
+fn unknown_names_list_the_near_ones() {
+    let library = Library::new();
+    assert_eq!(
+        library.scenario("fre").unwrap_err().to_string(),
+        "unknown scenario `fre`; did you mean `free`?"
+    );
+    let error = library.world("x").unwrap_err().to_string();
+    assert!(
+        error.starts_with("unknown world `x`; known are `") && error.contains("`wall_front`"),
+        "{error}"
+    );
+    let overrides = Overrides {
+        rig: Some("front".into()),
+        ..Overrides::default()
+    };
+    assert_eq!(
+        library.setup("mode1", &overrides).unwrap_err().to_string(),
+        "unknown rig `front`; did you mean `front_pair` or `front_single`?"
+    );
+}
+
+proptest::proptest! {
+    #[test]
+    fn a_damaged_file_gets_an_answer_and_never_a_panic(at in 0_usize..600, cut in 0_usize..20, put in "[ -~\n]{0,6}") {
+        for kind in [Kind::Robot, Kind::World, Kind::Scenario] {
+            let library = Library::new();
+            let text = match kind {
+                Kind::Robot => library.robot("memoria").unwrap().text,
+                Kind::World => library.world("room").unwrap().text,
+                Kind::Scenario => library.scenario("manual-deadzone-left-forward").unwrap().text,
+            };
+            let (from, to) = (at % text.len(), (at % text.len() + cut).min(text.len()));
+            let damaged = format!("{}{put}{}", &text[..from], &text[to..]);
+            let complaint = match kind {
+                Kind::Robot => RobotFile::parse("x", "x.toml", &damaged).err(),
+                Kind::World => WorldFile::parse("x", "x.toml", &damaged).err(),
+                Kind::Scenario => ScenarioFile::parse("x", "x.toml", &damaged).err(),
+            };
+            for line in complaint.iter().flat_map(|error| error.to_string().lines().map(String::from).collect::<Vec<_>>()) {
+                proptest::prop_assert!(line.starts_with("x.toml:"), "{line}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_example_of_the_scenario_page_runs_and_passes() {
+    let page = include_str!("../../../../docs/scenarios.md");
+    let example = page
+        .split("```toml")
+        .nth(1)
+        .unwrap()
+        .split("```")
+        .next()
+        .unwrap();
+    let path = std::env::temp_dir().join(format!("rumbo-example-{}.toml", std::process::id()));
+    std::fs::write(&path, example).unwrap();
+    let setup = Library::new().setup(path.to_str().unwrap(), &Overrides::default());
+    std::fs::remove_file(&path).unwrap();
+    let run = rumbo_experiment::run::run(&setup.unwrap(), 1).unwrap();
+    assert!(run.pass, "{:?}", run.failures);
+}

@@ -1,0 +1,4 @@
+//! The report and its content.
+
+mod content;
+mod report;

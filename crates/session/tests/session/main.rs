@@ -1,0 +1,12 @@
+//! The session of a robot over links of every quality.
+
+mod alone;
+mod exactly_once;
+mod faulty_link;
+mod hostile;
+mod late_on;
+#[path = "../support/link.rs"]
+mod link;
+mod never_late;
+#[path = "../support/mod.rs"]
+mod support;

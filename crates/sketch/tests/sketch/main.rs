@@ -1,0 +1,4 @@
+//! Sketches of others: compiled in a sandbox.
+
+mod compile;
+mod hostile;

@@ -1,0 +1,13 @@
+//! The station: ports, pages, doors and what comes through them.
+
+mod bridge;
+mod client;
+mod door;
+mod lab;
+#[path = "../support/page.rs"]
+mod page;
+mod port;
+mod security;
+#[path = "../support/mod.rs"]
+mod support;
+mod unplugged;
