@@ -32,7 +32,7 @@ pub(crate) const LAB: &str = "lab";
 const ANSWER_US: u64 = 5_000_000;
 /// Telemetry comes every 40 ms: without any for this long the robot is stopped [us].
 const SILENT_US: u64 = 500_000;
-/// A robot that was switched ON reports it within this time [us].
+/// A robot that was switched ON or OFF reports it within this time [us].
 const ON_US: u64 = 2_500_000;
 /// Going forward, the robot is stopped for good when something is nearer ahead than this [m]: on the free floor that is
 /// asked for nothing is.
@@ -110,8 +110,12 @@ pub(crate) fn at_port(drive: &Drive<'_>, address: &str, baud: u32) -> Result<Dri
 fn end<T: Target>(mut driven: Driven<T>, done: Result<(), Failure>) -> Result<PathBuf, Failure> {
     let path = driven.path();
     let stopped = driven.order(Command::Stop).and_then(|()| {
-        let until_us = driven.now_us() + SILENT_US;
-        while driven.now_us() < until_us {
+        let from_us = driven.now_us();
+        // What it says of the stop comes late where the machine is busy.
+        while driven.now_us() < from_us + SILENT_US
+            || driven.now_us() < from_us + ON_US
+                && !driven.signals(SILENT_US).as_ref().is_some_and(is_off)
+        {
             driven.slice()?;
         }
         driven.finish()
@@ -199,8 +203,11 @@ fn drive_part<T: Target>(
         pass(driven, asked)?;
     }
     driven.order(Command::Disarm)?;
-    let is_off = |row: &Row| row.signal("armed") == Some(0.0);
     wait(driven, asked, is_off, "the robot does not go OFF")
+}
+
+fn is_off(row: &Row) -> bool {
+    row.signal("armed") == Some(0.0)
 }
 
 /// Waits until the robot reports a state.
