@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import os
 import pathlib
+import signal
 
 import pytest
+
+# A shell's background job ignores Ctrl-C, and so does what it starts: the tests send it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")

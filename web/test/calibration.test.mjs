@@ -49,7 +49,7 @@ test('the simulated robot calibrates itself: what was found is shown, and its pa
   await page.waitForFunction(() => /** @type {HTMLInputElement} */ (document.querySelector('#parameter-kv')).value !== '');
   await step().getByRole('button', { name: 'Begin the calibration' }).click();
   await step().locator('progress').waitFor();
-  await step().getByText('Done. The parameters are set').waitFor({ timeout: 60_000 });
+  await step().getByText('Done. The parameters are set').waitFor();
   const text = await step().innerText();
   assert.match(text, /radius, right over left\s+(0\.9[89]|1\.0[01])/);
   assert.match(text, /dead zone, left forward, duty\s+0\./);

@@ -11,14 +11,14 @@ import { extname, join } from 'node:path';
 import { createInterface } from 'node:readline';
 import { chromium } from 'playwright-core';
 
-export const BROWSER_ARGS = [
+const BROWSER_ARGS = [
   '--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync',
   // A page whose files come from the folder has no address that the browser knows for local.
   ...(process.env['WEB'] ? ['--disable-features=LocalNetworkAccessChecks'] : []),
 ];
 /** Long enough for any machine; nothing is judged by it [ms]. */
-export const PATIENCE_MS = 30_000;
+export const PATIENCE_MS = 120_000;
 
 /**
  * Repeats a check of what the page shows until it holds: the page draws when the robot's next message comes, not when a click returns.
@@ -36,6 +36,9 @@ export async function eventually(check) {
     }
   }
 }
+
+/** A browser of its own. */
+export const launch = () => chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS, timeout: PATIENCE_MS });
 
 /** The program to test. */
 export function program() {
@@ -77,7 +80,7 @@ export async function start(options, port = 0) {
  */
 export async function open(options, browserOptions = {}, firstTime = false) {
   const { server, url, address } = await start(options);
-  const browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
+  const browser = await launch();
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, colorScheme: 'dark', locale: 'en-GB', ...browserOptions });
   const page = await context.newPage();
   /** @type {string[]} */

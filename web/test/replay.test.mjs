@@ -129,7 +129,7 @@ test('what is plotted does not jump where the robot moves its origin to its goal
   const other = await open(['replay', join(out, 'mode8-obstacles-1.mcap'), '--speed', '16']);
   try {
     await other.page.waitForFunction(() => /** @type {any} */ (window).rumbo.state()?.speed === 0);
-    await other.page.waitForFunction(() => /** @type {any} */ (window).rumbo.shown()?.origin.x_m > 2, undefined, { timeout: 60_000 });
+    await other.page.waitForFunction(() => /** @type {any} */ (window).rumbo.shown()?.origin.x_m > 2);
     for (const [name, most] of /** @type {[string, number][]} */ ([['true_x_m', 0.1], ['x_m', 0.1], ['y_m', 0.1], ['true_heading_deg', 20], ['heading_deg', 20]])) {
       const jump = await other.page.evaluate((name) => {
         const y = /** @type {any} */ (window).rumbo.series(name).y.filter((/** @type {unknown} */ each) => typeof each === 'number');

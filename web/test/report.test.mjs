@@ -5,8 +5,7 @@ import { execFileSync } from 'node:child_process';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { chromium } from 'playwright-core';
-import { BROWSER_ARGS, folder, open, program } from './dashboard.mjs';
+import { folder, launch, open, program } from './dashboard.mjs';
 
 /** @param {string} language */
 function report(language) {
@@ -17,7 +16,7 @@ function report(language) {
 
 for (const language of ['en', 'es']) {
   test(`the report in ${language} asks for nothing and fits every page`, async (context) => {
-    const browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
+    const browser = await launch();
     // Also after a failure: a browser left open keeps the test running.
     context.after(() => browser.close());
     const page = await browser.newPage({ viewport: { width: 1280, height: 720 } });

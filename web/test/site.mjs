@@ -4,8 +4,7 @@ import { createReadStream, existsSync, readFileSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
 import { after } from 'node:test';
-import { chromium } from 'playwright-core';
-import { BROWSER_ARGS, PATIENCE_MS } from './dashboard.mjs';
+import { PATIENCE_MS, launch } from './dashboard.mjs';
 
 export const FOLDER = process.env['SITE'] ?? '';
 /** Why there is nothing to test, or false. */
@@ -63,7 +62,7 @@ after(() => Promise.all([...left].map((close) => close())));
  */
 export async function open(options = {}, link = '', path = '', robot = undefined) {
   const server = await serve(robot);
-  const browser = await chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS });
+  const browser = await launch();
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, colorScheme: 'dark', locale: 'en-GB', ...options });
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE_MS);

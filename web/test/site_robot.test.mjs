@@ -235,7 +235,7 @@ test('a program is written to a Mega and read back; one for another chip and a l
     const own = bytesOf(readFileSync(carried, 'utf8'));
     await page.locator('#flash-write').click();
     // A thousand messages to and fro, each a request here.
-    await page.locator('#flash-phase', { hasText: 'done: the robot starts again, disarmed' }).waitFor({ timeout: 5 * PATIENCE_MS });
+    await page.locator('#flash-phase', { hasText: 'done: the robot starts again, disarmed' }).waitFor({ timeout: 2 * PATIENCE_MS });
     assert.ok(board.flash.subarray(0, own.length).equals(own));
     board.resets = 0;
   } else {
