@@ -4,8 +4,10 @@
 //! stable compiler. Without `unsafe` in the workspace there is nothing for a sanitizer to find. With `--target` the
 //! options do not apply to build scripts.
 
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
+use std::sync::Mutex;
 
 use crate::project::{Project, metadata, output, run};
 
@@ -37,14 +39,30 @@ pub(crate) fn campaign(
         ));
     }
     let programs = build(project)?;
-    let mut clean = true;
-    for target in targets {
-        if only.is_empty() || only.contains(&target) {
-            let seconds = seconds.unwrap_or(SECONDS);
+    let chosen = targets
+        .into_iter()
+        .filter(|target| only.is_empty() || only.contains(target));
+    let left = Mutex::new(chosen);
+    let next = || left.lock().ok().and_then(|mut left| left.next());
+    let seconds = seconds.unwrap_or(SECONDS);
+    let worker = || {
+        let mut clean = true;
+        while let Some(target) = next() {
             clean &= fuzz(project, &programs, &target, seconds)?;
         }
-    }
-    Ok(clean)
+        Ok::<_, String>(clean)
+    };
+    // A target is one thread.
+    let count = std::thread::available_parallelism().map_or(1, NonZero::get);
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..count).map(|_| scope.spawn(worker)).collect();
+        workers.into_iter().try_fold(true, |clean, worker| {
+            let found = worker
+                .join()
+                .map_err(|_| "a fuzz run panicked".to_owned())?;
+            Ok(clean & found?)
+        })
+    })
 }
 
 /// Names of the targets.

@@ -2,8 +2,10 @@
 //!
 //! A step that lacks a tool installs it where it can (Debian packages as root, Node packages with `npm ci`), else it
 //! is skipped with the remedy; with `CI=true` that is a failure. Debug builds serve the tests, one release build the
-//! browser and the README, so nothing is built twice in the same way.
+//! browser and the README, so nothing is built twice in the same way. CI builds in two lanes where the steps allow it
+//! ([`beside`]).
 
+mod beside;
 mod lessons;
 mod logs;
 mod readme;
@@ -14,6 +16,7 @@ pub(crate) mod wheel;
 
 use std::time::{Duration, Instant};
 
+use beside::Beside;
 pub(crate) use tools::installed_chromium;
 
 use crate::project::{Project, run as run_command};
@@ -76,6 +79,11 @@ const STEPS: [Step; 19] = [
         check: doc,
     },
     Step {
+        name: "build",
+        what: "the rumbo binary, as users build it",
+        check: build,
+    },
+    Step {
         name: "sketches",
         what: "the Arduino sketches build: images for the tests",
         check: crate::sketches::build,
@@ -91,6 +99,11 @@ const STEPS: [Step; 19] = [
         check: wasm,
     },
     Step {
+        name: "fuzz",
+        what: "the fuzz targets find nothing in five seconds each",
+        check: fuzz,
+    },
+    Step {
         name: "test",
         what: "the tests of all crates, the bridge to Foxglove and the node of ROS 2 included",
         check: tests,
@@ -101,19 +114,9 @@ const STEPS: [Step; 19] = [
         check: ros::check,
     },
     Step {
-        name: "fuzz",
-        what: "the fuzz targets find nothing in five seconds each",
-        check: fuzz,
-    },
-    Step {
         name: "figures",
         what: "the figures and tables of docs/theory are those of the sources",
         check: figures,
-    },
-    Step {
-        name: "build",
-        what: "the rumbo binary, as users build it",
-        check: build,
     },
     Step {
         name: "web",
@@ -147,6 +150,11 @@ const STEPS: [Step; 19] = [
     },
 ];
 
+/// With `CI=true` these run beside those from [`FIRST_BESIDE`] to the first of them. They build into folders of their
+/// own, and each has long phases of a single thread; no test of time is among either.
+const BESIDE: [&str; 4] = ["sketches", "firmware", "wasm", "fuzz"];
+const FIRST_BESIDE: &str = "clippy";
+
 /// Text of `cargo xtask test --help`.
 pub(crate) fn help() -> String {
     let mut text = String::from("Usage: cargo xtask test [--only STEP]...\n\nSteps, in order:\n");
@@ -166,10 +174,27 @@ pub(crate) fn run(project: &Project, only: &[String]) -> Result<bool, String> {
         return Err(format!("no step `{unknown}`; steps: {}", known.join(", ")));
     }
     let mut results = Vec::new();
+    let mut beside = None;
     for step in STEPS
         .iter()
         .filter(|step| only.is_empty() || only.iter().any(|name| name == step.name))
     {
+        if project.ci && only.is_empty() {
+            if step.name == FIRST_BESIDE {
+                beside = Some(Beside::start(project)?);
+            }
+            if BESIDE.contains(&step.name) {
+                results.extend(
+                    beside
+                        .take()
+                        .map(Beside::end)
+                        .transpose()?
+                        .into_iter()
+                        .flatten(),
+                );
+                continue;
+            }
+        }
         println!("\n==> {}: {}", step.name, step.what);
         let start = Instant::now();
         let outcome = judge((step.check)(project), project.ci);
