@@ -1,4 +1,10 @@
 //! The command line: what it prints, writes and refuses, and the programs it starts.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "helpers of tests too"
+)]
 
 mod browser;
 mod calibration;

@@ -1,4 +1,10 @@
 //! The chip, part by part, against its data sheet and other emulators.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "helpers of tests too"
+)]
 
 mod analog;
 mod buses;

@@ -1,4 +1,10 @@
 //! Experiments: their files, single runs, batches, and the requirements of each mode.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "helpers of tests too"
+)]
 
 mod batch;
 mod closed_loop;

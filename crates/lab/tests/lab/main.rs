@@ -1,4 +1,10 @@
 //! The simulated lab: its world, its clock, programs in place of the core.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "helpers of tests too"
+)]
 
 mod programs;
 mod velocity;

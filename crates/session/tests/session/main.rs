@@ -1,4 +1,10 @@
 //! The session of a robot over links of every quality.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "helpers of tests too"
+)]
 
 mod alone;
 mod exactly_once;

@@ -1,4 +1,10 @@
 //! The station: ports, pages, doors and what comes through them.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "helpers of tests too"
+)]
 
 mod bridge;
 mod client;
