@@ -11,5 +11,6 @@ mod closed_loop;
 mod earlier_files;
 mod emulated;
 mod files;
+mod fleet;
 mod golden;
 mod moving;

@@ -1,7 +1,5 @@
 //! Scenarios with several robots.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
-
 use rumbo_experiment::files::{
     FileError, Kind, Library, NativeProgram, Overrides, Setup, Start, fleet_around,
 };
