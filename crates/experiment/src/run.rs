@@ -259,9 +259,13 @@ fn together(fleet: &Fleet, robots: Vec<RunResult>) -> RunResult {
             .map(|(robot, text)| format!("{}: {text}", robot.scenario))
             .collect()
     };
+    let own = robots.iter();
+    let own: Vec<_> = own
+        .map(|robot| (robot.scenario.as_str(), &robot.metrics))
+        .collect();
     RunResult {
         seed: robots.first().map_or(0, |first| first.seed),
-        metrics: metrics::of_fleet(fleet, &robots),
+        metrics: metrics::of_fleet(fleet, &own),
         failures: all(|robot| &robot.failures),
         notes: all(|robot| &robot.notes),
         ended: robots.iter().find_map(|robot| robot.ended.clone()),

@@ -17,6 +17,7 @@
 //! An entry may have most keys of a scenario: robot, rig, mode, start, commands, parameters, plant, failing sonars and
 //! wires. What it does not have is that of the scenario around it; its parameters and plant values come on top of those.
 
+use super::Library;
 use super::commands::read_commands;
 use super::parameters::read_parameters;
 use super::read::Table;
@@ -26,9 +27,6 @@ use super::scenario::{
     read_wire_faults,
 };
 use super::setup::{NativeProgram, Overrides};
-use super::{FileError, Library, Setup, Start};
-use rumbo_plant::contact::{Footprint, Pose};
-use rumbo_plant::world::Obstacle;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -86,81 +84,6 @@ pub(super) fn read_fleet(root: &Table<'_, '_>, around: &ScenarioFile) -> Vec<Mem
         read_member(table, name.value, around)
     });
     members.collect()
-}
-
-/// Distance between the places that are tried for a robot's start, in m.
-const GRID_M: f64 = 0.5;
-
-/// The entries of `[[fleet]]`, as text, that make so many robots of the scenario's one: the first at its start, the others
-/// on a grid around it, free of walls, boxes, movers and each other, in the world's arena.
-///
-/// # Errors
-/// The world has no room for so many.
-pub fn fleet_around(setup: &Setup, robots: usize) -> Result<String, FileError> {
-    let Setup {
-        scenario,
-        robot,
-        world,
-        ..
-    } = setup;
-    let Start {
-        x_m,
-        y_m,
-        heading_rad,
-    } = scenario.start;
-    let obstacles = world
-        .world()
-        .map_err(|error| FileError::Setting(format!("world {}: {error}", world.name)))?;
-    let footprint = Footprint::new(&robot.plant.body, &robot.plant.wheels);
-    let steps = |from_m: f64, to_m: f64, at_m: f64| {
-        let [first, last] = [from_m, to_m].map(|end_m| ((end_m - at_m) / GRID_M) as i32);
-        first..=last
-    };
-    let [[left_m, low_m], [right_m, high_m]] = [world.arena.from_m, world.arena.to_m];
-    let columns = steps(left_m, right_m, x_m);
-    let mut places: Vec<(i32, i32)> = columns
-        .flat_map(|column| steps(low_m, high_m, y_m).map(move |row| (column, row)))
-        .collect();
-    places.sort_by_key(|(column, row)| (column * column + row * row, *row, *column));
-    let starts = places.into_iter().map(|(column, row)| Pose {
-        x_m: x_m + GRID_M * f64::from(column),
-        y_m: y_m + GRID_M * f64::from(row),
-        heading_rad,
-    });
-    let bodies = obstacles
-        .bodies()
-        .iter()
-        .map(|body| body.outline(&body.at(0).pose));
-    let taken: Vec<Obstacle> = obstacles
-        .obstacles()
-        .iter()
-        .cloned()
-        .chain(bodies)
-        .collect();
-    let is_free = |at: &Pose| {
-        let corners = footprint.corners(at);
-        let inside = corners
-            .iter()
-            .all(|[x_m, y_m]| (left_m..=right_m).contains(x_m) && (low_m..=high_m).contains(y_m));
-        inside
-            && Obstacle::convex(&corners)
-                .is_ok_and(|own| !taken.iter().any(|each| each.overlaps(&own)))
-    };
-    let free: Vec<Pose> = starts.filter(is_free).take(robots).collect();
-    if free.len() < robots {
-        return Err(FileError::Setting(format!(
-            "world {}: has room for {} of {robots} robots; ask for fewer, or choose a larger world",
-            world.name,
-            free.len()
-        )));
-    }
-    let entries = (1..).zip(free).map(|(number, Pose { x_m, y_m, heading_rad })| {
-        let heading_deg = heading_rad.to_degrees();
-        format!(
-            "\n[[fleet]]\nname = \"robot{number}\"\nstart = {{ x_m = {x_m:?}, y_m = {y_m:?}, heading_deg = {heading_deg:?} }}\n"
-        )
-    });
-    Ok(entries.collect())
 }
 
 fn read_member(table: &Table<'_, '_>, name: String, around: &ScenarioFile) -> Member {

@@ -4,13 +4,13 @@ use super::error::FileError;
 use super::kept::Calibrations;
 use super::near::{near, near_or_all};
 use super::read::Allowed;
+use super::start::{pose, stand_apart, stands_free};
 use super::{Library, RobotFile, ScenarioFile, Spread, Start, WorldFile, firmware, parameters};
 use crate::random_world::{Journey, Site, Size};
 use rumbo_control::params::ParamId;
-use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
-use rumbo_plant::world::{Obstacle, Point};
+use rumbo_plant::world::Point;
 use rumbo_sim::mega::firmware::{Firmware, Language};
 use rumbo_sim::wiring::Divider;
 use rumbo_sim::{Config, Program, Sim};
@@ -460,79 +460,6 @@ fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileEr
         "scenario {}: its goal is that of the world, and world {} has none; give a world with goal_m or [random], or goal_m in place of goal",
         scenario.name, world.name
     )))
-}
-
-/// Reports a start inside a wall, a box or something that moves.
-fn stands_free(
-    scenario: &ScenarioFile,
-    robot: &RobotFile,
-    world: &WorldFile,
-    alone: bool,
-) -> Result<(), FileError> {
-    let obstacles = world
-        .world()
-        .map_err(|error| FileError::Setting(format!("world {}: {error}", world.name)))?;
-    let Start { x_m, y_m, .. } = scenario.start;
-    if scenario.wheels_in_air {
-        return Ok(());
-    }
-    let footprint = Footprint::new(&robot.plant.body, &robot.plant.wheels);
-    let corners = footprint.corners(&pose(&scenario.start));
-    let within =
-        |outline: &Obstacle| Obstacle::convex(&corners).is_ok_and(|own| own.overlaps(outline));
-    let inside = if obstacles.obstacles().iter().any(within) {
-        "a wall or box".to_owned()
-    } else {
-        let mut bodies = obstacles.bodies().iter();
-        let Some(index) = bodies.position(|body| within(&body.outline(&body.at(0).pose))) else {
-            return Ok(());
-        };
-        world.movers[index].called(index)
-    };
-    let whose = match world.start {
-        _ if !alone => format!("robot {}", scenario.name),
-        Some(_) => format!("world {}", world.name),
-        None => format!("scenario {}", scenario.name),
-    };
-    Err(FileError::Setting(format!(
-        "{whose}: its start x_m = {x_m}, y_m = {y_m} is inside {inside} of world {}; move [start] or choose another world",
-        world.name
-    )))
-}
-
-/// Reports two robots that start inside each other, and a world that is another one for each seed.
-fn stand_apart(scenario: &str, fleet: &[Setup]) -> Result<(), FileError> {
-    let refused = |text: String| Err(FileError::Setting(format!("scenario {scenario}: {text}")));
-    let mut outlines: Vec<(&str, Obstacle)> = Vec::new();
-    for setup in fleet {
-        let (name, world) = (setup.scenario.name.as_str(), &setup.world);
-        if world.random.is_some() {
-            return refused(format!(
-                "a fleet has no room in world {}, whose boxes each seed draws anew; give it a world without [random]",
-                world.name
-            ));
-        }
-        let footprint = Footprint::new(&setup.robot.plant.body, &setup.robot.plant.wheels);
-        let corners = footprint.corners(&pose(&setup.scenario.start));
-        let Ok(outline) = Obstacle::convex(&corners) else {
-            continue;
-        };
-        if let Some((other, _)) = outlines.iter().find(|(_, other)| other.overlaps(&outline)) {
-            return refused(format!(
-                "robots {other} and {name} start inside each other; move the start of one"
-            ));
-        }
-        outlines.push((name, outline));
-    }
-    Ok(())
-}
-
-fn pose(start: &Start) -> Pose {
-    Pose {
-        x_m: start.x_m,
-        y_m: start.y_m,
-        heading_rad: start.heading_rad,
-    }
 }
 
 /// Sets one parameter, of the plant or of the control core, whichever has the name.

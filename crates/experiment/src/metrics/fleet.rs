@@ -1,23 +1,22 @@
 //! Metrics of several robots in one world: those of each, of each pair, and of all.
 
 use super::{Metrics, bare};
-use crate::run::RunResult;
 use rumbo_sim::fleet::{Fleet, Met};
 
-/// A robot's metrics begin with its name, a pair's with both: `north.contacts`, `north-south.closest_m`.
-pub(crate) fn of_fleet(fleet: &Fleet, robots: &[RunResult]) -> Metrics {
+/// Of robots by their names, with the metrics of each: those begin with its name, a pair's with both, as in
+/// `north.contacts` and `north-south.closest_m`.
+pub(crate) fn of_fleet(fleet: &Fleet, robots: &[(&str, &Metrics)]) -> Metrics {
     let mut metrics = Metrics::new();
-    let named = |robot: &RunResult, metric: &str| format!("{}.{metric}", robot.scenario);
-    for robot in robots {
-        let own = robot.metrics.iter();
-        metrics.extend(own.map(|(metric, value)| (named(robot, metric), *value)));
+    for (robot, own) in robots {
+        let own = own.iter();
+        metrics.extend(own.map(|(metric, value)| (format!("{robot}.{metric}"), *value)));
     }
     let (mut closest_m, mut met, mut fastest_m_s) = (f64::INFINITY, 0, 0.0_f64);
-    for (second, robot) in robots.iter().enumerate() {
-        for (first, other) in robots[..second].iter().enumerate() {
+    for (second, (robot, _)) in robots.iter().enumerate() {
+        for (first, (other, _)) in robots[..second].iter().enumerate() {
             let pair = Pair::of(fleet, first, second);
             let mut put = |metric: &str, value: f64| {
-                let name = format!("{}-{}.{metric}", other.scenario, robot.scenario);
+                let name = format!("{other}-{robot}.{metric}");
                 metrics.insert(name, rounded(value));
             };
             put("closest_m", pair.closest_m);
@@ -32,7 +31,7 @@ pub(crate) fn of_fleet(fleet: &Fleet, robots: &[RunResult]) -> Metrics {
         let speeds = encounters.iter().map(|encounter| encounter.speed_m_s);
         fastest_m_s = speeds.fold(fastest_m_s, f64::max);
     }
-    let arrived = robots.iter().filter(|robot| has_arrived(robot));
+    let arrived = robots.iter().filter(|(_, own)| has_arrived(own));
     metrics.insert("arrived".into(), arrived.count() as f64);
     metrics.insert("closest_m".into(), rounded(closest_m));
     metrics.insert("contact_speed_m_s".into(), rounded(fastest_m_s));
@@ -41,8 +40,7 @@ pub(crate) fn of_fleet(fleet: &Fleet, robots: &[RunResult]) -> Metrics {
 }
 
 /// It has reached each of its goals.
-fn has_arrived(robot: &RunResult) -> bool {
-    let metrics = &robot.metrics;
+fn has_arrived(metrics: &Metrics) -> bool {
     let mut times = metrics.iter().filter(|(name, _)| bare(name) == "time_s");
     metrics.get("reached").is_some_and(|reached| *reached > 0.0)
         && times.all(|(_, time_s)| time_s.is_finite())
