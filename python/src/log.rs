@@ -99,6 +99,7 @@ fn name(source: Source) -> String {
     match source {
         Source::Truth => "truth".to_owned(),
         Source::Loops => "loops".to_owned(),
+        Source::Others => "others".to_owned(),
         Source::Usart(number) => format!("usart{number}"),
     }
 }
