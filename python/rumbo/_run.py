@@ -35,7 +35,10 @@ class Run:
     #: ``t_s`` [s], ``x_m``, ``y_m`` [m], ``heading_rad`` [rad, turns add up], ``left_rad_s``, ``right_rad_s`` [rad/s],
     #: ``range_left_m``, ``range_right_m``, ``range_front_m`` [m, inf where nothing is within reach], ``servo_rad``
     #: [rad], ``battery_v`` [V], ``left_duty``, ``right_duty`` [PWM, -255 to 255], ``touching``.
+    #: Of several robots each has its own.
     trace: dict[str, NDArray[Any]] | None = None
+    #: The runs of the robots, if there are several, each by its name and without limits.
+    robots: tuple[Run, ...] = ()
 
 
 class Runs(Sequence[Run]):
@@ -136,17 +139,19 @@ def run(
     numbers = make_seeds(seeds)
     show = make_progress(progress, len(numbers))
     results = _rumbo.run(setup, numbers, threads=threads, trace=trace, progress=show)
-    return Runs(
-        Run(
-            scenario=result["scenario"],
-            seed=result["seed"],
-            passed=result["passed"],
-            metrics=result["metrics"],
-            failures=tuple(result["failures"]),
-            notes=tuple(result["notes"]),
-            trace=result.get("trace"),
-        )
-        for result in results
+    return Runs(_run_of(result) for result in results)
+
+
+def _run_of(result: dict[str, Any]) -> Run:
+    return Run(
+        scenario=result["scenario"],
+        seed=result["seed"],
+        passed=result["passed"],
+        metrics=result["metrics"],
+        failures=tuple(result["failures"]),
+        notes=tuple(result["notes"]),
+        trace=result.get("trace"),
+        robots=tuple(_run_of(robot) for robot in result["robots"]),
     )
 
 

@@ -49,6 +49,9 @@ pub(crate) fn run<'py>(
         run_all_on(threads.min(jobs.len()), &jobs, |_, mut result| {
             if !trace {
                 result.trace = Default::default();
+                for robot in &mut result.robots {
+                    robot.trace = Default::default();
+                }
             }
             results.push(result);
             call(progress.as_ref(), results.len()).map_err(Stop::Python)
@@ -73,9 +76,12 @@ fn in_python(py: Python<'_>, result: RunResult, trace: bool) -> PyResult<Bound<'
     run.set_item("metrics", metrics)?;
     run.set_item("failures", &result.failures)?;
     run.set_item("notes", &result.notes)?;
-    if trace {
+    if trace && result.robots.is_empty() {
         run.set_item("trace", columns(py, &result.trace.samples)?)?;
     }
+    let robots = result.robots.into_iter();
+    let robots = robots.map(|robot| in_python(py, robot, trace));
+    run.set_item("robots", robots.collect::<PyResult<Vec<_>>>()?)?;
     Ok(run)
 }
 

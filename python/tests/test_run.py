@@ -78,6 +78,16 @@ def test_columns_have_a_row_for_each_run() -> None:
     assert "2 runs of mode1" in repr(runs)
 
 
+def test_each_of_several_robots_has_its_trace() -> None:
+    scenario = pathlib.Path(__file__).parents[2] / "examples/fleet/corners.toml"
+    run = rumbo.run(str(scenario), trace=True)[0]
+    assert [robot.scenario for robot in run.robots] == ["south_west", "south_east", "north_east", "north_west"]
+    assert run.trace is None
+    assert run.robots[2].metrics["path_m"] == run.metrics["north_east.path_m"]
+    starts = [(robot.trace["x_m"][0], robot.trace["y_m"][0]) for robot in run.robots if robot.trace]
+    assert starts == pytest.approx([(-1, -1), (1, -1), (1, 1), (-1, 1)], abs=1e-2)
+
+
 def test_the_trace_is_ground_truth_every_ten_milliseconds() -> None:
     run = rumbo.run("mode1", trace=True)[0]
     assert run.trace is not None
