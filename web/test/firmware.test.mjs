@@ -23,6 +23,8 @@ before(async () => {
   if (skip) return;
   dashboard = await open(['lab', '--scenario', 'mode5', '--firmware', image, '--out', folder()]);
   page = dashboard.page;
+  // Before that nothing hears a click.
+  await page.waitForSelector('#connection.good');
 });
 
 after(() => dashboard?.close());
