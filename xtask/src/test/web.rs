@@ -31,9 +31,8 @@ pub(crate) fn browser(project: &Project) -> Result<(), Stop> {
         .env("SITE", site)
         .env("FIRMWARE", project.target.join("firmware/rumbo.elf"))
         .env("HASHES", hashes);
-    // Robots drive in real time: a file takes about half of a processor.
     Ok(run(test
-        .args(["--test", "--test-concurrency=3", "--test-reporter=spec"])
+        .args(["--test", "--test-concurrency=2", "--test-reporter=spec"])
         .args(tests))?)
 }
 
