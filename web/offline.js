@@ -24,8 +24,7 @@ worker.addEventListener('activate', (/** @type {any} */ event) => {
     const old = names.filter((name) => name.startsWith('rumbo-') && name !== CACHE);
     return Promise.all(old.map((name) => caches.delete(name)));
   });
-  // The page of the first visit too: what it asks for is kept.
-  event.waitUntil(clean.then(() => worker.clients.claim()));
+  event.waitUntil(clean);
 });
 
 /** @param {Request} request */

@@ -152,18 +152,4 @@ test('no experiment is no report, and without a network the dialog says what is 
   await cut.page.locator('#report').click();
   await cut.page.locator('#report-dialog .complaint', { hasText: 'Without a network' }).waitFor();
   await cut.close();
-
-  // Where it was made, the first visit of the site included, it is made again.
-  const kept = await open();
-  await kept.page.waitForSelector('#connection.good');
-  await kept.page.waitForFunction(() => navigator.serviceWorker.controller !== null);
-  await ask(kept);
-  await kept.page.waitForFunction(() => caches.match('lab/rumbo_report_bg.wasm'));
-  kept.unplug();
-  await kept.page.reload();
-  await ask(kept);
-  await choose(kept, [/Mode 5/]);
-  await kept.page.locator('#report-make').click();
-  await kept.page.locator('#report-result').waitFor();
-  await kept.close();
 });

@@ -16,7 +16,6 @@ const PAGES = [
   ['docs/a.html', 'Wheels', 'en', false, [['wheels', 'Wheels', 'What a wheel is.'], ['speed', 'Speed of a wheel', 'Its odometry, in front_kp.']]],
   ['docs/lessons/en/1.html', 'Odometry', 'en', true, [['odometry', 'Odometry', 'A lesson.']]],
   ['docs/lessons/es/1.html', 'Odometría', 'es', true, [['odometria', 'Odometría', 'Una lección con señales.']]],
-  ['docs/c.html', 'Notes', 'en', false, [['notes', 'Notes', 'Odometry, odometry, odometry.']]],
   ['CHANGELOG.html', 'Changelog', 'en', false, [['changelog', 'Changelog', 'Odometry, odometry, odometry.']]],
 ];
 
@@ -29,7 +28,7 @@ test('accents and capitals make no difference, and folding moves nothing', () =>
 });
 
 test('headings come before texts, and what users read before what changed', () => {
-  assert.deepEqual(found('odometry'), ['docs/lessons/en/1.html', 'docs/c.html', 'docs/a.html#speed', 'CHANGELOG.html']);
+  assert.deepEqual(found('odometry'), ['docs/lessons/en/1.html', 'docs/a.html#speed', 'CHANGELOG.html']);
 });
 
 test('a page in two languages is found in the reader\'s', () => {
