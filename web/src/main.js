@@ -61,8 +61,7 @@ let state = null;
 let version = null;
 /** What is simulated around the robot. @type {import('./types.js').Scene | null} */
 let simulated = null;
-/** There are several robots in the world; the page is of one that goes with the time of the first. */
-let several = false;
+/** The page is of one of several robots in the world, which goes with the time of the first. */
 let follows = false;
 /** The robot's, as far as they are known. @type {import('./types.js').Parameter[]} */
 let table = [];
@@ -227,7 +226,7 @@ function receive(message) {
       stateLine.modes = message.modes;
       machine.modes = message.modes;
       parameters.setModes(message.modes);
-      several = (message.robots ?? []).length > 0;
+      document.body.classList.toggle('several', (message.robots ?? []).length > 0);
       follows = message.robot > 0;
       offerRobots(message.robots ?? [], message.robot);
       meter.clear();
@@ -241,7 +240,7 @@ function receive(message) {
       // The first robot's page has the time and the choice for all.
       header.setScene(follows ? null : simulated);
       map.setScene(message.scene);
-      editor.setScene(several ? null : simulated);
+      editor.setScene(simulated);
       panel.setScene(message.scene);
       stateLine.setScene(simulated);
       setBody();

@@ -44,6 +44,7 @@ test('each robot is driven from its own page', async () => {
   await show('robot1');
   assert.equal((await state()).robot.armed, false);
   assert.equal(await page.locator('#simulation').isVisible(), true);
+  assert.equal(await page.locator('#edit-world').isVisible(), false, 'a world is edited with one robot in it');
 });
 
 test('the map shows the others where they drive', async () => {

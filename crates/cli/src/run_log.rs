@@ -48,12 +48,16 @@ impl Source<'_> {
             ..manifest::of(self.kind, setup, self.overrides, result.seed)
         };
         if result.robots.is_empty() {
-            return self.with_run(setup, result, Around::default(), |run| {
-                write(&manifest, run)
-            });
+            let alone = Around {
+                scenario: &result.scenario,
+                others: Vec::new(),
+                places: Vec::new(),
+            };
+            return self.with_run(setup, result, alone, |run| write(&manifest, run));
         }
         for (number, (own, robot)) in std::iter::zip(&setup.fleet, &result.robots).enumerate() {
             let around = Around {
+                scenario: &result.scenario,
                 others: others(&setup.fleet, number),
                 places: places(&result.robots, number),
             };
@@ -71,11 +75,11 @@ impl Source<'_> {
         &self,
         setup: &Setup,
         result: &RunResult,
-        around: Around,
+        around: Around<'_>,
         write: impl FnOnce(Run<'_>) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
         let choice = Choice {
-            scenario: result.scenario.clone(),
+            scenario: around.scenario.to_owned(),
             world: self.overrides.world.clone(),
             rig: self.overrides.rig.clone(),
             seed: result.seed,
@@ -122,9 +126,11 @@ impl Source<'_> {
     }
 }
 
-/// The other robots around one of several.
-#[derive(Default)]
-struct Around {
+/// What a robot's run is a part of.
+struct Around<'a> {
+    /// The scenario of all robots.
+    scenario: &'a str,
+    /// The other robots.
     others: Vec<Other>,
     /// Where they were.
     places: Vec<(u64, Shown)>,

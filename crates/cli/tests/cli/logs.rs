@@ -75,6 +75,14 @@ fn each_of_several_robots_has_a_log_with_the_others_that_runs_again() {
         let path = format!("out/two-1-{own}.mcap");
         let log = log_file::read(&folder.path().join(&path)).unwrap();
         assert_eq!(log.manifest.as_ref().unwrap().member.as_deref(), Some(own));
+        let scene = log.scene.as_ref().unwrap();
+        assert_eq!(
+            (
+                scene.choice.scenario.as_str(),
+                scene.others[0].name.as_str()
+            ),
+            ("two", other)
+        );
         let seen: Vec<f64> = log
             .readings
             .iter()
