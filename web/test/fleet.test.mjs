@@ -15,9 +15,9 @@ const state = () => page.evaluate(() => /** @type {import('../src/types.js').Sta
 
 /** Goes to the page of a robot. @param {string} name */
 async function show(name) {
-  await page.locator('#robots button', { hasText: name }).click();
-  await page.locator(`#robots button[aria-pressed="true"]`, { hasText: name }).waitFor();
+  if (await page.locator('#robot').inputValue() !== name) await Promise.all([page.waitForEvent('load'), page.locator('#robot').selectOption(name)]);
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state()?.link.connected);
+  assert.equal(await page.locator('#robot').inputValue(), name);
 }
 
 /** @param {boolean} armed */
@@ -32,7 +32,7 @@ before(async () => {
 after(() => dashboard?.close());
 
 test('each robot is driven from its own page', async () => {
-  assert.deepEqual(await page.locator('#robots button').allTextContents(), ['robot1', 'robot2', 'robot3']);
+  assert.deepEqual(await page.locator('#robot option').allTextContents(), ['robot1', 'robot2', 'robot3']);
   await show('robot2');
   assert.equal(await page.locator('#simulation').isVisible(), false, 'the first one has the choice');
   await page.locator('#on').click();

@@ -264,7 +264,7 @@ export const PAGE = {
   'CRC errors from, to the robot': 'errores de CRC desde, hacia el robot', 'frames missing': 'tramas perdidas', 'dropped: link full': 'descartadas: enlace lleno',
   'commands unconfirmed': 'órdenes sin confirmar', 'control ticks late': 'pasos de control tarde', 'The bytes stand in the log; a replay does not show them.': 'Los bytes están en la grabación; aquí no se muestran.', 'robot started at': 'el robot arrancó a los', 'as the station': 'con la estación', 'robot\'s clock': 'reloj del robot',
   '{} ppm slow': '{} ppm lento', '{} ppm fast': '{} ppm rápido', 'HELLO': 'HELLO', 'status': 'estado', 'event': 'suceso',
-  'Drive this robot; STOP stops all of them': 'Conducir este robot; STOP los para todos', 'Robots': 'Robots',
+  'The robot that this page drives; STOP stops all of them': 'El robot que conduce esta página; PARAR los para todos', 'robot': 'robot',
   'acknowledgement': 'confirmación', 'heartbeat': 'latido', 'command': 'orden', 'velocity': 'velocidad', 'unknown': 'desconocida',
   'info': 'información', 'good': 'bien', 'warning': 'aviso',
 };
