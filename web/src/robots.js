@@ -9,7 +9,7 @@ choice.addEventListener('change', () => {
 
 /** @param {string[]} robots @param {number} own */
 export function offerRobots(robots, own) {
-  element('robots', HTMLElement).hidden = robots.length === 0;
+  choice.hidden = robots.length === 0;
   choice.replaceChildren(...robots.map((name) => create('option', { textContent: name })));
   choice.selectedIndex = own;
 }

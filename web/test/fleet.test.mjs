@@ -24,7 +24,7 @@ async function show(name) {
 const isArmed = (armed) => eventually(async () => assert.equal((await state()).robot.armed, armed));
 
 before(async () => {
-  dashboard = await open(['lab', '--robots', '3', '--scenario', 'mode6', '--out', recordings]);
+  dashboard = await open(['lab', '--robots', '3', '--scenario', 'mode6', '--out', recordings], { locale: 'es-ES' });
   page = dashboard.page;
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state()?.link.connected);
 });
@@ -62,6 +62,8 @@ test('the map shows the others where they drive', async () => {
 });
 
 test('STOP on any page stops all', async () => {
+  const { x, width } = await page.locator('#stop').boundingBox() ?? { x: Infinity, width: 0 };
+  assert.ok(x + width <= 1280, `STOP ends at ${x + width}`);
   await page.locator('#stop').click();
   for (const name of ['robot2', 'robot3']) {
     await show(name);
