@@ -13,6 +13,9 @@ use libm::{acos, cos, sin, sqrt};
 
 use crate::world::{Obstacle, Point, World, add, cross, dot, scale, sub};
 
+/// More than rounding moves a corner.
+const ROUNDING_M: f64 = 1e-9;
+
 /// A cone on the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
@@ -91,7 +94,10 @@ pub fn nearest(world: &World, now_us: u64, cone: &Cone, hearing: &Hearing) -> Op
     };
     let mut best: Option<Candidate> = None;
     let mut limit_m = hearing.reach_m;
-    let moving = world.outlines_within(now_us, cone.apex, hearing.reach_m);
+    // What is outside the cone gives no echo, and hides none.
+    let moving = world.outlines(now_us, |center, radius_m| {
+        query.may_meet(center, radius_m + ROUNDING_M, hearing.reach_m)
+    });
     let obstacles = world.obstacles().iter().chain(&moving);
     for (index, obstacle) in obstacles.clone().enumerate() {
         if !query.may_detect(obstacle, limit_m) {
@@ -130,8 +136,12 @@ pub fn nearest(world: &World, now_us: u64, cone: &Cone, hearing: &Hearing) -> Op
 impl Query {
     /// Bounding-circle test against the cone's two edges and the range to beat.
     fn may_detect(&self, obstacle: &Obstacle, limit_m: f64) -> bool {
-        let d = sub(obstacle.center, self.apex);
-        let r = obstacle.radius_m;
+        self.may_meet(obstacle.center, obstacle.radius_m, limit_m)
+    }
+
+    /// The same of any circle.
+    fn may_meet(&self, center: Point, r: f64, limit_m: f64) -> bool {
+        let d = sub(center, self.apex);
         let far = limit_m + r;
         cross(self.right, d) >= -r && cross(d, self.left) >= -r && dot(d, d) <= far * far
     }

@@ -78,6 +78,20 @@ pub struct Impact {
 }
 
 impl State {
+    /// True if nothing that moves can have come to a body at rest, in a step of this length: where it can, the step is to
+    /// be settled.
+    pub(crate) fn stays_clear(&mut self, world: &World, dt_s: f64) -> bool {
+        let way_m = world.fastest_m_s() * dt_s;
+        if world.bodies().is_empty() {
+            return true;
+        }
+        if self.clearance_m > way_m {
+            self.clearance_m -= way_m;
+            return true;
+        }
+        false
+    }
+
     /// True from a touch until the body has left by a few millimetres.
     #[must_use]
     pub const fn touching(&self) -> bool {
@@ -337,12 +351,6 @@ fn bit(world: &World, obstacle: usize) -> u64 {
         None => 1,
         Some(body) => 2 << body,
     }
-}
-
-/// How far two outlines are apart along the axis that separates them most; negative is the depth of an overlap.
-pub(crate) fn separation_m(one: &Obstacle, other: &Obstacle) -> f64 {
-    let corners: Vec<Point> = one.corners().collect();
-    gap(&corners, other).distance_m
 }
 
 /// The axis, among all face normals of both, along which body and obstacle are farthest apart.

@@ -264,19 +264,54 @@ impl Body {
     /// Its outline there.
     #[must_use]
     pub fn outline(&self, pose: &Pose) -> Obstacle {
-        let (s, c) = sincos(pose.heading_rad);
-        let place = |&[x, y]: &Point| add([pose.x_m, pose.y_m], [c * x - s * y, s * x + c * y]);
-        let corners: Vec<Point> = self.corners.iter().map(place).collect();
-        Obstacle::from_corners(&corners)
+        let mut outline = Obstacle::default();
+        self.outline_again(pose, &mut outline);
+        outline
     }
 
-    pub(crate) fn follow(&mut self, course: Course) {
+    /// The same in place of an earlier outline, whose memory it keeps.
+    pub fn outline_again(&self, pose: &Pose, outline: &mut Obstacle) {
+        let (s, c) = sincos(pose.heading_rad);
+        let place = |&[x, y]: &Point| add([pose.x_m, pose.y_m], [c * x - s * y, s * x + c * y]);
+        outline.take_corners(self.corners.iter().map(place));
+    }
+
+    /// True if it stands here for good, on its course as it is.
+    #[must_use]
+    pub fn stands_as(&self, motion: &Motion) -> bool {
+        let stands = motion.velocity == Velocity::default();
+        stands && matches!(&self.course, Course::Straight { from, .. } if from == motion)
+    }
+
+    /// Sets its course; returns how far at most a point of it jumps now \[m\].
+    pub fn turn_to(&mut self, now_us: u64, course: Course) -> f64 {
+        let was = self.at(now_us).pose;
+        self.follow(course);
+        way_m(&was, &self.at(now_us).pose, self.radius_m)
+    }
+
+    /// Takes the course of another one with the same outline.
+    pub(crate) fn go_as(&mut self, other: &Self) {
+        self.course.clone_from(&other.course);
+        self.fastest_m_s = other.fastest_m_s;
+    }
+
+    fn follow(&mut self, course: Course) {
         self.fastest_m_s = match &course {
             Course::Route(route) => route.fastest_m_s(self.radius_m),
             Course::Straight { from, .. } => fastest_m_s(&from.velocity, self.radius_m),
         };
         self.course = course;
     }
+}
+
+/// No point within `radius_m` of the origin of a frame is farther from where it was [m].
+#[must_use]
+pub fn way_m(was: &Pose, is: &Pose, radius_m: f64) -> f64 {
+    let turn_rad = (is.heading_rad - was.heading_rad).abs();
+    // By the shorter way, if a heading was wrapped.
+    let turn_rad = turn_rad.min((core::f64::consts::TAU - turn_rad).abs());
+    (is.x_m - was.x_m).abs() + (is.y_m - was.y_m).abs() + turn_rad * radius_m
 }
 
 fn fastest_m_s(velocity: &Velocity, radius_m: f64) -> f64 {

@@ -14,7 +14,7 @@ use crate::contact::{self, Footprint, Pose};
 use crate::drivetrain::{self, Bridge, Drivetrain, Motion, Side};
 use crate::encoder::{self, Encoder};
 use crate::event::Queue;
-use crate::moving::{Body, Course, Motion as BodyMotion, Velocity};
+use crate::moving::{Body, Motion as BodyMotion, Velocity};
 use crate::noise::Noise;
 use crate::params::{self, Params};
 use crate::servo;
@@ -159,16 +159,31 @@ impl Plant {
         Arc::make_mut(&mut self.world).add_body(body)
     }
 
-    /// Sets the course of a body of the world, by its index, from now on.
-    pub fn set_course(&mut self, state: &mut State, body: usize, course: Course) {
-        state.contact.clearance_m -=
-            Arc::make_mut(&mut self.world).set_course(body, state.now_us, course);
+    /// Puts bodies with the same outlines in place of those of the world, by their numbers: on their way from now on, to
+    /// which each has jumped by at most so much \[m\].
+    pub fn replace_bodies<'a>(
+        &mut self,
+        state: &mut State,
+        bodies: impl Iterator<Item = (usize, &'a Body, f64)>,
+    ) {
+        let clearance_m = &mut state.contact.clearance_m;
+        let bodies = bodies.map(|(index, body, jump_m)| {
+            *clearance_m -= jump_m;
+            (index, body)
+        });
+        Arc::make_mut(&mut self.world).replace_bodies(bodies);
     }
 
     /// Where the body is, and how fast it moves.
     #[must_use]
     pub fn motion(&self, state: &State) -> BodyMotion {
         let [forward_m_s, yaw_rad_s] = state.speed;
+        if state.speed == [0.0; 2] {
+            return BodyMotion {
+                pose: state.pose,
+                velocity: Velocity::default(),
+            };
+        }
         let (s, c) = sincos(state.pose.heading_rad);
         BodyMotion {
             pose: state.pose,
@@ -244,8 +259,11 @@ impl Plant {
     pub fn receive_pings(&mut self, state: &mut State, pings: &[Ping]) {
         let now_us = state.now_us;
         self.air.retain(|ping| ping.rise_us + IN_AIR_US > now_us);
+        if pings.is_empty() {
+            return;
+        }
         for sonar in SonarId::ALL {
-            if let Some(view) = self.view(state, sonar).filter(|_| !pings.is_empty()) {
+            if let Some(view) = self.view(state, sonar) {
                 for ping in pings {
                     self.overhear(state, sonar, &view, ping);
                 }
@@ -349,7 +367,7 @@ impl Plant {
         events: &mut impl FnMut(Event),
     ) {
         let at_rest = motion.forward_m == 0.0 && motion.yaw_rad == 0.0;
-        if at_rest && (self.world.bodies().is_empty() || self.wheels_in_air) {
+        if at_rest && (self.wheels_in_air || state.contact.stays_clear(&self.world, dt_s)) {
             state.speed = [0.0; 2];
             return;
         }
@@ -461,6 +479,12 @@ impl Plant {
 }
 
 impl State {
+    /// Where the body is.
+    #[must_use]
+    pub const fn pose(&self) -> Pose {
+        self.pose
+    }
+
     /// Time since the start.
     #[must_use]
     pub const fn now_us(&self) -> u64 {

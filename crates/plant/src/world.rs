@@ -7,7 +7,7 @@
 
 use libm::{sincos, sqrt};
 
-use crate::moving::{Body, Course, MOST_BODIES};
+use crate::moving::{Body, MOST_BODIES};
 
 /// A point or a vector on the floor: `[x, y]`, metres.
 pub type Point = [f64; 2];
@@ -71,7 +71,7 @@ impl core::error::Error for ShapeError {}
 
 /// One face of an outline, from `start` along `along` for `length_m`; `normal` points outwards (to the right of
 /// `along`).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Face {
     /// First corner, counter-clockwise.
     pub start: Point,
@@ -110,7 +110,7 @@ impl Face {
 }
 
 /// A convex obstacle: its faces counter-clockwise, and a circle around it. A thin screen has two faces, back to back.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Obstacle {
     /// Faces in counter-clockwise order.
     pub faces: Vec<Face>,
@@ -141,25 +141,28 @@ impl Obstacle {
     }
 
     pub(crate) fn from_corners(corners: &[Point]) -> Self {
-        let faces: Vec<Face> = corners
-            .iter()
-            .zip(corners.iter().cycle().skip(1))
-            .map(|(&a, &b)| Face::between(a, b))
-            .collect();
-        let n = corners.len() as f64;
-        let center = scale(
-            corners.iter().fold([0.0, 0.0], |sum, &c| add(sum, c)),
-            1.0 / n,
-        );
-        let radius_m = corners
-            .iter()
-            .map(|&c| sqrt(dot(sub(c, center), sub(c, center))))
-            .fold(0.0, f64::max);
-        Self {
-            faces,
-            center,
-            radius_m,
+        let mut obstacle = Self::default();
+        obstacle.take_corners(corners.iter().copied());
+        obstacle
+    }
+
+    /// Becomes the outline with these corners, counter-clockwise; it keeps its memory.
+    pub(crate) fn take_corners(&mut self, corners: impl Iterator<Item = Point>) {
+        let faces = &mut self.faces;
+        faces.clear();
+        faces.extend(corners.map(|start| Face {
+            start,
+            ..Face::default()
+        }));
+        let n = faces.len();
+        for i in 0..n {
+            faces[i] = Face::between(faces[i].start, faces[(i + 1) % n].start);
         }
+        let sum = self.corners().fold([0.0, 0.0], add);
+        let center = scale(sum, 1.0 / n as f64);
+        let away_m = |corner: Point| sqrt(dot(sub(corner, center), sub(corner, center)));
+        self.radius_m = self.corners().map(away_m).fold(0.0, f64::max);
+        self.center = center;
     }
 
     /// Corners in counter-clockwise order (two for a thin screen).
@@ -187,10 +190,14 @@ impl Obstacle {
         if best.is_finite() { sqrt(best) } else { 0.0 }
     }
 
-    /// True if both have room in common.
+    /// True if both have room in common: no line along a face of either keeps them apart.
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
-        crate::contact::separation_m(self, other) < 0.0
+        let behind_a_face = |of: &Self, other: &Self| {
+            let mut faces = of.faces.iter();
+            faces.any(|face| other.corners().all(|corner| face.height_m(corner) >= 0.0))
+        };
+        !behind_a_face(self, other) && !behind_a_face(other, self)
     }
 
     /// Distance from another outline, 0 if they overlap.
@@ -337,25 +344,18 @@ impl World {
         &self.bodies
     }
 
-    /// Sets the course of a body; returns how far at most a point of it jumps now \[m\].
-    pub(crate) fn set_course(&mut self, index: usize, now_us: u64, course: Course) -> f64 {
-        let Some(body) = self.bodies.get_mut(index) else {
-            return 0.0;
-        };
-        let was = body.at(now_us).pose;
-        body.follow(course);
-        let is = body.at(now_us).pose;
-        let turn_rad = (is.heading_rad - was.heading_rad).abs();
-        // By the shorter way, if a heading was wrapped.
-        let turn_rad = turn_rad.min((core::f64::consts::TAU - turn_rad).abs());
-        let jump_m = (is.x_m - was.x_m).abs() + (is.y_m - was.y_m).abs();
-        let jump_m = jump_m + turn_rad * body.radius_m();
+    /// Puts bodies, each of the same outline, in place of those of these numbers.
+    pub(crate) fn replace_bodies<'a>(&mut self, bodies: impl Iterator<Item = (usize, &'a Body)>) {
+        for (index, body) in bodies {
+            if let Some(own) = self.bodies.get_mut(index) {
+                own.go_as(body);
+            }
+        }
         self.fastest_m_s = self
             .bodies
             .iter()
             .map(Body::fastest_m_s)
             .fold(0.0, f64::max);
-        jump_m
     }
 
     /// No point of a body is faster.
@@ -363,15 +363,17 @@ impl World {
         self.fastest_m_s
     }
 
-    /// Outlines of the bodies within `reach_m` of a point.
-    pub(crate) fn outlines_within(&self, now_us: u64, at: Point, reach_m: f64) -> Vec<Obstacle> {
-        let near = |body: &Body| {
+    /// Outlines of the bodies whose circle, by its centre and radius \[m\], matters.
+    pub(crate) fn outlines(
+        &self,
+        now_us: u64,
+        matters: impl Fn(Point, f64) -> bool,
+    ) -> Vec<Obstacle> {
+        let outline = |body: &Body| {
             let pose = body.at(now_us).pose;
-            let d = sub([pose.x_m, pose.y_m], at);
-            let far = reach_m + body.radius_m();
-            (dot(d, d) <= far * far).then(|| body.outline(&pose))
+            matters([pose.x_m, pose.y_m], body.radius_m()).then(|| body.outline(&pose))
         };
-        self.bodies.iter().filter_map(near).collect()
+        self.bodies.iter().filter_map(outline).collect()
     }
 }
 

@@ -5,9 +5,11 @@
 //! they do within the step it meets in the next one. So the order in which they are advanced makes no difference. A fleet
 //! of one is bit for bit the single run.
 
+mod approach;
+
 use crate::sim::Sim;
-use rumbo_plant::contact::Pose;
-use rumbo_plant::moving::{Body, Course, Motion};
+use approach::Approaches;
+use rumbo_plant::moving::{Body, Course};
 use rumbo_plant::sonar::Ping;
 use rumbo_plant::world::{Obstacle, ShapeError};
 
@@ -18,14 +20,15 @@ const STEP_US: u64 = 1_000;
 #[derive(Clone, Debug)]
 pub struct Fleet {
     robots: Vec<Sim>,
-    /// The outline of each, for distances.
+    /// Each as the others meet it.
     bodies: Vec<Body>,
+    /// Those that do not go on as they did, and how far at most each has jumped [m]; kept for its memory.
+    changed: Vec<(usize, f64)>,
     /// Bodies of the world that are no robots.
     movers: usize,
     /// Pings so far of each sonar of each robot.
     pings: Vec<[u64; 3]>,
-    /// Of each pair, the second before the first in the list: by `pair`.
-    closest_m: Vec<f64>,
+    approaches: Approaches,
 }
 
 /// Why robots cannot be in one world.
@@ -115,16 +118,14 @@ impl Fleet {
                 robot.join(body.clone()).map_err(|_| FleetError::TooMany)?;
             }
         }
-        let pairs = robots.len() * robots.len().saturating_sub(1) / 2;
-        let mut fleet = Self {
+        Ok(Self {
+            approaches: Approaches::new(&bodies, robots.iter().map(Sim::pose)),
             pings: vec![[0; 3]; robots.len()],
+            changed: Vec::with_capacity(robots.len()),
             robots,
             bodies,
             movers,
-            closest_m: vec![f64::INFINITY; pairs],
-        };
-        fleet.measure();
-        Ok(fleet)
+        })
     }
 
     /// The robots.
@@ -171,7 +172,8 @@ impl Fleet {
             for robot in &mut self.robots {
                 robot.advance(end_us);
             }
-            self.measure();
+            let poses = self.robots.iter().map(Sim::pose);
+            self.approaches.measure(&self.bodies, poses);
             if self.robots.iter().any(|robot| robot.now_us() < end_us) {
                 // At a breakpoint.
                 return;
@@ -182,56 +184,34 @@ impl Fleet {
     /// Each robot gets the poses and velocities of the others, and their pings of the last step. No sonar is so near to
     /// another robot's that a burst, 450 us after its trigger, would have arrived before.
     fn meet(&mut self, now_us: u64) {
-        let robots = self.robots.iter().enumerate();
-        let pings: Vec<Vec<Ping>> = std::iter::zip(robots, &mut self.pings)
-            .map(|((index, robot), counts)| robot.pings_since(index, counts))
-            .collect();
-        let motions: Vec<Motion> = self.robots.iter().map(Sim::motion).collect();
-        for (own, robot) in self.robots.iter_mut().enumerate() {
-            let others = motions
-                .iter()
-                .enumerate()
-                .filter(|(other, _)| *other != own);
-            for (body, (_, &from)) in others.enumerate() {
-                let course = Course::Straight {
-                    at_us: now_us,
-                    from,
-                };
-                robot.meet(self.movers + body, course);
+        let mut pings = Vec::new();
+        let robots = std::iter::zip(&self.robots, &mut self.pings).enumerate();
+        robots.for_each(|(index, (robot, counts))| robot.pings_since(index, counts, &mut pings));
+        self.changed.clear();
+        let robots = std::iter::zip(&self.robots, &mut self.bodies).enumerate();
+        for (index, (robot, body)) in robots {
+            let from = robot.motion();
+            if !body.stands_as(&from) {
+                let at_us = now_us;
+                let jump_m = body.turn_to(now_us, Course::Straight { at_us, from });
+                self.changed.push((index, jump_m));
             }
-            let others = pings.iter().enumerate().filter(|(other, _)| *other != own);
-            let heard: Vec<Ping> = others.flat_map(|(_, pings)| pings).copied().collect();
-            robot.receive_pings(&heard);
         }
-    }
-
-    /// Keeps the closest approach of each pair.
-    fn measure(&mut self) {
-        let poses: Vec<Pose> = self
-            .robots
-            .iter()
-            .map(|robot| robot.motion().pose)
-            .collect();
-        for second in 1..poses.len() {
-            for first in 0..second {
-                let closest_m = &mut self.closest_m[pair(first, second)];
-                let (one, other) = (&poses[first], &poses[second]);
-                let bound_m = (one.x_m - other.x_m).hypot(one.y_m - other.y_m)
-                    - self.bodies[first].radius_m()
-                    - self.bodies[second].radius_m();
-                if bound_m < *closest_m {
-                    let outline = |index: usize| self.bodies[index].outline(&poses[index]);
-                    *closest_m = closest_m.min(outline(first).apart_m(&outline(second)));
-                }
-            }
+        for (own, robot) in self.robots.iter_mut().enumerate() {
+            let others = self.changed.iter().filter(|(other, _)| *other != own);
+            robot.meet(others.map(|&(other, jump_m)| {
+                let number = self.movers + other - usize::from(other > own);
+                (number, &self.bodies[other], jump_m)
+            }));
+            let others = pings.iter().filter(|(other, _)| *other != own);
+            let heard: Vec<Ping> = others.map(|(_, ping)| *ping).collect();
+            robot.receive_pings(&heard);
         }
     }
 
     /// The least distance that two robots have had [m]; infinite for one that is none.
     pub fn closest_m(&self, one: usize, other: usize) -> f64 {
-        let pair = pair(one.min(other), one.max(other));
-        let known = (one != other).then(|| self.closest_m.get(pair)).flatten();
-        known.copied().unwrap_or(f64::INFINITY)
+        self.approaches.closest_m(one, other)
     }
 
     /// The contacts of a robot so far, in order.
@@ -256,9 +236,4 @@ impl Fleet {
             })
             .collect()
     }
-}
-
-/// Index of a pair, the first before the second.
-fn pair(first: usize, second: usize) -> usize {
-    second * second.saturating_sub(1) / 2 + first
 }

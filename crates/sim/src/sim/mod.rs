@@ -307,6 +307,11 @@ impl Sim {
         self.plant.world()
     }
 
+    /// Where the body is.
+    pub(crate) fn pose(&self) -> Pose {
+        self.state.pose()
+    }
+
     /// Where the body is, and how fast it moves.
     pub(crate) fn motion(&self) -> Motion {
         self.plant.motion(&self.state)
@@ -325,18 +330,23 @@ impl Sim {
         self.plant.add_body(&mut self.state, body)
     }
 
-    /// The pings since there had been so many of each sonar, which is brought up to date; `robot` is its number among all.
-    pub(crate) fn pings_since(&self, robot: usize, counts: &mut [u64; 3]) -> Vec<Ping> {
-        let mut pings = Vec::new();
+    /// Adds the pings since there had been so many of each sonar, which is brought up to date, with `robot`, its number
+    /// among all.
+    pub(crate) fn pings_since(
+        &self,
+        robot: usize,
+        counts: &mut [u64; 3],
+        pings: &mut Vec<(usize, Ping)>,
+    ) {
         for sonar in rumbo_plant::sonar::SonarId::ALL {
             let state = self.plant.sonar(&self.state, sonar);
             let count = &mut counts[sonar.index()];
             if *count != state.pings() {
                 *count = state.pings();
-                pings.push(state.last_ping((3 * robot + sonar.index()) as u32));
+                let speaker = (3 * robot + sonar.index()) as u32;
+                pings.push((robot, state.last_ping(speaker)));
             }
         }
-        pings
     }
 
     /// Lets the sonars receive pings of other robots.
@@ -344,9 +354,9 @@ impl Sim {
         self.plant.receive_pings(&mut self.state, pings);
     }
 
-    /// Sets the course of a body from now on.
-    pub(crate) fn meet(&mut self, body: usize, course: Course) {
-        self.plant.set_course(&mut self.state, body, course);
+    /// Has bodies of the world, by their numbers, go as these from now on; each has jumped by at most so much [m].
+    pub(crate) fn meet<'a>(&mut self, bodies: impl Iterator<Item = (usize, &'a Body, f64)>) {
+        self.plant.replace_bodies(&mut self.state, bodies);
     }
 
     /// Keeps its world in common with others if it is the same as theirs: the first one's.
