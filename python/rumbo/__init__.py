@@ -1,9 +1,10 @@
 """Rumbo's simulator of a small differential-drive robot.
 
 `run` repeats a scenario with many seeds, `sweep` over its parameters, `compare` as variants, `tune` searches for
-values, `Sim` and `Batch` step robots by hand, `read_log` reads what was recorded, `identify` finds a robot's
-parameters in it; `rumbo.envs` has environments for Gymnasium, `rumbo.ray` clusters for sweeps. Units are SI and stand
-in the names: ``range_m``, ``speed_rad_s``. x is forward, y to the left, angles counter-clockwise.
+values, `Sim`, `Batch` and `Fleet` step robots by hand, `read_log` reads what was recorded, `identify` finds a robot's
+parameters in it; `rumbo.envs` has environments for Gymnasium and PettingZoo, `rumbo.ray` clusters for sweeps.
+Units are SI and stand in the names: ``range_m``, ``speed_rad_s``. x is forward, y to the left, angles
+counter-clockwise.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import json
 from typing import Any, Literal
 
 from . import _rumbo
+from ._fleet import Fleet
 from ._identify import Identification, Identified, identify
 from ._log import Log, read_log
 from ._rumbo import Snapshot
@@ -38,6 +40,7 @@ __all__ = [
     "Batch",
     "Comparison",
     "Difference",
+    "Fleet",
     "Identification",
     "Identified",
     "Interrupted",

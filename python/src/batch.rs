@@ -12,6 +12,7 @@ use rumbo_control::mode::{MAX_WHEEL_RAD_S, ModeId};
 use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Batch as Robots, Driver, OBSERVED, Robot, TRUE};
 use rumbo_experiment::files::FileError;
+use rumbo_plant::world::World;
 use rumbo_wire::Command;
 use std::f32::consts::FRAC_PI_2;
 use std::sync::{Mutex, MutexGuard, TryLockError};
@@ -178,12 +179,7 @@ impl Batch {
 
     /// Corners of each obstacle in the world of one robot [m].
     fn obstacles(&self, index: usize) -> PyResult<Vec<Vec<[f64; 2]>>> {
-        self.with(index, |robot| {
-            let obstacles = robot.world().obstacles().iter();
-            obstacles
-                .map(|obstacle| obstacle.corners().collect())
-                .collect()
-        })
+        self.with(index, |robot| corners(robot.world()))
     }
 
     /// The fault that one robot has latched, in words.
@@ -269,8 +265,16 @@ fn on_threads<T: Send>(
     detached(py, || pool.install(work))
 }
 
+/// Corners of each obstacle that stands in a world [m].
+pub(crate) fn corners(world: &World) -> Vec<Vec<[f64; 2]>> {
+    let obstacles = world.obstacles().iter();
+    obstacles
+        .map(|obstacle| obstacle.corners().collect())
+        .collect()
+}
+
 /// The array's numbers, row by row, if it has this shape.
-fn rows<'a, T: numpy::Element>(
+pub(crate) fn rows<'a, T: numpy::Element>(
     name: &str,
     array: &'a mut PyReadwriteArray2<'_, T>,
     rows: usize,
@@ -286,7 +290,7 @@ fn rows<'a, T: numpy::Element>(
     Ok(array.as_slice_mut()?)
 }
 
-fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize) -> PyResult<()> {
+pub(crate) fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize) -> PyResult<()> {
     if shape == [rows, columns] {
         return Ok(());
     }
@@ -296,7 +300,7 @@ fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize) -> PyResul
 }
 
 /// Every number is one that the robot takes.
-fn check_actions(actions: &[f32]) -> PyResult<()> {
+pub(crate) fn check_actions(actions: &[f32]) -> PyResult<()> {
     const LIMITS: [(&str, f32, &str); ACTION] = [
         ("left wheel speed", MAX_WHEEL_RAD_S, "rad/s"),
         ("right wheel speed", MAX_WHEEL_RAD_S, "rad/s"),

@@ -111,6 +111,13 @@ impl Setup {
         &self.files.scenario.name
     }
 
+    /// The names of its robots, if it has several.
+    #[getter]
+    fn robots(&self) -> Vec<&str> {
+        let robots = self.files.fleet.iter();
+        robots.map(|robot| robot.scenario.name.as_str()).collect()
+    }
+
     /// How long the scenario lasts [s].
     #[getter]
     fn duration_s(&self) -> f64 {

@@ -106,7 +106,7 @@ class Core:
         self.check_open()
         for index, base in zip(chosen, bases):
             if base is not None:
-                self._bases[index], self._begun[index] = _checked(base), 0
+                self._bases[index], self._begun[index] = checked_seed(base), 0
             self.seeds[index] = self._episode_seed(index)
             self._begun[index] += 1
         seeds = [int(self.seeds[index]) for index in chosen]
@@ -202,7 +202,8 @@ class Core:
             raise error.ClosedEnvironmentError("this environment was closed; make a new one")
 
 
-def _checked(seed: int) -> int:
+def checked_seed(seed: int) -> int:
+    """A seed that infos can hold."""
     if not 0 <= seed < 2**63:
         raise ValueError(f"seed = {seed}: must be 0 or more and below 2**63")
     return int(seed)

@@ -8,10 +8,11 @@ use super::{Stop, tools};
 use crate::project::{Project, output, run};
 
 /// Packages of PyPI; what type checkers find depends on their versions. They need Python 3.11, the wheel itself 3.10.
-const PACKAGES: [&str; 8] = [
+const PACKAGES: [&str; 9] = [
     "maturin==1.16.0",
     "numpy==2.4.6",
     "gymnasium==1.4.0",
+    "pettingzoo==1.27.0",
     "matplotlib==3.11.2",
     "pytest==9.2.0",
     "rosbags==0.11.9",

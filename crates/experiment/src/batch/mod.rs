@@ -5,10 +5,16 @@
 //! its robots on the threads of the current rayon pool, a single one on the caller's; robots share nothing, so the number
 //! of threads does not matter. Eight and more go in groups, their plants in the lanes of vector registers, with the same
 //! bits as one by one.
+//!
+//! A [`Team`] is the robots of a scenario with several, in one world: they go on together.
 
+mod pilot;
 mod robot;
+mod team;
 
-pub use robot::{Driver, OBSERVED, Robot, TRUE};
+pub use pilot::{Driver, OBSERVED, TRUE};
+pub use robot::Robot;
+pub use team::Team;
 
 use crate::files::{FileError, Setup};
 #[cfg(feature = "host")]

@@ -1,0 +1,245 @@
+"""Several robots in one world, as a parallel environment of PettingZoo.
+
+    import rumbo.envs.fleet
+    env = rumbo.envs.fleet.FleetGoalEnv(robots=4)
+    observations, infos = env.reset(seed=1)
+    while env.agents:
+        actions = {agent: env.action_space(agent).sample() for agent in env.agents}
+        observations, rewards, terminations, truncations, infos = env.step(actions)
+
+Spaces, seeds and infos are those of `rumbo.envs`.
+"""
+
+from __future__ import annotations
+
+import math
+import secrets
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium import error, spaces
+from numpy.typing import NDArray
+from pettingzoo import ParallelEnv
+
+from .._fleet import Fleet
+from .._setup import Source, make_setup
+from .._sim import TRUE
+from ._core import SCALE, STAND_S, action_space, checked_seed, observation_space
+from ._tasks import ACTION_S, FAILURE, GOAL, collided, mix
+
+#: Robots of the task: no more find room in a world.
+MOST_ROBOTS = 32
+
+_Array = NDArray[np.float32]
+
+
+def across(robots: int) -> dict[str, Any]:
+    """A scenario: so many robots on a circle, each with its goal on the other side.
+
+    The circle has a radius of 1 m, or what 0.45 m between neighbours take; walls stand 0.6 m outside of it.
+    """
+    if not 2 <= robots <= MOST_ROBOTS:
+        raise ValueError(f"robots = {robots}: must be 2 to {MOST_ROBOTS}")
+    radius_m = max(1.0, 0.45 * robots / math.tau)
+    wall_m = radius_m + 0.6
+
+    def start(number: int) -> dict[str, float]:
+        angle_rad = math.tau * number / robots
+        back_deg = math.degrees(angle_rad) + 180.0
+        return {
+            "x_m": radius_m * math.cos(angle_rad),
+            "y_m": radius_m * math.sin(angle_rad),
+            "heading_deg": back_deg if back_deg <= 180.0 else back_deg - 360.0,
+        }
+
+    return {
+        "title": "Robots on a circle, each on its way to the other side",
+        "robot": "memoria",
+        "rig": "final",
+        "world": {
+            "title": "A walled floor",
+            "arena": {"from_m": [-wall_m, -wall_m], "to_m": [wall_m, wall_m], "walled": True},
+        },
+        "mode": "mission",
+        "duration_s": 60.0,
+        "command": [{"at_s": 0.4, "goal_m": [2.0 * radius_m, 0.0]}, {"at_s": 0.5, "arm": True}],
+        "fleet": [{"name": f"robot_{number}", "start": start(number)} for number in range(robots)],
+    }
+
+
+class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
+    """Every robot has a goal to reach, and the others in its way: the task of `rumbo.envs.GoalEnv`, for each.
+
+    The last two numbers of an observation are the robot's goal as seen by its odometry: ahead, to the left [m]. The
+    reward is how much nearer it came to it [m]. At less than 0.1 m it has arrived: 10, and the end for this robot. A
+    contact above 0.1 m/s, with a robot or anything else, or a fault costs 10 and ends it too. Whose episode has ended
+    is disarmed and stays where it is. At the end of the scenario's time all are truncated.
+
+    Args:
+        scenario: One with ``[[fleet]]``, a path or a dictionary. Each robot's goal is the first one of its commands, or
+            that of the world. `across` with `robots` if left out.
+        robots: How many, where `scenario` is left out: 2 to 32.
+        agents: Names of the robots that are agents, all by default; the scenario commands the others.
+        robot, world, parameters, randomize: As for `rumbo.run`.
+
+    Raises:
+        ValueError: Whatever is wrong with the scenario, a name in `agents` that no robot has, or a robot without a
+            goal; in a step, a missing or unknown agent, an action of a wrong shape or that is not a number.
+        gymnasium.error.ResetNeeded: A step before the first reset.
+        gymnasium.error.ClosedEnvironmentError: Use after `close`.
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012
+        "name": "rumbo_fleet_goal_v0",
+        "render_modes": [],
+        "render_fps": 10,
+        "is_parallelizable": True,
+    }
+
+    def __init__(
+        self,
+        scenario: Source | None = None,
+        *,
+        robots: int | None = None,
+        agents: Sequence[str] | None = None,
+        robot: Source | None = None,
+        world: Source | None = None,
+        parameters: Mapping[str, float] | None = None,
+        randomize: bool | None = None,
+    ) -> None:
+        """Robots that begin with the first reset."""
+        if scenario is not None and robots is not None:
+            raise ValueError(f"robots = {robots}: the scenario has robots of its own; leave one of both out")
+        source = across(4 if robots is None else robots) if scenario is None else scenario
+        self._settings: dict[str, Any] = {
+            "robot": robot,
+            "world": world,
+            "parameters": parameters,
+            "randomize": randomize,
+        }
+        setup = make_setup(source, **self._settings)
+        if not setup.robots:
+            raise ValueError(f"scenario {setup.name}: has one robot; give a scenario with [[fleet]]")
+        chosen = setup.robots if agents is None else list(agents)
+        for name in chosen:
+            if name not in setup.robots:
+                raise ValueError(f"agents: no robot {name!r}; the scenario has {', '.join(setup.robots)}")
+        if not chosen:
+            raise ValueError("agents is empty: give at least one robot")
+        self._source = source
+        self._steps = max(1, round(setup.duration_s / ACTION_S))
+        self.possible_agents: list[str] = [name for name in setup.robots if name in chosen]
+        self.agents: list[str] = []
+        self._rows = {name: row for row, name in enumerate(setup.robots) if name in chosen}
+        self.observation_spaces = {name: observation_space() for name in self.possible_agents}
+        self.action_spaces = {name: action_space() for name in self.possible_agents}
+        bounds = observation_space()
+        self._low, self._high = bounds.low, bounds.high
+        self._fleet: Fleet | None = None
+        self._closed = False
+        #: The seed given, how many of its episodes were begun, and the actions of this one.
+        self._base, self._begun, self._taken = 0, 0, 0
+        self._truth = np.zeros((0, len(TRUE)))
+
+    def observation_space(self, agent: str) -> spaces.Box:
+        """Of one robot: by the names of `rumbo.OBSERVED`."""
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> spaces.Box:
+        """Of one robot: left wheel, right wheel, servo."""
+        return self.action_spaces[agent]
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, _Array], dict[str, dict[str, Any]]]:
+        """Begins the episode of `seed`, or the next one."""
+        self._check_open()
+        if seed is None and self._fleet is None:
+            seed = secrets.randbits(63)
+        if seed is not None:
+            self._base, self._begun = checked_seed(seed), 0
+        number = self._base if self._begun == 0 else mix(self._base ^ mix(self._begun)) >> 1
+        self._begun += 1
+        if self._fleet is None:
+            self._fleet = Fleet(self._source, seed=number, callers=self.possible_agents, **self._settings)
+        else:
+            self._fleet.renew(number)
+        fleet = self._fleet
+        fleet.begin_wheel_speed(STAND_S)
+        known, self._truth = fleet.rows()
+        for name, row in self._rows.items():
+            if np.isnan(self._truth[row, TRUE.index("goal_x_m")]):
+                raise ValueError(f"robot {name}: has no goal; give it a command with goal_m, or the world a goal_m")
+        self.agents = list(self.possible_agents)
+        self._taken = 0
+        return self._observations(known), self._infos()
+
+    def step(
+        self, actions: Mapping[str, _Array]
+    ) -> tuple[dict[str, _Array], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
+        """Acts for 0.1 s."""
+        self._check_open()
+        if self._fleet is None:
+            raise error.ResetNeeded("reset() comes first")
+        rows = self._checked_actions(actions)
+        if not self.agents:
+            return {}, {}, {}, {}, {}
+        before = self._truth
+        active = np.zeros(len(self._fleet), np.bool_)
+        active[[self._rows[agent] for agent in self.agents]] = True
+        self._fleet.drive(rows, ACTION_S, active=active)
+        known, self._truth = self._fleet.rows()
+        self._taken += 1
+        reward, arrived = GOAL.judge(before, self._truth, np.zeros((len(self._fleet), 2)))
+        failed = collided(self._truth) & ~arrived
+        reward = np.where(failed, reward + FAILURE, reward)
+        over = failed | arrived
+        is_late = self._taken >= self._steps
+        observations, infos = self._observations(known), self._infos()
+        row_of = {agent: self._rows[agent] for agent in self.agents}
+        rewards = {agent: float(reward[row]) for agent, row in row_of.items()}
+        terminations = {agent: bool(over[row]) for agent, row in row_of.items()}
+        truncations = {agent: is_late and not terminations[agent] for agent in row_of}
+        self.agents = [agent for agent in self.agents if not (terminations[agent] or truncations[agent])]
+        return observations, rewards, terminations, truncations, infos
+
+    def close(self) -> None:
+        """Lets go of the robots."""
+        self._closed = True
+        self._fleet = None
+        self.agents = []
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise error.ClosedEnvironmentError("this environment was closed; make a new one")
+
+    def _checked_actions(self, actions: Mapping[str, _Array]) -> _Array:
+        for agent in actions:
+            if agent not in self.agents:
+                why = "its episode has ended" if agent in self.possible_agents else "it is no agent"
+                raise ValueError(f"action of {agent!r}: {why}; there are {', '.join(self.agents) or 'none'}")
+        rows = np.zeros((len(self._fleet or ()), 3), np.float32)
+        for agent in self.agents:
+            if agent not in actions:
+                raise ValueError(f"no action of {agent!r}")
+            one = np.asarray(actions[agent], dtype=np.float32)
+            if one.shape != (3,):
+                raise ValueError(f"action of {agent!r} has the shape {one.shape}: must be (3,)")
+            if np.isnan(one).any():
+                raise ValueError(f"action of {agent!r}: number {int(np.argmax(np.isnan(one)))} is not a number")
+            rows[self._rows[agent]] = np.clip(one, np.float32(-1), np.float32(1)) * SCALE
+        return rows
+
+    def _observations(self, known: _Array) -> dict[str, _Array]:
+        clipped = np.clip(known, self._low, self._high)
+        return {agent: clipped[self._rows[agent]].copy() for agent in self.agents}
+
+    def _infos(self) -> dict[str, dict[str, Any]]:
+        """Ground truth of each robot, by name, and the seed."""
+        seed = 0 if self._fleet is None else self._fleet.seed
+        infos: dict[str, dict[str, Any]] = {}
+        for agent in self.agents:
+            row = self._truth[self._rows[agent]]
+            infos[agent] = {name: float(value) for name, value in zip(TRUE, row)} | {"seed": seed}
+        return infos
