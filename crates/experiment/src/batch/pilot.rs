@@ -6,13 +6,11 @@ use crate::operator::Operator;
 use crate::run::prepare;
 use rumbo_control::mode::ModeId;
 use rumbo_control::range::REACH_M;
-use rumbo_control::{AgedRange, Range, ServoAngle, TICK_S, TICK_US};
-use rumbo_plant::lanes::{LANES, Lanes};
-use rumbo_plant::world::World;
+use rumbo_control::{AgedRange, Range, ServoAngle, TICK_S};
 use rumbo_sim::Sim;
 use rumbo_wire::{Command, Refusal};
 use std::borrow::Cow;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Ages of ranges end here [s].
 const OLDEST_S: f32 = 1.0;

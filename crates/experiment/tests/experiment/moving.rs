@@ -5,7 +5,8 @@
 use rumbo_control::Wheels;
 use rumbo_experiment::files::{Library, NativeProgram, Overrides, Setup};
 use rumbo_experiment::run::{RunResult, run, run_all_on};
-use rumbo_plant::contact::Pose;
+use rumbo_plant::contact::{Footprint, Pose};
+use rumbo_plant::world::Obstacle;
 use rumbo_sim::Sim;
 use rumbo_sim::fleet::{Fleet, FleetError, Met};
 use rumbo_wire::Command;
@@ -117,6 +118,46 @@ fn two_that_meet_head_on_touch_each_other_and_do_not_overlap() {
         "each is 0.13 m long ahead of its axis: {apart_m}"
     );
     assert!(before_m.is_none_or(|before_m| before_m < 1.0));
+}
+
+#[test]
+fn the_closest_approach_is_the_least_distance_at_any_millisecond() {
+    // They pass each other, and meet nobody.
+    let pi = std::f64::consts::PI;
+    let mut other = setup("mode5", NativeProgram::Baseline).config(2).unwrap();
+    other.start = Pose {
+        x_m: 1.0,
+        y_m: 0.4,
+        heading_rad: 0.98 * pi,
+    };
+    let mut fleet = Fleet::new(vec![ahead(1, 0.0, 0.0), Sim::new(other).unwrap()]).unwrap();
+    for robot in 0..2 {
+        drive(fleet.robot_mut(robot).unwrap());
+    }
+    let outline = |robot: &Sim| {
+        let params = robot.params();
+        let footprint = Footprint::new(&params.body, &params.wheels);
+        Obstacle::convex(&footprint.corners(&robot.truth().pose)).unwrap()
+    };
+    let mut least_m = f64::INFINITY;
+    for ms in 1..=6_000 {
+        fleet.advance(ms * 1_000);
+        let [one, other] = fleet.robots() else {
+            panic!()
+        };
+        least_m = least_m.min(outline(one).apart_m(&outline(other)));
+        let known_m = fleet.closest_m(0, 1);
+        assert!(
+            (known_m - least_m).abs() < 1e-12,
+            "{ms} ms: {known_m} {least_m}"
+        );
+    }
+    let [one, other] = fleet.robots() else {
+        panic!()
+    };
+    let last_m = outline(one).apart_m(&outline(other));
+    assert!(least_m > 0.05 && least_m < 0.3, "{least_m}");
+    assert!(last_m > least_m + 0.2, "{last_m}");
 }
 
 /// A program for a Mega in the final wiring: both motors forward, for good.
