@@ -15,23 +15,31 @@ use rumbo_station::{Lab, LabConfig, Named, Print};
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
 pub(crate) fn lab(args: &mut LabArgs) -> Result<(), Failure> {
-    let scenario = Library::new().scenario(&args.scenario)?;
-    if args.robots > 1 || !scenario.fleet.is_empty() {
-        return browser::show(served_fleet(args, &scenario)?, args.session.serve);
-    }
-    let robot = simulated(args)?;
     #[cfg(unix)]
-    if args.pty {
-        return crate::pty::offer(robot, args.speed);
+    if args.pty && fleet(args)?.is_none() {
+        return crate::pty::offer(simulated(args)?, args.speed);
     }
-    browser::show(served(args, robot, None)?, args.session.serve)
+    browser::show(serve(args, None)?, args.session.serve)
 }
 
-/// Serves the dashboard, for one who may be looking at the terminal.
-#[cfg(feature = "ros")]
-pub(crate) fn serve(args: &mut LabArgs) -> Result<Lab, Failure> {
+/// Serves the dashboard; `echo` prints warnings and faults, for one who looks at the terminal.
+pub(crate) fn serve(args: &mut LabArgs, echo: Option<Print>) -> Result<Lab, Failure> {
+    if let Some(scenario) = fleet(args)? {
+        return served_fleet(args, &scenario, echo);
+    }
     let robot = simulated(args)?;
-    served(args, robot, Some(output::aside))
+    rumbo_station::serve_with(
+        config(args, echo)?,
+        Box::new(robot),
+        calibrate::in_dashboard(),
+    )
+    .map_err(Failure::input)
+}
+
+/// The scenario, if it is to have several robots.
+fn fleet(args: &LabArgs) -> Result<Option<ScenarioFile>, Failure> {
+    let scenario = Library::new().scenario(&args.scenario)?;
+    Ok((args.robots > 1 || !scenario.fleet.is_empty()).then_some(scenario))
 }
 
 /// The simulated robot.
@@ -65,12 +73,6 @@ fn simulated(args: &mut LabArgs) -> Result<SimulatedRobot, Failure> {
     Ok(robot)
 }
 
-fn served(args: &LabArgs, robot: SimulatedRobot, echo: Option<Print>) -> Result<Lab, Failure> {
-    let config = config(args, echo)?;
-    rumbo_station::serve_with(config, Box::new(robot), calibrate::in_dashboard())
-        .map_err(Failure::input)
-}
-
 fn config(args: &LabArgs, echo: Option<Print>) -> Result<LabConfig, Failure> {
     Ok(LabConfig {
         at: args.session.serve.at(),
@@ -83,7 +85,11 @@ fn config(args: &LabArgs, echo: Option<Print>) -> Result<LabConfig, Failure> {
 }
 
 /// Serves the dashboards of several robots in one world: those of the scenario, or as many as asked for.
-fn served_fleet(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Lab, Failure> {
+fn served_fleet(
+    args: &mut LabArgs,
+    scenario: &ScenarioFile,
+    echo: Option<Print>,
+) -> Result<Lab, Failure> {
     #[cfg(unix)]
     let alone = args.pty || args.usb_pty || args.gdb.is_some();
     #[cfg(not(unix))]
@@ -134,7 +140,7 @@ fn served_fleet(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Lab, Fail
         .ok_or_else(|| Failure::Input("there is no robot".into()))?;
     let others = robots.collect();
     rumbo_station::serve_fleet(
-        config(args, None)?,
+        config(args, echo)?,
         first,
         others,
         calibrate::in_dashboard(),

@@ -11,23 +11,21 @@
 //! begins with the number of its vendor. Names and types: the design pages of ROS 2 on topic and service names;
 //! `rmw_dds_common/msg/ParticipantEntitiesInfo`.
 
+mod domain;
+mod raw;
+
+pub use domain::{Domain, Reach};
+
 use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming, ServiceType};
 use crate::topics::Quality;
 use crate::types::Definition;
-use rustdds::no_key::{DataWriter, Decode, DefaultDecoder, DeserializerAdapter};
-use rustdds::no_key::{DeserializedCacheChange, SerializerAdapter, SimpleDataReader};
-use rustdds::policy::{Durability, History, Lifespan};
+use domain::{NodeName, Reader, Writer};
+use raw::Raw;
+use rustdds::no_key::DeserializedCacheChange;
 use rustdds::{
-    DomainParticipant, DomainParticipantBuilder, DomainParticipantStatusEvent as Status,
-    DomainParticipantStatusListener, Duration, GUID, Publisher, QosPolicies, QosPolicyBuilder,
-    RTPSEntity, RepresentationIdentifier, SampleIdentity, StatusEvented, Subscriber, Timestamp,
-    Topic, TopicKind, WriteOptionsBuilder, bytes::Bytes,
+    GUID, RepresentationIdentifier, SampleIdentity, Timestamp, WriteOptionsBuilder, bytes::Bytes,
 };
-use serde::Serialize;
-use std::collections::BTreeMap;
-use std::convert::Infallible;
 use std::fmt;
-use std::net::Ipv4Addr;
 
 /// The vendor's number that a GUID of Cyclone begins with.
 const CYCLONE: [u8; 2] = [0x01, 0x10];
@@ -46,81 +44,6 @@ const SERVICE: Quality = Quality {
 /// Most samples taken from a reader in a row: one that floods does not keep the others waiting.
 const IN_A_ROW: usize = 32;
 
-/// Data as they are.
-#[derive(Clone, Debug)]
-struct Raw {
-    encoding: RepresentationIdentifier,
-    body: Bytes,
-}
-
-/// Passes data on as they are.
-#[derive(Clone)]
-struct AsIs;
-
-impl SerializerAdapter<Raw> for AsIs {
-    type Error = Infallible;
-
-    fn output_encoding() -> RepresentationIdentifier {
-        RepresentationIdentifier::CDR_LE
-    }
-
-    fn to_bytes(value: &Raw) -> Result<Bytes, Infallible> {
-        Ok(value.body.clone())
-    }
-}
-
-impl DeserializerAdapter<Raw> for AsIs {
-    type Error = Infallible;
-    type Decoded = Raw;
-
-    fn supported_encodings() -> &'static [RepresentationIdentifier] {
-        &[
-            RepresentationIdentifier::CDR_LE,
-            RepresentationIdentifier::CDR_BE,
-        ]
-    }
-
-    fn transform_decoded(decoded: Raw) -> Raw {
-        decoded
-    }
-}
-
-impl DefaultDecoder<Raw> for AsIs {
-    type Decoder = Self;
-    const DECODER: Self = Self;
-}
-
-impl Decode<'_, Raw> for AsIs {
-    type Error = Infallible;
-
-    fn decode_bytes(
-        self,
-        input_bytes: &[u8],
-        encoding: RepresentationIdentifier,
-    ) -> Result<Raw, Infallible> {
-        let body = Bytes::copy_from_slice(input_bytes);
-        Ok(Raw { encoding, body })
-    }
-}
-
-type Writer = DataWriter<Raw, AsIs>;
-type Reader = SimpleDataReader<Raw, AsIs>;
-
-/// `rmw_dds_common/msg/ParticipantEntitiesInfo`, with identities of 16 bytes as Iron and newer have them.
-#[derive(Serialize)]
-struct Participant<'a> {
-    gid: [u8; 16],
-    nodes: Vec<NodeEntities<'a>>,
-}
-
-#[derive(Serialize)]
-struct NodeEntities<'a> {
-    namespace: &'a str,
-    name: &'a str,
-    readers: &'a [[u8; 16]],
-    writers: &'a [[u8; 16]],
-}
-
 /// What a channel is.
 #[allow(
     clippy::large_enum_variant,
@@ -132,59 +55,22 @@ enum Carrier {
     Service { requests: Reader, answers: Writer },
 }
 
-/// Who may find the node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
-    /// This computer. No wall: it is only not announced elsewhere.
-    Computer,
-    /// All networks that this computer is in.
-    Networks,
-}
-
 /// A node on a domain of DDS. Dropping it takes it off the graph.
 pub struct Dds {
-    participant: DomainParticipant,
-    publisher: Publisher,
-    subscriber: Subscriber,
-    statuses: DomainParticipantStatusListener,
-    graph: Writer,
-    namespace: String,
-    name: String,
-    readers: Vec<[u8; 16]>,
-    writers: Vec<[u8; 16]>,
+    domain: Domain,
+    node: NodeName,
+    /// Names of the topics used, as DDS has them.
+    topics: Vec<String>,
     carriers: Vec<Carrier>,
-    /// Types of the topics used, by name.
-    types: BTreeMap<String, String>,
     /// Where the next message is looked for, and how many there were in a row.
     next: (usize, usize),
 }
 
 impl fmt::Debug for Dds {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{} on DDS", self.namespace, self.name)
+        let (namespace, name) = &self.node;
+        write!(f, "{name} in {namespace} on {:?}", self.domain)
     }
-}
-
-/// A quality of service in the terms of DDS.
-fn policies(quality: Quality) -> QosPolicies {
-    let durability = match quality.latched {
-        true => Durability::TransientLocal,
-        false => Durability::Volatile,
-    };
-    let builder = QosPolicyBuilder::new();
-    let builder = match quality.reliable {
-        true => builder.reliable(Duration::ZERO),
-        false => builder.best_effort(),
-    };
-    builder
-        .durability(durability)
-        .history(History::KeepLast {
-            depth: quality.depth,
-        })
-        .lifespan(Lifespan {
-            duration: Duration::INFINITE,
-        })
-        .build()
 }
 
 /// A ROS 2 name of a type as DDS has it: `std_msgs/msg/String`, `std_msgs::msg::dds_::String_`.
@@ -196,83 +82,19 @@ fn dds_type(name: &str, part: &str) -> String {
 }
 
 impl Dds {
-    /// Joins a domain as the node of this name in a namespace (empty, or `/name`).
-    ///
-    /// # Errors
-    /// If there is no such domain, no network, or no free port.
-    pub fn join(
-        domain: u16,
-        reach: Reach,
-        namespace: &str,
-        name: &str,
-    ) -> Result<Self, BridgeError> {
-        let refused = |error: &dyn fmt::Display| BridgeError::Domain(domain, error.to_string());
-        let builder = DomainParticipantBuilder::new(domain);
-        let builder = match reach {
-            Reach::Computer => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
-            Reach::Networks => builder,
-        };
-        let participant = builder.build().map_err(|error| refused(&error))?;
-        let any = QosPolicies::qos_none();
-        let publisher = participant.create_publisher(&any);
-        let subscriber = participant.create_subscriber(&any);
-        let publisher = publisher.map_err(|error| refused(&error))?;
-        let quality = Quality {
-            reliable: true,
-            latched: true,
-            depth: 1,
-        };
-        let graph = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
-        let graph = participant.create_topic(
-            "ros_discovery_info".to_owned(),
-            graph.to_owned(),
-            &policies(quality),
-            TopicKind::NoKey,
-        );
-        let graph = graph.map_err(|error| refused(&error))?;
-        let graph = publisher.create_datawriter_no_key(&graph, None);
-        let graph: Writer = graph.map_err(|error| refused(&error))?;
-        Ok(Self {
-            statuses: participant.status_listener(),
-            subscriber: subscriber.map_err(|error| refused(&error))?,
-            publisher,
-            readers: Vec::new(),
-            writers: vec![graph.guid().to_bytes()],
-            graph,
-            namespace: if namespace.is_empty() { "/" } else { namespace }.to_owned(),
-            name: name.to_owned(),
+    /// The node of this name in a namespace (empty, or `/name`); no other on this domain has both.
+    #[must_use]
+    pub fn new(domain: &Domain, namespace: &str, name: &str) -> Self {
+        let namespace = if namespace.is_empty() { "/" } else { namespace };
+        let node = (namespace.to_owned(), name.to_owned());
+        domain.add(&node);
+        Self {
+            domain: domain.clone(),
+            node,
+            topics: Vec::new(),
             carriers: Vec::new(),
-            types: BTreeMap::new(),
             next: (0, 0),
-            participant,
-        })
-    }
-
-    fn topic(&mut self, name: String, kind: String, quality: Quality) -> Result<Topic, String> {
-        let quality = policies(quality);
-        let topic =
-            self.participant
-                .create_topic(name.clone(), kind.clone(), &quality, TopicKind::NoKey);
-        self.types.insert(name, kind);
-        topic.map_err(|error| error.to_string())
-    }
-
-    fn writer(&mut self, name: String, kind: String, quality: Quality) -> Result<Writer, String> {
-        let topic = self.topic(name, kind, quality)?;
-        let writer: Result<Writer, _> = self.publisher.create_datawriter_no_key(&topic, None);
-        let writer = writer.map_err(|error| error.to_string())?;
-        self.writers.push(writer.guid().to_bytes());
-        Ok(writer)
-    }
-
-    fn reader(&mut self, name: String, kind: String, quality: Quality) -> Result<Reader, String> {
-        let topic = self.topic(name, kind, quality)?;
-        let reader = self
-            .subscriber
-            .create_simple_datareader_no_key(&topic, None);
-        let reader: Reader = reader.map_err(|error| error.to_string())?;
-        self.readers.push(reader.guid().to_bytes());
-        Ok(reader)
+        }
     }
 
     fn add(
@@ -282,36 +104,19 @@ impl Dds {
     ) -> Result<Channel, BridgeError> {
         let announced = |why: String| BridgeError::Announce(name.to_owned(), why);
         self.carriers.push(carrier.map_err(announced)?);
-        self.show(true).map_err(announced)?;
         Ok(self.carriers.len() - 1)
     }
 
-    /// Tells the others what belongs to the node, or that it is gone.
-    fn show(&self, is_there: bool) -> Result<(), String> {
-        let node = NodeEntities {
-            namespace: &self.namespace,
-            name: &self.name,
-            readers: &self.readers,
-            writers: &self.writers,
-        };
-        let participant = Participant {
-            gid: self.participant.guid().to_bytes(),
-            nodes: is_there.then_some(node).into_iter().collect(),
-        };
-        let body = cdr_encoding::to_vec::<_, byteorder::LittleEndian>(&participant);
-        let raw = Raw {
-            encoding: RepresentationIdentifier::CDR_LE,
-            body: body.map_err(|error| error.to_string())?.into(),
-        };
-        let written = self.graph.write(raw, Some(Timestamp::now()));
-        written.map_err(|error| error.to_string())
+    fn topic(&mut self, name: &str) -> String {
+        let topic = format!("rt{name}");
+        self.topics.push(topic.clone());
+        topic
     }
 }
 
 impl Drop for Dds {
     fn drop(&mut self) {
-        // Others forget a node that says nothing after some seconds anyway.
-        let _ = self.show(false);
+        self.domain.remove(&self.node);
     }
 }
 
@@ -391,7 +196,8 @@ impl Bridge for Dds {
         of: &Definition,
         quality: Quality,
     ) -> Result<Channel, BridgeError> {
-        let writer = self.writer(format!("rt{name}"), dds_type(of.name, ""), quality);
+        let (topic, kind) = (self.topic(name), dds_type(of.name, ""));
+        let writer = self.domain.writer(&self.node, topic, kind, quality);
         self.add(name, writer.map(Carrier::Publication))
     }
 
@@ -399,6 +205,7 @@ impl Bridge for Dds {
         let Some(Carrier::Publication(writer)) = self.carriers.get(topic) else {
             return Err(BridgeError::Send(format!("{topic} is no publication")));
         };
+        self.domain.tell().map_err(BridgeError::Send)?;
         let written = writer.write(body(data), Some(Timestamp::now()));
         written.map_err(|error| BridgeError::Send(error.to_string()))
     }
@@ -409,14 +216,16 @@ impl Bridge for Dds {
         of: &Definition,
         quality: Quality,
     ) -> Result<Channel, BridgeError> {
-        let reader = self.reader(format!("rt{name}"), dds_type(of.name, ""), quality);
+        let (topic, kind) = (self.topic(name), dds_type(of.name, ""));
+        let reader = self.domain.reader(&self.node, topic, kind, quality);
         self.add(name, reader.map(Carrier::Subscription))
     }
 
     fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError> {
         let (request, reply) = (dds_type(of.0, "_Request"), dds_type(of.0, "_Response"));
-        let requests = self.reader(format!("rq{name}Request"), request, SERVICE);
-        let answers = self.writer(format!("rr{name}Reply"), reply, SERVICE);
+        let (asked, answered) = (format!("rq{name}Request"), format!("rr{name}Reply"));
+        let requests = self.domain.reader(&self.node, asked, request, SERVICE);
+        let answers = self.domain.writer(&self.node, answered, reply, SERVICE);
         let carrier = requests.and_then(|requests| {
             let answers = answers?;
             Ok(Carrier::Service { requests, answers })
@@ -425,6 +234,8 @@ impl Bridge for Dds {
     }
 
     fn receive(&mut self) -> Option<Incoming> {
+        // Not told yet: the next time.
+        let _ = self.domain.tell();
         for _ in 0..=self.carriers.len() {
             let (channel, in_a_row) = self.next;
             let reader = match self.carriers.get(channel) {
@@ -477,23 +288,6 @@ impl Bridge for Dds {
     }
 
     fn trouble(&mut self) -> Option<String> {
-        while let Some(status) = self.statuses.try_recv_status() {
-            let (endpoint, does) = match status {
-                Status::WriterDetected { writer } => (writer, "publishes"),
-                Status::ReaderDetected { reader } => (reader, "wants"),
-                _ => continue,
-            };
-            if let (Some(name), Some(kind)) = (
-                endpoint.topic_name.strip_prefix("rt"),
-                self.types.get(&endpoint.topic_name),
-            ) && *kind != endpoint.type_name
-            {
-                let other = endpoint.type_name;
-                return Some(format!(
-                    "{name}: somebody {does} {other} there, it is {kind}"
-                ));
-            }
-        }
-        None
+        self.domain.trouble(&self.topics)
     }
 }

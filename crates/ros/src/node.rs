@@ -20,6 +20,8 @@ const TRIGGER: ServiceType = ServiceType("std_srvs/srv/Trigger");
 pub struct Node<B> {
     bridge: B,
     namespace: String,
+    /// Where the clock is.
+    world: String,
     topics: BTreeMap<Topic, Channel>,
     services: BTreeMap<Channel, Service>,
     /// Services of [`Service::Call`].
@@ -83,11 +85,25 @@ impl<B: Bridge> Node<B> {
         Self {
             bridge,
             namespace: namespace.to_owned(),
+            world: namespace.to_owned(),
             topics: BTreeMap::new(),
             services: BTreeMap::new(),
             calls: 0,
             velocities: None,
         }
+    }
+
+    /// The same as one of several robots in a world, whose namespace (empty, or `/name`) has the clock of all.
+    #[must_use]
+    pub fn in_world(self, namespace: &str) -> Self {
+        let world = namespace.to_owned();
+        Self { world, ..self }
+    }
+
+    /// Its namespace: empty, or `/name`.
+    #[must_use]
+    pub fn namespace(&self) -> &str {
+        &self.namespace
     }
 
     /// The node's name with its namespace, without the first slash: `rumbo`, `first/rumbo`.
@@ -146,7 +162,10 @@ impl<B: Bridge> Node<B> {
         if let Some(channel) = self.topics.get(&topic) {
             return Ok(*channel);
         }
-        let name = topic.name_in(&self.namespace);
+        let name = match topic {
+            Topic::Clock => topic.name_in(&self.world),
+            _ => topic.name_in(&self.namespace),
+        };
         let channel = self
             .bridge
             .advertise(&name, topic.definition(), topic.quality())?;

@@ -13,8 +13,12 @@ const QUEUE: usize = 64;
 pub type Print = fn(&str);
 
 /// The queue of lines to print.
-#[derive(Clone, Debug)]
-pub(crate) struct Echo(SyncSender<String>);
+#[derive(Debug)]
+pub(crate) struct Echo {
+    lines: SyncSender<String>,
+    /// Whose events they are, if there are several robots.
+    robot: String,
+}
 
 impl Echo {
     /// Starts the thread; `None` if the system has none.
@@ -22,16 +26,26 @@ impl Echo {
         let (lines, waiting) = sync_channel::<String>(QUEUE);
         let thread = std::thread::Builder::new().name("echo".into());
         let thread = thread.spawn(move || waiting.iter().for_each(|line| print(&line)));
-        thread.ok().map(|_| Self(lines))
+        let robot = String::new();
+        thread.ok().map(|_| Self { lines, robot })
+    }
+
+    /// The same for the events of one of several robots.
+    pub(crate) fn of(&self, robot: String) -> Self {
+        let lines = self.lines.clone();
+        Self { lines, robot }
     }
 
     /// Prints a warning or a fault.
     pub(crate) fn event(&self, event: &LoggedEvent) {
         if matches!(event.level, Level::Warning | Level::Fault) {
             let LoggedEvent { t_s, level, text } = event;
-            let line = format!("{t_s:.2} s {}: {text}", level.name());
+            let mut line = format!("{t_s:.2} s {}: {text}", level.name());
+            if !self.robot.is_empty() {
+                line = format!("{}: {line}", self.robot);
+            }
             // A dropped line is on the page and in the log.
-            let _ = self.0.try_send(line);
+            let _ = self.lines.try_send(line);
         }
     }
 }

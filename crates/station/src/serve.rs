@@ -91,10 +91,9 @@ pub struct Lab {
     url: String,
     viewers_url: String,
     opened: Receiver<()>,
-    board: Arc<Board>,
-    lease: Lease,
-    /// `None` once ended. The session runs while there are senders.
-    orders: Option<Arc<OrderSender>>,
+    /// What the robots are called, and what clients of theirs share; none once ended. The session runs while there are
+    /// senders of orders.
+    robots: Vec<(String, Hub)>,
     web_ends: Option<oneshot::Sender<()>>,
     session: Option<JoinHandle<Result<(), TargetError>>>,
     web: Option<JoinHandle<()>>,
@@ -111,10 +110,14 @@ impl Lab {
         &self.viewers_url
     }
 
-    /// A client beside the pages; `None`: too many are there.
+    /// A client beside the pages of each robot, with what the robot is called; `None`: too many are there.
     #[must_use]
-    pub fn client(&self) -> Option<Client> {
-        Client::join(&self.board, self.orders.as_ref()?, &self.lease)
+    pub fn clients(&self) -> Option<Vec<(String, Client)>> {
+        let joined = self.robots.iter().map(|(name, hub)| {
+            let client = Client::join(&hub.board, &hub.orders, &hub.lease)?;
+            Some((name.clone(), client))
+        });
+        joined.collect()
     }
 
     /// Returns when [`Self::url`] has been opened, or when there is nothing to open any more.
@@ -129,7 +132,7 @@ impl Lab {
     /// [`SessionError`].
     pub fn wait(mut self) -> Result<(), SessionError> {
         // Asked to end, the web side lets go of the session, which stops the robot and completes the log.
-        drop(self.orders.take());
+        self.robots.clear();
         match self.session.take().map(JoinHandle::join) {
             Some(Ok(ended)) => ended.map_err(SessionError::Target),
             Some(Err(_)) => Err(SessionError::Panicked),
@@ -143,7 +146,7 @@ impl Drop for Lab {
         // The web side first: its connections hold senders of orders.
         drop(self.web_ends.take());
         let web = self.web.take().map(JoinHandle::join);
-        drop(self.orders.take());
+        self.robots.clear();
         let session = self.session.take().map(JoinHandle::join);
         // Nobody is left to read of a fault.
         drop((web, session));
@@ -193,15 +196,17 @@ pub fn serve_fleet(
         recording.map(|recording| Arc::new(Recordings::new(recording.folder, serve_replay)));
     let shown = recordings.clone();
     let (names, targets): (Vec<_>, Vec<_>) = robots.into_iter().unzip();
+    let speakers = names.clone();
     start(at, shown, names, move |chairs| {
         let echo = echo.and_then(Echo::start);
         #[cfg(feature = "foxglove")]
         let mut bridge = config.bridge;
-        let seats = std::iter::zip(targets, chairs).map(|(target, (board, orders))| Seat {
+        let robots = speakers.into_iter().zip(targets).zip(chairs);
+        let seats = robots.map(|((name, target), (board, orders))| Seat {
             target,
             subscribers: Subscribers {
                 board,
-                echo: echo.clone(),
+                echo: echo.as_ref().map(|echo| echo.of(name)),
                 // That of the first robot.
                 #[cfg(feature = "foxglove")]
                 bridge: bridge.take(),
@@ -282,7 +287,7 @@ fn start_on(
 
     let several = names.len() > 1;
     let (mut chairs, mut hubs) = (Vec::new(), Vec::new());
-    let robots: Arc<[String]> = names.into_iter().filter(|_| several).collect();
+    let robots: Arc<[String]> = names.iter().filter(|_| several).cloned().collect();
     for (robot, (sender, orders)) in OrderSender::of(robots.len().max(1)).into_iter().enumerate() {
         let board = Arc::new(Board::default());
         chairs.push((Arc::clone(&board), orders));
@@ -296,12 +301,7 @@ fn start_on(
             recordings: recordings.clone(),
         });
     }
-    let Hub {
-        board,
-        lease,
-        orders,
-        ..
-    } = hubs[0].clone();
+    let robots = std::iter::zip(names, hubs.iter().cloned()).collect();
     let session_over = opens.clone();
     let session = std::thread::Builder::new()
         .name("session".into())
@@ -324,9 +324,7 @@ fn start_on(
         url,
         viewers_url,
         opened,
-        board,
-        lease,
-        orders: Some(orders),
+        robots,
         web_ends: Some(web_ends),
         session: Some(session),
         web: Some(web),

@@ -16,6 +16,7 @@ import time
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
+import check_ros_fleet
 import check_ros_goal
 import check_ros_others
 import check_ros_parameters
@@ -310,11 +311,21 @@ def check_replayed(peer, folder):
     assert place(odometry)[0] > 0.1, place(odometry)
 
 
+def fleet_of_names(folder, *names):
+    """A scenario with such robots."""
+    path = Path(folder) / "fleet.toml"
+    around = 'title = "Names"\nrobot = "memoria"\nrig = "final"\nworld = "room"\nmode = "twist"\nduration_s = 9\n'
+    members = [f'[[fleet]]\nname = "{name}"\nstart = {{ y_m = {place} }}\n' for place, name in enumerate(names)]
+    path.write_text(around + "".join(members))
+    return str(path)
+
+
 def check_refusals(folder):
     for arguments, why in [
         (["lab", "--domain", "233"], "0..232"),
         (["lab", "--namespace", "2nd"], "no digit first"),
         (["lab", "--pty"], "rumbo ros connect"),
+        (["lab", "--scenario", fleet_of_names(folder, "2nd")], "robot 2nd: a name of ROS 2 begins with a letter"),
         (["replay", str(Path(folder) / "none.mcap")], "none.mcap"),
     ]:
         run = subprocess.run([os.environ["RUMBO_COMMAND"], "ros", *arguments], capture_output=True, text=True)
@@ -360,6 +371,8 @@ def main():
     check_examples()
     done("the examples")
     first.end()
+    check_ros_fleet.check(peer, cyclone)
+    done("a fleet")
     check_connected(peer)
     done("a robot at a port")
     with tempfile.TemporaryDirectory() as folder:

@@ -100,6 +100,6 @@ def check_garbage_writer(peer, cyclone, odometry, robot):
 
     moved = moved_m(odometry, write)
     assert moved < 1e-3, moved
-    wait_for("what is no velocity", lambda: robot.said("/cmd_vel: it cannot be decoded"))
+    wait_for("what is no velocity", lambda: robot.said("cmd_vel: it cannot be decoded"))
     # What is right is still done.
     assert moved_m(odometry, lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 1.0)) > 0.05

@@ -13,6 +13,7 @@ use std::path::PathBuf;
 Examples:
   rumbo ros lab
   rumbo ros lab --scenario mode8-goals --namespace first --port 8361
+  rumbo ros lab --robots 4
   rumbo ros connect /dev/ttyACM0 --domain 7
   rumbo ros replay out/mode1-7.mcap --speed 2
 
@@ -63,7 +64,7 @@ Examples:
 /// The node.
 #[derive(Args, Debug)]
 pub(crate) struct NodeArgs {
-    /// Namespace of the node and of its topics
+    /// Namespace of the node and of its topics; of several robots each has its own below it
     #[arg(long, value_name = "NAME", global = true, default_value = "", hide_default_value = true, value_parser = namespace)]
     pub(crate) namespace: String,
     /// Domain, 0..232 [default: ROS_DOMAIN_ID, or else 0]

@@ -1,7 +1,6 @@
 //! Velocities of ROS 2: the one way from `/cmd_vel` to the wheels.
 
 use super::session::{AGAIN, Live, SHOWN, is_due};
-use crate::output;
 use rumbo_control::mode::ModeId;
 use rumbo_ros::node::{BadVelocity, Velocity};
 use rumbo_session::Order;
@@ -39,11 +38,11 @@ impl Driving {
     pub(super) fn warning(&self) -> Option<String> {
         let refused = self.refused.as_ref();
         let refused = refused.filter(|(_, since)| since.elapsed() < SHOWN);
-        let refused = refused.map(|(why, _)| format!("/cmd_vel: {why}"));
+        let refused = refused.map(|(why, _)| format!("cmd_vel: {why}"));
         let alternating = self
             .alternating
             .is_some_and(|since| since.elapsed() < SHOWN);
-        let turns = "/cmd_vel: two publishers drive by turns, the newest counts";
+        let turns = "cmd_vel: two publishers drive by turns, the newest counts";
         refused.or_else(|| alternating.then(|| turns.to_owned()))
     }
 }
@@ -58,7 +57,7 @@ impl Live {
             return;
         };
         if is_due(self.driving.said.as_ref(), AGAIN) {
-            output::note(&format!("ROS 2: /cmd_vel: {why}"));
+            self.note(&format!("cmd_vel: {why}"));
             self.driving.said = Some((why.clone(), Instant::now()));
         }
         self.driving.refused = Some((why, Instant::now()));

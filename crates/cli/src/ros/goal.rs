@@ -10,7 +10,6 @@
 use super::aim::{Aim, is_task, order};
 use super::report;
 use super::session::{Live, PATIENCE, TAKEN};
-use crate::output;
 use rumbo_log::{End, Level, LoggedEvent};
 use rumbo_ros::bridge::Caller;
 use rumbo_ros::convert::stamp;
@@ -107,7 +106,7 @@ impl Live {
             active.canceling.get_or_insert_with(Instant::now);
             let stopped = self.give(Order::Robot(Command::Stop));
             if let Err(why) = stopped {
-                output::note(&format!("ROS 2: {NAME}: {why}"));
+                self.note(&format!("{NAME}: {why}"));
             }
         }
     }
@@ -184,7 +183,7 @@ impl Live {
 
     /// Says something of the action: a client sees only that its goal is refused or aborted.
     fn say(&mut self, text: &str) {
-        output::note(&format!("ROS 2: {text}"));
+        self.note(text);
         let event = LoggedEvent {
             t_s: self.state.t_s,
             level: Level::Warning,

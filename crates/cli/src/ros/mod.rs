@@ -12,11 +12,12 @@ use crate::args::{Distribution, NodeArgs, RosArgs, RosSource, ServeArgs};
 use crate::failure::Failure;
 use crate::{browser, connect, lab, output};
 use rumbo_ros::bridge::BridgeError;
-use rumbo_ros::dds::{Dds, Reach};
+use rumbo_ros::dds::{Dds, Domain, Reach};
 use rumbo_ros::navigate;
 use rumbo_ros::node::{self, Node};
-use rumbo_station::{Client, Lab};
-use session::Live;
+use rumbo_station::Lab;
+use session::{Live, Times};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// The environment's variable that names the domain.
@@ -31,42 +32,95 @@ type RosNode = Node<Dds>;
 /// Joins the domain first: where that is refused, nothing is opened.
 pub(crate) fn ros(args: &mut RosArgs) -> Result<(), Failure> {
     args.check()?;
-    let node = join(&args.node)?;
+    let joined = Joined::new(&args.node)?;
     match &mut args.source {
         RosSource::Lab(lab) => {
-            let served = lab::serve(lab)?;
-            let live = Live::new(node, client(&served)?, true, &args.node);
+            let served = lab::serve(lab, Some(output::aside))?;
+            let live = joined.live(&served, Times::Simulated, &args.node)?;
             beside(served, live, lab.session.serve)
         }
         RosSource::Connect(connect) => {
             let served = connect::serve(connect)?;
-            let live = Live::new(node, client(&served)?, false, &args.node);
+            let live = joined.live(&served, Times::OfDay, &args.node)?;
             beside(served, live, connect.session.serve)
         }
-        RosSource::Replay(log) => play::play(log, node),
+        RosSource::Replay(log) => {
+            let node = joined.node(&args.node.namespace);
+            joined.say(&[node.speaker()]);
+            play::play(log, node)
+        }
     }
 }
 
-fn join(args: &NodeArgs) -> Result<RosNode, Failure> {
-    let domain = match (args.domain, std::env::var(DOMAIN)) {
-        (Some(domain), _) => domain,
-        (None, Err(_)) => 0,
-        (None, Ok(text)) => domain(text.trim())
-            .map_err(|why| Failure::Input(format!("{DOMAIN} = {text:?}: {why}")))?,
-    };
-    let reach = match args.network {
-        true => Reach::Networks,
-        false => Reach::Computer,
-    };
-    let bridge = Dds::join(domain, reach, &args.namespace, node::NAME).map_err(Failure::input)?;
-    let node = Node::new(bridge, &args.namespace);
-    let whom = match reach {
-        Reach::Networks => "for all in its networks",
-        Reach::Computer => "for this computer",
-    };
-    let name = node.speaker();
-    output::aside(&format!("ROS 2: node /{name} on domain {domain}, {whom}"));
-    Ok(node)
+/// A domain that is joined.
+struct Joined {
+    domain: Domain,
+    number: u16,
+    reach: Reach,
+}
+
+impl Joined {
+    fn new(args: &NodeArgs) -> Result<Self, Failure> {
+        let number = match (args.domain, std::env::var(DOMAIN)) {
+            (Some(domain), _) => domain,
+            (None, Err(_)) => 0,
+            (None, Ok(text)) => domain(text.trim())
+                .map_err(|why| Failure::Input(format!("{DOMAIN} = {text:?}: {why}")))?,
+        };
+        let reach = match args.network {
+            true => Reach::Networks,
+            false => Reach::Computer,
+        };
+        let domain = Domain::join(number, reach).map_err(Failure::input)?;
+        Ok(Self {
+            domain,
+            number,
+            reach,
+        })
+    }
+
+    fn node(&self, namespace: &str) -> RosNode {
+        Node::new(Dds::new(&self.domain, namespace, node::NAME), namespace)
+    }
+
+    /// A node for each robot of a session: in the namespace asked for, and of several each in its own below it.
+    fn live(&self, served: &Lab, times: Times, args: &NodeArgs) -> Result<Vec<Live>, Failure> {
+        let clients = served.clients();
+        let clients =
+            clients.ok_or_else(|| Failure::input("no place for a node in the session"))?;
+        let mut lives = Vec::new();
+        let mut speakers = Vec::new();
+        for (robot, client) in clients {
+            let own = namespace(&robot).map_err(|_| {
+                Failure::Input(format!(
+                    "robot {robot}: a name of ROS 2 begins with a letter or _; give it another name in its [[fleet]]"
+                ))
+            })?;
+            let node = self.node(&(args.namespace.clone() + &own));
+            let node = node.in_world(&args.namespace);
+            let times = match times {
+                Times::Simulated if !lives.is_empty() => Times::SimulatedWithOthers,
+                times => times,
+            };
+            speakers.push(node.speaker());
+            lives.push(Live::new(node, client, times, args).map_err(Failure::input)?);
+        }
+        self.say(&speakers);
+        Ok(lives)
+    }
+
+    /// Says which nodes there are.
+    fn say(&self, speakers: &[String]) {
+        let whom = match self.reach {
+            Reach::Networks => "for all in its networks",
+            Reach::Computer => "for this computer",
+        };
+        let node = if speakers.len() > 1 { "nodes" } else { "node" };
+        let (speakers, number) = (speakers.join(", /"), self.number);
+        output::aside(&format!(
+            "ROS 2: {node} /{speakers} on domain {number}, {whom}"
+        ));
+    }
 }
 
 /// The definitions of Nav2 that clients have.
@@ -100,23 +154,23 @@ pub(crate) fn namespace(text: &str) -> Result<String, String> {
     }
 }
 
-fn client(served: &Lab) -> Result<Client, Failure> {
-    let client = served.client();
-    client.ok_or_else(|| Failure::input("no place for a node in the session"))
-}
-
-/// Runs the node beside a session, until that ends.
-fn beside(served: Lab, live: Result<Live, BridgeError>, serve: ServeArgs) -> Result<(), Failure> {
-    let live = live.map_err(Failure::input)?;
-    let thread = std::thread::Builder::new().name("ros".into());
-    let thread = thread.spawn(move || live.run()).map_err(Failure::input)?;
+/// Runs the nodes beside a session, until that ends.
+fn beside(served: Lab, lives: Vec<Live>, serve: ServeArgs) -> Result<(), Failure> {
+    let begin = |live: Live| {
+        let thread = std::thread::Builder::new().name("ros".into());
+        thread.spawn(move || live.run()).map_err(Failure::input)
+    };
+    let threads: Vec<_> = lives.into_iter().map(begin).collect::<Result<_, _>>()?;
     let shown = browser::show(served, serve);
-    let ended = thread.join();
+    let ended: Vec<_> = threads.into_iter().map(JoinHandle::join).collect();
     shown?;
-    match ended {
-        Ok(ended) => ended.map_err(Failure::input),
-        Err(_) => Err(Failure::input("the node of ROS 2 has failed")),
+    for ended in ended {
+        match ended {
+            Ok(ended) => ended.map_err(Failure::input)?,
+            Err(_) => return Err(Failure::input("the node of ROS 2 has failed")),
+        }
     }
+    Ok(())
 }
 
 /// A node that cannot publish is reported, and the session goes on.

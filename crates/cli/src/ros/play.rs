@@ -16,7 +16,7 @@ const FOUND: Duration = Duration::from_secs(1);
 const CLOCK_NS: u64 = 20_000_000;
 
 /// Plays a log once.
-pub(crate) fn play(args: &PlayArgs, mut node: RosNode) -> Result<(), Failure> {
+pub(super) fn play(args: &PlayArgs, mut node: RosNode) -> Result<(), Failure> {
     let interrupted = interrupt::asked();
     let log = log_file::read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log)?;

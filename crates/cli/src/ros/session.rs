@@ -34,11 +34,22 @@ pub(super) const TAKEN: Duration = Duration::from_millis(50);
 /// The clock of a simulation is published this often at least: a pause has a time too.
 const CLOCK: Duration = Duration::from_millis(200);
 
+/// What the times of a session are.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Times {
+    /// Of day.
+    OfDay,
+    /// Of a simulation, whose clock the node publishes.
+    Simulated,
+    /// Of a simulation, whose clock another robot's node publishes.
+    SimulatedWithOthers,
+}
+
 /// A session as a node.
 pub(super) struct Live {
     pub(super) node: RosNode,
     client: Client,
-    simulated: bool,
+    times: Times,
     pub(super) services: Vec<(String, Service)>,
     pub(super) waiting: Vec<Waiting>,
     pub(super) driving: Driving,
@@ -70,7 +81,7 @@ impl Live {
     pub(super) fn new(
         mut node: RosNode,
         client: Client,
-        simulated: bool,
+        times: Times,
         args: &NodeArgs,
     ) -> Result<Self, BridgeError> {
         node.take_velocities(args.stamped)?;
@@ -82,7 +93,7 @@ impl Live {
             converter: Converter::new(&node.speaker(), String::new(), 0),
             node,
             client,
-            simulated,
+            times,
             services,
             waiting: Vec::new(),
             driving: Driving::default(),
@@ -131,9 +142,17 @@ impl Live {
         Ok(())
     }
 
+    /// Says something on the terminal.
+    pub(super) fn note(&self, text: &str) {
+        match self.node.namespace() {
+            "" => output::note(&format!("ROS 2: {text}")),
+            namespace => output::note(&format!("ROS 2, {namespace}: {text}")),
+        }
+    }
+
     /// Says something of the others on the terminal, and for a while in diagnostics.
     pub(super) fn warn(&mut self, trouble: String) {
-        output::note(&format!("ROS 2: {trouble}"));
+        self.note(&trouble);
         self.trouble = Some((trouble, Instant::now()));
     }
 
@@ -161,11 +180,15 @@ impl Live {
         if let Some(geometry) = Geometry::new(self.scene.as_ref(), parameter) {
             self.converter.know(geometry);
         }
-        if self.simulated && (!news.samples.is_empty() || self.clocked.elapsed() >= CLOCK) {
+        if self.times != Times::OfDay
+            && (!news.samples.is_empty() || self.clocked.elapsed() >= CLOCK)
+        {
             let state_ms = (self.state.t_s * 1e3) as i64;
             self.clock_ms = self.clock_ms.max(news.received.1).max(state_ms);
             self.clocked = Instant::now();
-            self.publish(&clock(self.clock_ms.unsigned_abs() * 1_000_000)?);
+            if self.times == Times::Simulated {
+                self.publish(&clock(self.clock_ms.unsigned_abs() * 1_000_000)?);
+            }
         }
         for row in &news.samples {
             self.converter.row(row)?;
@@ -187,9 +210,9 @@ impl Live {
         let robot = scene.map(|scene| scene.robot.clone());
         // A session without a state has just begun.
         let since_start = Duration::from_secs_f64(self.state.t_s.max(0.0));
-        let started_ns = match self.simulated {
-            true => 0,
-            false => since_1970_ns(SystemTime::now() - since_start),
+        let started_ns = match self.times {
+            Times::Simulated | Times::SimulatedWithOthers => 0,
+            Times::OfDay => since_1970_ns(SystemTime::now() - since_start),
         };
         let speaker = self.node.speaker();
         self.converter = Converter::new(&speaker, robot.unwrap_or_default(), started_ns);
@@ -199,9 +222,11 @@ impl Live {
 
     /// The time of messages: of the simulation, or of day \[ns\].
     pub(super) fn now_ns(&self) -> u64 {
-        match self.simulated {
-            true => self.clock_ms.unsigned_abs() * 1_000_000,
-            false => since_1970_ns(SystemTime::now()),
+        match self.times {
+            Times::Simulated | Times::SimulatedWithOthers => {
+                self.clock_ms.unsigned_abs() * 1_000_000
+            }
+            Times::OfDay => since_1970_ns(SystemTime::now()),
         }
     }
 
