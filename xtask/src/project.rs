@@ -56,7 +56,7 @@ impl Project {
     /// leaves out. Cargo builds a dependency once for each set of features: what the tests share with it is not built
     /// again.
     pub(crate) fn whole(&self, command: &str) -> Command {
-        let features = "--features=rumbo-cli/foxglove,rumbo-cli/ros";
+        let features = "--features=rumbo-cli/foxglove,rumbo-cli/zenoh";
         self.cargo(&[command, "--workspace", features, "--locked"])
     }
 

@@ -5,9 +5,14 @@ use crate::topics::Quality;
 use crate::types::Definition;
 use std::fmt;
 
-/// The type of a service: package and name, `std_srvs/srv/Trigger`.
+/// The type of a service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ServiceType(pub &'static str);
+pub struct ServiceType {
+    /// Package and name: `std_srvs/srv/Trigger`.
+    pub name: &'static str,
+    /// The hash of request, response and event (REP 2016), as distributions from Iron on have it: `RIHS01_…`.
+    pub hash: &'static str,
+}
 
 /// Something a bridge carries, numbered by the bridge.
 pub type Channel = usize;
@@ -44,6 +49,15 @@ pub enum Incoming {
         /// The request.
         data: Vec<u8>,
     },
+}
+
+/// Who may find the nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// This computer. No wall: they are only not announced elsewhere.
+    Computer,
+    /// All networks that this computer is in.
+    Networks,
 }
 
 /// A middleware with one node on it. Names are absolute: `/odom`.
@@ -95,11 +109,54 @@ pub trait Bridge {
     fn trouble(&mut self) -> Option<String>;
 }
 
+/// A bridge of either kind.
+impl<B: Bridge + ?Sized> Bridge for Box<B> {
+    fn advertise(
+        &mut self,
+        name: &str,
+        of: &Definition,
+        quality: Quality,
+    ) -> Result<Channel, BridgeError> {
+        (**self).advertise(name, of, quality)
+    }
+
+    fn publish(&mut self, topic: Channel, data: &[u8]) -> Result<(), BridgeError> {
+        (**self).publish(topic, data)
+    }
+
+    fn subscribe(
+        &mut self,
+        name: &str,
+        of: &Definition,
+        quality: Quality,
+    ) -> Result<Channel, BridgeError> {
+        (**self).subscribe(name, of, quality)
+    }
+
+    fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError> {
+        (**self).serve(name, of)
+    }
+
+    fn receive(&mut self) -> Option<Incoming> {
+        (**self).receive()
+    }
+
+    fn answer(&mut self, caller: Caller, data: &[u8]) -> Result<(), BridgeError> {
+        (**self).answer(caller, data)
+    }
+
+    fn trouble(&mut self) -> Option<String> {
+        (**self).trouble()
+    }
+}
+
 /// Why a middleware refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BridgeError {
     /// The domain cannot be joined: which, and why.
     Domain(u16, String),
+    /// An endpoint of Zenoh is of no use: which, what cannot be done with it, and why.
+    Endpoint(String, &'static str, String),
     /// A topic or service cannot be announced: which, and why.
     Announce(String, String),
     /// Something cannot be sent: why.
@@ -112,6 +169,10 @@ impl fmt::Display for BridgeError {
             Self::Domain(domain, why) => write!(
                 f,
                 "domain {domain} of ROS 2 cannot be joined ({why}); is a network up, and are its ports free? --domain takes another"
+            ),
+            Self::Endpoint(endpoint, does, why) => write!(
+                f,
+                "cannot {does} {endpoint} ({why}); start a router there, rmw_zenohd, or give another endpoint to --zenoh"
             ),
             Self::Announce(name, why) => write!(f, "{name} cannot be announced: {why}"),
             Self::Send(why) => write!(f, "nothing can be sent: {why}"),

@@ -14,11 +14,11 @@
 mod domain;
 mod raw;
 
-pub use domain::{Domain, Reach};
+pub use domain::Domain;
 
 use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming, ServiceType};
 use crate::topics::Quality;
-use crate::types::Definition;
+use crate::types::{Definition, dds_type};
 use domain::{NodeName, Reader, Writer};
 use raw::Raw;
 use rustdds::no_key::DeserializedCacheChange;
@@ -70,14 +70,6 @@ impl fmt::Debug for Dds {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (namespace, name) = &self.node;
         write!(f, "{name} in {namespace} on {:?}", self.domain)
-    }
-}
-
-/// A ROS 2 name of a type as DDS has it: `std_msgs/msg/String`, `std_msgs::msg::dds_::String_`.
-fn dds_type(name: &str, part: &str) -> String {
-    match name.rsplit_once('/') {
-        Some((package, name)) => format!("{}::dds_::{name}{part}_", package.replace('/', "::")),
-        None => name.to_owned(),
     }
 }
 
@@ -222,7 +214,10 @@ impl Bridge for Dds {
     }
 
     fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError> {
-        let (request, reply) = (dds_type(of.0, "_Request"), dds_type(of.0, "_Response"));
+        let (request, reply) = (
+            dds_type(of.name, "_Request"),
+            dds_type(of.name, "_Response"),
+        );
         let (asked, answered) = (format!("rq{name}Request"), format!("rr{name}Reply"));
         let requests = self.domain.reader(&self.node, asked, request, SERVICE);
         let answers = self.domain.writer(&self.node, answered, reply, SERVICE);

@@ -23,12 +23,24 @@ pub const NAME: &str = "navigate_to_pose";
 pub const SERVICES: [(&str, ServiceType); 3] = [
     (
         "send_goal",
-        ServiceType("nav2_msgs/action/NavigateToPose_SendGoal"),
+        ServiceType {
+            name: "nav2_msgs/action/NavigateToPose_SendGoal",
+            hash: "RIHS01_a4fcb3bee1bf32e21a0e541a943b221aa0826996e2c98f079b47022b256f48b5",
+        },
     ),
-    ("cancel_goal", ServiceType("action_msgs/srv/CancelGoal")),
+    (
+        "cancel_goal",
+        ServiceType {
+            name: "action_msgs/srv/CancelGoal",
+            hash: "RIHS01_573d8b0a534451d7bc2ac8c5ffde8ac14b8593b7001175d0cd6516dcbeb8689a",
+        },
+    ),
     (
         "get_result",
-        ServiceType("nav2_msgs/action/NavigateToPose_GetResult"),
+        ServiceType {
+            name: "nav2_msgs/action/NavigateToPose_GetResult",
+            hash: "RIHS01_12dc670d3dac446019bb61a2bef1fd92ada02d582ca70922706d933a54b07f1c",
+        },
     ),
 ];
 /// Goals that are remembered.

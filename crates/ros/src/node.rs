@@ -13,7 +13,10 @@ use std::collections::BTreeMap;
 pub const NAME: &str = "rumbo";
 
 /// The type of its services: without a question, answered by yes or no, and why.
-const TRIGGER: ServiceType = ServiceType("std_srvs/srv/Trigger");
+const TRIGGER: ServiceType = ServiceType {
+    name: "std_srvs/srv/Trigger",
+    hash: "RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f",
+};
 
 /// A node. Topics are announced with their first message.
 #[derive(Debug)]

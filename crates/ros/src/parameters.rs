@@ -16,27 +16,45 @@ use rumbo_log::{Parameter as Entry, ParameterState};
 pub const SERVICES: [(&str, ServiceType); 6] = [
     (
         "list_parameters",
-        ServiceType("rcl_interfaces/srv/ListParameters"),
+        ServiceType {
+            name: "rcl_interfaces/srv/ListParameters",
+            hash: "RIHS01_3e6062bfbb27bfb8730d4cef2558221f51a11646d78e7bb30a1e83afac3aad9d",
+        },
     ),
     (
         "describe_parameters",
-        ServiceType("rcl_interfaces/srv/DescribeParameters"),
+        ServiceType {
+            name: "rcl_interfaces/srv/DescribeParameters",
+            hash: "RIHS01_845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff",
+        },
     ),
     (
         "get_parameters",
-        ServiceType("rcl_interfaces/srv/GetParameters"),
+        ServiceType {
+            name: "rcl_interfaces/srv/GetParameters",
+            hash: "RIHS01_bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc",
+        },
     ),
     (
         "get_parameter_types",
-        ServiceType("rcl_interfaces/srv/GetParameterTypes"),
+        ServiceType {
+            name: "rcl_interfaces/srv/GetParameterTypes",
+            hash: "RIHS01_da199c878688b3e530bdfe3ca8f74cb9fa0c303101e980a9e8f260e25e1c80ca",
+        },
     ),
     (
         "set_parameters",
-        ServiceType("rcl_interfaces/srv/SetParameters"),
+        ServiceType {
+            name: "rcl_interfaces/srv/SetParameters",
+            hash: "RIHS01_56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f743a263bc734c154015d7e0",
+        },
     ),
     (
         "set_parameters_atomically",
-        ServiceType("rcl_interfaces/srv/SetParametersAtomically"),
+        ServiceType {
+            name: "rcl_interfaces/srv/SetParametersAtomically",
+            hash: "RIHS01_0e192ef259c07fc3c07a13191d27002222e65e00ccec653ca05e856f79285fcd",
+        },
     ),
 ];
 

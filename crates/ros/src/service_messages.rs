@@ -218,4 +218,24 @@ messages! {
         /// How far.
         feedback: NavigateFeedback,
     }
+    /// [`NavigateFeedback`] before Lyrical.
+    "nav2_msgs/action/NavigateToPose_Feedback" EarlierFeedback {
+        /// Where it is.
+        current_pose: PoseStamped,
+        /// Since the goal was accepted.
+        navigation_time: Duration,
+        /// If it goes on as up to now.
+        estimated_time_remaining: Duration,
+        /// 0.
+        number_of_recoveries: i16,
+        /// In a straight line [m].
+        distance_remaining: f32,
+    }
+    /// [`FeedbackMessage`] before Lyrical: its bytes begin so, and its hash is that of distributions which are tested.
+    "nav2_msgs/action/NavigateToPose_FeedbackMessage" EarlierFeedbackMessage {
+        /// The goal.
+        goal_id: Uuid,
+        /// How far.
+        feedback: EarlierFeedback,
+    }
 }

@@ -3,7 +3,7 @@
 use crate::messages::{
     BatteryState, Clock, Diagnostics, Event, JointState, Odometry, Range, Text, Transforms,
 };
-use crate::service_messages::{FeedbackMessage, GoalStatusArray, ParameterEvent};
+use crate::service_messages::{EarlierFeedbackMessage, GoalStatusArray, ParameterEvent};
 use crate::types::{Definition, Message};
 
 /// A topic.
@@ -97,7 +97,7 @@ impl Topic {
             Self::Description => Text::DEFINITION,
             Self::Clock => Clock::DEFINITION,
             Self::ParameterEvents => ParameterEvent::DEFINITION,
-            Self::GoalFeedback => FeedbackMessage::DEFINITION,
+            Self::GoalFeedback => EarlierFeedbackMessage::DEFINITION,
             Self::GoalStatus => GoalStatusArray::DEFINITION,
         }
     }

@@ -3,7 +3,7 @@
 //! The nodes of several robots share the participant, as the nodes of one process do in ROS 2.
 
 use super::raw::{AsIs, Raw};
-use crate::bridge::BridgeError;
+use crate::bridge::{BridgeError, Reach};
 use crate::topics::Quality;
 use rustdds::no_key::{DataWriter, SimpleDataReader};
 use rustdds::policy::{Durability, History, Lifespan};
@@ -43,15 +43,6 @@ struct NodeEntities<'a> {
     name: &'a str,
     readers: &'a [Gid],
     writers: &'a [Gid],
-}
-
-/// Who may find the nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
-    /// This computer. No wall: they are only not announced elsewhere.
-    Computer,
-    /// All networks that this computer is in.
-    Networks,
 }
 
 /// A domain of DDS that is joined, for any number of nodes ([`Dds::new`](super::Dds::new)).

@@ -56,7 +56,7 @@ impl Bridge for Noted {
     }
 
     fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError> {
-        self.note(format!("serves {name} {}", of.0))
+        self.note(format!("serves {name} {}", of.name))
     }
 
     fn receive(&mut self) -> Option<Incoming> {

@@ -2,7 +2,9 @@
 
 use rumbo_ros::messages::{BatteryState, Diagnostics, Event, JointState, KeyValue, Odometry};
 use rumbo_ros::messages::{DiagnosticStatus, Header, Range, Text, Time, Transforms};
-use rumbo_ros::service_messages::{GoalStatusArray, ParameterDescriptor, ParameterEvent};
+use rumbo_ros::service_messages::{
+    EarlierFeedbackMessage, GoalStatusArray, ParameterDescriptor, ParameterEvent,
+};
 use rumbo_ros::types::{Byte, Message, encode};
 
 #[test]
@@ -51,6 +53,10 @@ fn hashes_are_those_of_the_distributions() {
         (
             ParameterDescriptor::DEFINITION,
             "52175dbfda6c51153101d33d2a9da05743f66f02d5ab2ca9ec4709b46b73d704",
+        ),
+        (
+            EarlierFeedbackMessage::DEFINITION,
+            "9d1f6fa2eb975ce733b419ac2e97b134d8ff92b6478b6559feed9a50bdfd82b3",
         ),
         (
             GoalStatusArray::DEFINITION,
