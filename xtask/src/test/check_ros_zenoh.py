@@ -331,7 +331,7 @@ def check_router():
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     router = session("router", listen=endpoint)
     fleet = lab(f"--zenoh={endpoint}", "--domain", str(DOMAIN), "--scenario", "free", "--robots", "2", "--namespace", "herd")
-    assert fleet.said(f"nodes /herd/robot1/rumbo, /herd/robot2/rumbo on domain {DOMAIN} over Zenoh by {endpoint}"), fleet.lines
+    assert fleet.said(f"nodes /herd/robot1/rumbo, /herd/robot2/rumbo on domain {DOMAIN} over Zenoh by {endpoint}, for all whom that reaches"), fleet.lines
     peer = session("peer", connect=endpoint, listen="tcp/127.0.0.1:0")
     robots = [Robot(peer, f"/herd/robot{number}") for number in (1, 2)]
     odometry = [robot.listen("/odom", "nav_msgs/msg/Odometry") for robot in robots]
@@ -378,7 +378,7 @@ def main():
     done("wrong input")
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     program = lab(f"--zenoh={endpoint}", "--domain", str(DOMAIN), "--scenario", "free")
-    assert program.said(f"over Zenoh, at {endpoint} itself, since no router is there"), program.lines
+    assert program.said(f"over Zenoh, at {endpoint} itself, since no router is there, for this computer"), program.lines
     robot = Robot(session("peer", connect=endpoint, listen="tcp/127.0.0.1:0"))
     check_tokens(robot)
     done("tokens")

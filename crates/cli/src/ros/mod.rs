@@ -79,6 +79,15 @@ impl Middleware {
         Domain::join(number, reach).map(Self::Dds)
     }
 
+    /// Without `--network` other computers do not hear of it.
+    fn is_here(&self) -> bool {
+        match self {
+            Self::Dds(_) => true,
+            #[cfg(feature = "zenoh")]
+            Self::Zenoh(session, _) => session.is_here(),
+        }
+    }
+
     /// How others get there, for a person; nothing, if there is nothing to say.
     fn way(&self) -> String {
         match self {
@@ -154,7 +163,8 @@ impl Joined {
     fn say(&self, speakers: &[String]) {
         let whom = match self.reach {
             Reach::Networks => "for all in its networks",
-            Reach::Computer => "for this computer",
+            Reach::Computer if self.middleware.is_here() => "for this computer",
+            Reach::Computer => "for all whom that reaches",
         };
         let node = if speakers.len() > 1 { "nodes" } else { "node" };
         let (speakers, number) = (speakers.join(", /"), self.number);

@@ -7,7 +7,7 @@ use super::token::{all_tokens, read_token};
 use crate::bridge::{BridgeError, Reach};
 use std::collections::BTreeMap;
 use std::fmt;
-use std::net::{TcpStream, ToSocketAddrs};
+use std::net::{IpAddr, TcpStream, ToSocketAddrs};
 use std::str::FromStr;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -62,6 +62,13 @@ impl FromStr for Endpoint {
 }
 
 impl Endpoint {
+    /// It is an address that only this computer reaches.
+    fn is_here(&self) -> bool {
+        let host = self.host.trim_matches(['[', ']']);
+        let address = host.parse::<IpAddr>();
+        host == "localhost" || address.is_ok_and(|address| address.is_loopback())
+    }
+
     /// Somebody listens there.
     fn answers(&self) -> bool {
         let host = self.host.trim_matches(['[', ']']);
@@ -84,6 +91,7 @@ pub struct Session {
     pub(super) session: zenoh::Session,
     pub(super) domain: u16,
     listens: bool,
+    here: bool,
     numbers: Arc<AtomicUsize>,
     others: Arc<Mutex<Others>>,
 }
@@ -120,6 +128,7 @@ impl Session {
             session,
             domain,
             listens,
+            here: listens && reach == Reach::Computer && endpoint.is_here(),
             numbers: Arc::default(),
             others,
         })
@@ -129,6 +138,12 @@ impl Session {
     #[must_use]
     pub fn listens(&self) -> bool {
         self.listens
+    }
+
+    /// Nobody else's computer gets there: it listens itself, at an address that only this one has.
+    #[must_use]
+    pub fn is_here(&self) -> bool {
+        self.here
     }
 
     /// A number that nothing else of the session has.
@@ -207,7 +222,9 @@ mod tests {
     #[test]
     fn an_endpoint_is_read_and_written_and_nothing_else_is_one() {
         for text in ["tcp/localhost:7447", "tcp/192.168.1.7:1", "tcp/[::1]:7447"] {
-            assert_eq!(text.parse::<Endpoint>().unwrap().to_string(), text);
+            let endpoint = text.parse::<Endpoint>().unwrap();
+            assert_eq!(endpoint.to_string(), text);
+            assert_eq!(endpoint.is_here(), !text.contains("192"), "{text}");
         }
         for text in [
             "",
