@@ -11,7 +11,7 @@ use rumbo_sim::Sim;
 use rumbo_sim::fleet::{Fleet, FleetError, Met};
 use rumbo_wire::Command;
 
-/// No built-in one: mode 8 does not yield yet.
+/// Two who cross the way, and a goal behind them.
 const CROSSING: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../../examples/crossing/mode8-crossing.toml"

@@ -123,7 +123,7 @@ impl Mission<'_> {
         let error_rad = wrap_angle(state.heading_ref_rad - estimate.pose.heading_rad);
         if abs(error_rad) <= SPOT_RAD {
             state.phase = self.beside(state, estimate, side);
-            let careful_m_s = self.careful_m_s(state.near_m, error_rad);
+            let careful_m_s = self.careful_m_s(state, error_rad);
             let speed_m_s = min(self.free_m_s(state), min(self.around_m_s, careful_m_s));
             if speed_m_s >= CREEP_M_S {
                 let drive = self.line.steer(speed_m_s, error_rad);

@@ -35,6 +35,8 @@ const BEYOND_MM: i32 = 50;
 const BEYOND_SHARE: i32 = 20;
 /// Half width of a beam, as a tangent in 256ths: 0.33 rad.
 const BEAM_TANGENT: i32 = 88;
+/// What approaches has left points on its way, so far behind it [mm].
+const TRAIL_MM: i32 = 300;
 /// An echo this near to the distance of a point may be the point's: [mm] and 256ths of the range.
 const ALIKE_MM: i32 = 25;
 const ALIKE_SHARE: i32 = 8;
@@ -309,6 +311,12 @@ impl Echoes {
         self.confirmed -= 1;
         let axis_rad = f32::from(axis) * (core::f32::consts::PI / 128.0);
         self.clear(&Beam::along(apex, axis_rad), REACH_MM);
+    }
+
+    /// What this reading saw approaches: its way is free.
+    pub(super) fn forget(&mut self, robot: &Transform, reading: &Reading, range_m: f32) {
+        let (beam, _) = Beam::of(robot, reading);
+        self.clear(&beam, round(1_000.0 * range_m) + TRAIL_MM);
     }
 
     /// Lowers the belief in points that a beam as far as `range_mm` would have detected.

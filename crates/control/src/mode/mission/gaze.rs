@@ -13,6 +13,8 @@ use crate::types::{Range, Reading, SonarId};
 /// The servo looks this far to each side on the way, and while sweeping [rad].
 const SWING_RAD: f32 = 0.76;
 pub(super) const SWEEP_RAD: f32 = 1.5;
+/// On the way where things move [rad].
+const LIVELY_RAD: f32 = 1.14;
 /// To the side where something is near, and to the other [rad].
 const WIDE_RAD: f32 = 1.0;
 const NARROW_RAD: f32 = 0.35;
@@ -22,6 +24,8 @@ const STEP_RAD: f32 = 0.38;
 /// Looks in each direction, one in a sweep, and the most where they contradict each other.
 pub(super) const LOOKS: u8 = 2;
 const MOST_LOOKS: u8 = 8;
+/// Looks in each direction while the robot gives way: so many show that something approaches.
+const LOOKS_AT_MOVING: u8 = 3;
 /// Directions between two proofs that the sonar works: the way ahead is scanned in between.
 const BETWEEN_PROOFS: u8 = 3;
 /// The servo is on target within this [rad].
@@ -141,32 +145,40 @@ fn swing(state: &State, estimate: &Estimate) -> (f32, f32) {
     match (right, left) {
         (true, false) => (-WIDE_RAD, NARROW_RAD),
         (false, true) => (-NARROW_RAD, WIDE_RAD),
+        _ if state.movement.is_lively() => (-LIVELY_RAD, LIVELY_RAD),
         _ => (-SWING_RAD, SWING_RAD),
     }
 }
 
 /// Where the servo points.
 pub(super) fn look(state: &mut State, estimate: &Estimate, front_m: f32) -> Look {
+    let gives_way = state.movement.gives_way();
     let (right_rad, left_rad) = match state.phase {
-        Phase::SweepRight => {
+        Phase::SweepRight if !gives_way => {
             state.gaze.to_left = false;
             (-SWEEP_RAD, 0.0)
         }
-        Phase::SweepLeft => {
+        Phase::SweepLeft if !gives_way => {
             state.gaze.to_left = true;
             (0.0, SWEEP_RAD)
         }
-        _ => swing(state, estimate),
+        _ => state
+            .movement
+            .swing()
+            .unwrap_or_else(|| swing(state, estimate)),
     };
-    let sweeps = matches!(state.phase, Phase::SweepRight | Phase::SweepLeft);
+    let sweeps = matches!(state.phase, Phase::SweepRight | Phase::SweepLeft) && !gives_way;
+    let straight = state.phase == Phase::GoToGoal && state.detour.is_none();
     let swing = Swing {
         right_rad,
         left_rad,
         looks: match sweeps && state.watch.landmarks.is_alive() {
+            _ if straight && state.watch.holds_gaze() => MOST_LOOKS,
             true => 1,
+            false if gives_way => LOOKS_AT_MOVING,
             false => LOOKS,
         },
-        proves: !sweeps,
+        proves: !sweeps && !state.movement.is_passing(),
         front_m,
     };
     let swing = match &state.proof {

@@ -2,9 +2,11 @@
 
 use super::detour::{following, towards};
 use super::gaze::{SWEEP_RAD, look};
+use super::moving::{BESIDE_M_S, WARY_M_S};
 use super::obstacle::Among;
 use super::{
-    Action, Drive, Mission, ParamId, Phase, Place, Pose, Segment, State, Turn, Way, abs, min, sqrt,
+    Action, Drive, Mission, Movement, ParamId, Phase, Place, Pose, Segment, State, Turn, Way, abs,
+    min, sqrt,
 };
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
@@ -68,13 +70,23 @@ impl Mission<'_> {
                 ..Action::default()
             });
         }
+        // Around an obstacle its faces beside the robot come and go: they count where other things have moved.
+        let around = state.detour.is_some() && !state.movement.is_lively();
+        let approach = state.watch.approach.as_ref();
+        let approach = approach.filter(|approach| !(around && approach.is_aside()));
+        state.movement.step(approach, estimate.turned_rad);
+        if let (Some(approach), Some(reading)) = (approach, &estimate.reading) {
+            let robot = estimate.transform();
+            state.echoes.forget(&robot, reading, approach.range_m);
+        }
+        state.watch.approach = None;
         let (way, left_m) = way_to(&estimate.pose, goal_m);
         count(state, estimate, &way);
         let planned = perceive(state, estimate, &way);
         if state.age_s > self.params.get(ParamId::MissionGiveUp) {
             state.phase = Phase::Unreachable;
         }
-        let proving = state.proof.is_some();
+        let proving = state.proof.is_some() || state.movement.waits();
         let drive = match self.prove(state, estimate)? {
             Some(drive) => drive,
             // On from where the robot stands now.
@@ -114,12 +126,17 @@ impl Mission<'_> {
     ) -> Drive {
         let pose = &estimate.pose;
         match state.phase {
-            Phase::Wait | Phase::Unreachable | Phase::StraightOn | Phase::Prove => Drive::Release,
+            Phase::Wait
+            | Phase::Unreachable
+            | Phase::StraightOn
+            | Phase::Prove
+            | Phase::GiveWay => Drive::Release,
             Phase::Initialise => {
                 state.age_s = 0.0;
                 state.laps = 0;
                 state.last = None;
                 state.detour = None;
+                state.movement = Movement::default();
                 self.face(state, pose, goal_m, FACED_RAD);
                 Drive::Release
             }
@@ -210,8 +227,7 @@ impl Mission<'_> {
             return Drive::Release;
         }
         let error_rad = wrap_angle(state.heading_ref_rad - estimate.pose.heading_rad);
-        let near_m = state.near_m;
-        let limit_m_s = min(self.free_m_s(state), self.careful_m_s(near_m, error_rad));
+        let limit_m_s = min(self.free_m_s(state), self.careful_m_s(state, error_rad));
         if limit_m_s < CREEP_M_S && abs(error_rad) > FACED_RAD {
             // What stops it is ahead, and the goal is not.
             self.face(state, &estimate.pose, goal_m, FACED_RAD);
@@ -238,15 +254,22 @@ impl Mission<'_> {
         let free_m_s = sqrt(2.0 * self.params.get(ParamId::LineBrake) * room_m);
         if state.doubts() {
             min(free_m_s, DOUBT_M_S)
+        } else if state.movement.is_lively() || state.watch.is_wary() {
+            min(free_m_s, WARY_M_S)
         } else {
             free_m_s
         }
     }
 
     /// Fastest speed with something this near.
-    pub(super) fn careful_m_s(&self, near_m: f32, error_rad: f32) -> f32 {
-        if near_m < CAREFUL_M {
-            self.around_m_s / (1.0 + abs(error_rad) * (1.0 / CAREFUL_RAD))
+    pub(super) fn careful_m_s(&self, state: &State, error_rad: f32) -> f32 {
+        if state.near_m < CAREFUL_M {
+            let around_m_s = if state.movement.is_lively() && state.detour.is_some() {
+                BESIDE_M_S
+            } else {
+                self.around_m_s
+            };
+            around_m_s / (1.0 + abs(error_rad) * (1.0 / CAREFUL_RAD))
         } else {
             self.params.get(ParamId::MissionCruise)
         }

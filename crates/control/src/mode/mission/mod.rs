@@ -17,6 +17,7 @@ mod gaze;
 mod goal;
 mod landmarks;
 mod lane;
+mod moving;
 mod obstacle;
 mod place;
 mod plan;
@@ -35,6 +36,7 @@ use detour::following;
 use echoes::Echoes;
 use gaze::Gaze;
 use goal::CAREFUL_M;
+use moving::Movement;
 use obstacle::Way;
 use place::Place;
 use plan::Plan;
@@ -43,6 +45,8 @@ use watch::{Watch, Worth};
 
 /// Way around an obstacle without an echo of the sonar towards it, after which that may be silent for ever [m].
 const UNSEEN_M: f32 = 0.25;
+/// What passes a robot that gives way nearer than this is remembered [m].
+const PASSING_M: f32 = 0.2;
 /// Time between two fades of the memory [s].
 const FADE_S: f32 = 1.0;
 
@@ -88,12 +92,14 @@ states! {
         InitialTurn = "initial turn" {
             GoToGoal: "it faces the goal",
             Prove: "the front sonar is in doubt",
+            GiveWay: "something approaches",
         }
         /// Forgets the last goal's detour; left at once.
         Initialise = "initialise" {
             InitialTurn: "the goal is not ahead",
             GoToGoal: "it faces the goal",
             StraightOn: "lane: begin",
+            GiveWay: "something approaches",
         }
         /// Follows the straight line to the goal, at 0.40 m/s at most; at its end the event *reached*.
         GoToGoal = "go to goal" {
@@ -102,16 +108,19 @@ states! {
             SweepRight: "an obstacle ahead",
             Seek: "the obstacle that it has just left",
             Prove: "the front sonar is in doubt",
+            GiveWay: "something approaches",
         }
         /// Goes on at 0.1 m/s at most, the servo looks 1.5 rad to the right.
         SweepRight = "sweep right" {
             SweepLeft: "looked to the right",
             Prove: "the front sonar is in doubt",
+            GiveWay: "something approaches",
         }
         /// The same to the left.
         SweepLeft = "sweep left" {
             Decide: "looked to the left",
             Prove: "the front sonar is in doubt",
+            GiveWay: "something approaches",
         }
         /// Takes the side past whose end the way to the goal is shorter; left at once.
         Decide = "decide" {
@@ -120,6 +129,7 @@ states! {
             InitialTurn: "the goal is not ahead",
             AvoidanceTurn: "lane: a quarter turn, or half a turn",
             Prove: "the front sonar is in doubt",
+            GiveWay: "something approaches",
         }
         /// Turns on the spot to the direction that passes the end.
         AvoidanceTurn = "avoidance turn" {
@@ -129,6 +139,7 @@ states! {
             Unreachable: "there is no way",
             StraightOn: "lane: it faces the heading",
             Prove: "the front sonar is in doubt",
+            GiveWay: "something approaches",
         }
         /// Drives in that direction, at 0.22 m/s at most, the sonar beside not yet seeing the obstacle.
         Seek = "advance seeking the obstacle" {
@@ -138,6 +149,7 @@ states! {
             InitialTurn: "the goal is not ahead",
             Unreachable: "there is no way",
             Prove: "the front sonar is in doubt",
+            GiveWay: "something approaches",
         }
         /// The same along the obstacle.
         Along = "advance along it" {
@@ -147,6 +159,7 @@ states! {
             InitialTurn: "the goal is not ahead",
             Unreachable: "there is no way",
             Prove: "the front sonar is in doubt",
+            GiveWay: "something approaches",
         }
         /// The same around its corner.
         SafeDistance = "advance a safe distance" {
@@ -157,6 +170,7 @@ states! {
             InitialTurn: "the goal is not ahead",
             Unreachable: "there is no way",
             Prove: "the front sonar is in doubt",
+            GiveWay: "something approaches",
         }
         /// Wheels released: the event *unreachable*.
         Unreachable = "unreachable" { Initialise: "a goal arrives" }
@@ -173,6 +187,16 @@ states! {
             Seek: "it hears, before an obstacle",
             Along: "it hears, along an obstacle",
             SafeDistance: "it hears, around a corner",
+            Unreachable: "there is no way",
+            GiveWay: "something approaches",
+        }
+        /// Something approaches: stands until it has passed, backs off, or drives out of its way.
+        GiveWay = "give way to what moves" {
+            GoToGoal: "nothing approaches",
+            InitialTurn: "nothing approaches, the goal is not ahead",
+            SweepRight: "out of its way, before an obstacle",
+            SweepLeft: "out of its way, before an obstacle",
+            Prove: "out of its way, the front sonar is in doubt",
             Unreachable: "there is no way",
         }
     }
@@ -266,6 +290,8 @@ pub struct State {
     watch: Watch,
     /// The front sonar is put to the proof.
     proof: Option<Proof>,
+    /// What moves.
+    movement: Movement,
 }
 
 impl State {
@@ -283,6 +309,7 @@ impl State {
     /// The state for display.
     fn shown(&self, state: u8) -> u8 {
         match self.proof {
+            _ if self.movement.gives_way() => Phase::GiveWay as u8,
             Some(_) => Phase::Prove as u8,
             None => state,
         }
@@ -292,6 +319,7 @@ impl State {
     fn ingest(&mut self, estimate: &Estimate, reading: &Reading) {
         let driving =
             !matches!(self.phase, Phase::Wait | Phase::Unreachable) || self.lane.is_driving();
+        let driving = driving && (self.proof.is_some() || !self.movement.is_passing());
         let worth = self.watch.ingest(estimate, reading, driving);
         let front = reading.sonar == SonarId::Front;
         if front {
@@ -301,8 +329,11 @@ impl State {
         match reading.range {
             Range::Clear if sure && front => self.echoes.silence(&robot, reading),
             Range::Clear if sure => self.echoes.ingest(&robot, reading, sure),
-            Range::Valid(_) => {
-                self.echoes.ingest(&robot, reading, sure);
+            Range::Valid(range_m) => {
+                // While the robot gives way, what passes leaves no points behind, unless it is near.
+                if !self.movement.gives_way() || range_m < PASSING_M {
+                    self.echoes.ingest(&robot, reading, sure);
+                }
                 if sure && front {
                     self.echoes.confirm_silences();
                 }
@@ -371,8 +402,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_that_is_remembered_fits_into_1_000_bytes() {
+    fn all_that_is_remembered_fits_into_1_150_bytes() {
         let bytes = core::mem::size_of::<State>();
-        assert!(bytes <= 1_000, "{bytes}");
+        assert!(bytes <= 1_150, "{bytes}");
     }
 }

@@ -74,7 +74,7 @@ impl Proof {
 }
 
 impl Mission<'_> {
-    /// Continues a proof, or starts one where the sonar is in doubt; none if the robot may drive.
+    /// Gives way, continues a proof, or starts one where the sonar is in doubt; none if the robot may drive.
     ///
     /// # Errors
     /// The front sonar is deaf.
@@ -83,6 +83,15 @@ impl Mission<'_> {
         state: &mut State,
         estimate: &Estimate,
     ) -> Result<Option<Drive>, Fault> {
+        let waited = state.movement.waits();
+        if let Some(drive) = self.give_way(state, estimate) {
+            return Ok(Some(drive));
+        }
+        if waited {
+            // What it was going around, or what should answer, may have gone.
+            state.detour = None;
+            state.proof = None;
+        }
         if !state.watch.suspects() {
             if state.proof.take().is_some() {
                 state.watch.landmarks.trust();
@@ -117,6 +126,12 @@ impl Mission<'_> {
                         proof.stage = Stage::Face;
                     }
                 }
+            }
+            Stage::Face if silent && state.movement.is_lively() => {
+                // What should answer may have gone.
+                state.proof = None;
+                state.watch.postpone();
+                return Ok(None);
             }
             Stage::Face if silent => return Err(Fault::SonarFaulty),
             Stage::Look | Stage::Face => {}

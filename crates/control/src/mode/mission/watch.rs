@@ -8,6 +8,7 @@
 use super::echoes::Beam;
 use super::gaze::SWEEP_RAD;
 use super::landmarks::Landmarks;
+use super::moving::{Approach, Since, Track};
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sin_cos};
 use crate::stuck::Stuck;
@@ -88,9 +89,26 @@ struct SonarState {
     /// Way rolled and angle turned since the last answer [m, rad].
     rolled_m: f32,
     turned_rad: f32,
+    /// What it has seen along one beam.
+    track: Track,
 }
 
 impl SonarState {
+    /// The robot's motion since the last answer, of which this reading is the next.
+    fn since(&self, reading: &Reading) -> Since {
+        Since {
+            age_s: self.age_s,
+            rolled_m: self.rolled_m,
+            turned_rad: self.turned_rad,
+            aside_rad: self.aside_rad(reading),
+        }
+    }
+
+    /// What the beam of a reading is off that of the last answer [rad].
+    fn aside_rad(&self, reading: &Reading) -> f32 {
+        abs(reading.view.axis_rad - (self.axis_rad - self.turned_rad))
+    }
+
     fn ingest(&mut self, reading: &Reading) -> Worth {
         let (rolled_m, turned_rad) = (self.rolled_m, self.turned_rad);
         (self.age_s, self.rolled_m, self.turned_rad) = (0.0, 0.0, 0.0);
@@ -154,6 +172,8 @@ impl SonarState {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Watch {
     sonars: [SonarState; 3],
+    /// What the reading of this tick shows to approach.
+    pub approach: Option<Approach>,
     /// Faces that the front sonar must detect.
     pub landmarks: Landmarks,
     /// Directions without an echo since the last call of `ask`; none after an echo.
@@ -179,6 +199,8 @@ impl Watch {
         let Some(sonar) = self.sonars.get_mut(reading.sonar as usize) else {
             return Worth::Wild;
         };
+        let since = sonar.since(reading);
+        self.approach = sonar.track.ingest(reading, &since);
         let worth = sonar.ingest(reading);
         let second = sonar.looks.is_multiple_of(2);
         if worth != Worth::Sure {
@@ -303,6 +325,17 @@ impl Watch {
             let newest_rad = self.landmarks.newest_rad(&estimate.pose)?;
             Some((newest_rad, WALL_M))
         })
+    }
+
+    /// The front sonar should look on where it does: that may approach.
+    pub(super) fn holds_gaze(&self) -> bool {
+        let [.., front] = &self.sonars;
+        front.track.holds_gaze()
+    }
+
+    /// Something may approach: the robot should be slow.
+    pub(super) fn is_wary(&self) -> bool {
+        self.sonars.iter().any(|sonar| sonar.track.is_suspicious())
     }
 
     /// Whether some sonar may be wrong: the robot should be slow.

@@ -1,0 +1,348 @@
+//! What moves: ranges that fall faster than the robot comes nearer by itself, and how the robot gives way to it.
+//!
+//! ```text
+//! looks of a sonar along one beam: each range, and how much nearer the robot's own motion may have brought it at most
+//!     -> what is left is the thing's own -> it approaches, if that is more than noise and about the same in each step
+//! ```
+//!
+//! The bound is that of the point in the cone that the sonar nears fastest: a thing that stands never exceeds it. A single
+//! jump is another face in the beam. Something ahead is waited for; before what comes from the side near by the robot
+//! drives on, if the way is free, since it may stand in its way, or else backs off. Nobody is sure to stop for the robot,
+//! and two that wait for each other do not wait for equally long.
+
+use super::gaze::SWEEP_RAD;
+use super::{Drive, Mission, Phase, State};
+use crate::estimate::Estimate;
+use crate::math::{abs, clamp, from_u32, max, min, round, sin_cos};
+use crate::types::{Range, Reading, TICK_S};
+use core::f32::consts::PI;
+
+/// Looks along beams whose axes differ by less are of one thing [rad].
+const BESIDE_RAD: f32 = 0.12;
+/// Half of a beam, and of what its axis may have turned [rad].
+const HALF_RAD: f32 = 0.4;
+/// Farthest range that is judged [m].
+const JUDGED_M: f32 = 1.2;
+/// What noise may shorten a range by: at once, and more with the cube of the range [m].
+const NOISE_M: f32 = 0.012;
+const NOISE_CUBED: f32 = 0.04;
+/// From look to look the range of one thing changes by less [m].
+const JUMP_M: f32 = 0.08;
+/// What a beam that turns over a slanted face shortens its range by [1/rad].
+const SLANT: f32 = 0.6;
+/// Fewest looks; the largest share of one step; and the least last step: nothing below 0.06 m/s approaches [m].
+const LOOKS: u8 = 3;
+const LARGEST_STEP: f32 = 0.7;
+const LAST_STEP_M: f32 = 0.003_6;
+/// Longest time between the first look and the last [s].
+const LONG_S: f32 = 1.0;
+/// A sonar is no farther from the middle of the axis [m].
+const ARM_M: f32 = 0.13;
+/// Shares of the noise: from here on more looks are wanted, and the robot is slow.
+const LOOK_AGAIN: f32 = -0.3;
+const SUSPECT: f32 = 0.1;
+
+/// Where something has approached within this, anything may have gone elsewhere; and what has just approached may be gone
+/// at once [s].
+const LIVELY_S: f32 = 20.0;
+const LATELY_S: f32 = 2.0;
+/// Speed where things move, and along an obstacle near by, which may be one of them [m/s].
+pub(super) const WARY_M_S: f32 = 0.2;
+pub(super) const BESIDE_M_S: f32 = 0.12;
+/// An approach is evaded for so long after the last look at it [s].
+const FRESH_S: f32 = 0.3;
+/// Beyond this off the heading something is beside the robot [rad].
+const ASIDE_RAD: f32 = 1.1;
+/// There it counts within this, if it would be here so soon [m, s].
+const ASIDE_M: f32 = 0.9;
+const SOON_S: f32 = 2.0;
+/// Shortest wait after the last approach, and each of up to seven steps that the robot's place adds [s].
+const WAIT_S: f32 = 1.0;
+const STEP_S: f32 = 0.15;
+/// While it waits, the servo looks this far to both sides of ahead at least [rad].
+const AROUND_RAD: f32 = 0.38;
+/// What is nearer is evaded, by so much at most, and so fast [m, m, m/s].
+const EVADE_M: f32 = 0.6;
+const MOST_BACK_M: f32 = 0.5;
+const BACK_M_S: f32 = 0.25;
+/// Way out of the way of something beside the robot, how fast, what must be free ahead before it, and where it ends [m,
+/// m/s, m, m].
+const OUT_M: f32 = 0.45;
+const OUT_M_S: f32 = 0.5;
+const FREE_M: f32 = 0.7;
+const STOP_M: f32 = 0.3;
+/// No way out leads ahead where something has approached from there within this [s].
+const AHEAD_S: f32 = 1.5;
+/// The looks of one sonar along one beam.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Track {
+    /// The first range, and the last one [m].
+    first_m: f32,
+    last_m: f32,
+    /// How much nearer what it sees has come by itself, at least: in all, and in the largest step [m].
+    own_m: f32,
+    largest_m: f32,
+    /// The same in all, as a share of what noise may account for.
+    share: f32,
+    /// Time since the first look [s].
+    age_s: f32,
+    /// 0: nothing is followed.
+    looks: u8,
+}
+
+/// The robot's motion from one look of a sonar to the next, and what its beam has turned.
+pub(super) struct Since {
+    pub age_s: f32,
+    pub rolled_m: f32,
+    pub turned_rad: f32,
+    pub aside_rad: f32,
+}
+
+/// Something that approaches.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Approach {
+    /// Where it is seen from the robot's heading at that look; positive is left [rad].
+    off_rad: f32,
+    /// How near [m].
+    pub range_m: f32,
+    /// How fast the range falls [m/s].
+    speed_m_s: f32,
+}
+
+/// What is known of things that move.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Movement {
+    /// The last that approached, and how long that still counts [s].
+    last: Approach,
+    lively_s: f32,
+    /// How long it still counts that something ahead approached [s].
+    ahead_s: f32,
+    /// The robot gives way until nothing has approached for so long [s]; 0: it does not.
+    wait_s: f32,
+    /// What is left of its way out ahead [m]; none where it stands or backs off.
+    out_m: f32,
+    /// Its way back so far [m].
+    back_m: f32,
+}
+
+impl Approach {
+    /// It is beside the robot.
+    pub(super) fn is_aside(&self) -> bool {
+        abs(self.off_rad) > ASIDE_RAD
+    }
+}
+
+impl Track {
+    /// The front sonar should look on where it does.
+    pub(super) fn holds_gaze(&self) -> bool {
+        self.looks > 1 && self.share > LOOK_AGAIN
+    }
+
+    /// What is seen may approach: the robot should be slow.
+    pub(super) fn is_suspicious(&self) -> bool {
+        self.share > SUSPECT
+    }
+
+    /// Ingests a look; says whether something approaches.
+    pub(super) fn ingest(&mut self, reading: &Reading, since: &Since) -> Option<Approach> {
+        let range_m = match reading.range {
+            Range::Valid(range_m) if range_m < JUDGED_M => range_m,
+            _ => {
+                *self = Self::default();
+                return None;
+            }
+        };
+        let off_rad = reading.view.axis_rad;
+        // Of all points in the cone, the one that the way brings nearest.
+        let nearest_rad = if since.rolled_m > 0.0 {
+            max(abs(off_rad) - HALF_RAD, 0.0)
+        } else {
+            min(abs(off_rad) + HALF_RAD, PI)
+        };
+        let nearer_m = since.rolled_m * sin_cos(nearest_rad).1
+            + ARM_M * abs(since.turned_rad)
+            + SLANT * range_m * since.aside_rad;
+        let step_m = self.last_m - range_m - nearer_m;
+        let other = since.aside_rad > BESIDE_RAD || abs(range_m - self.last_m) > JUMP_M;
+        self.last_m = range_m;
+        self.own_m += step_m;
+        self.age_s += since.age_s;
+        self.share = self.own_m / (NOISE_M + NOISE_CUBED * range_m * range_m * range_m);
+        if self.looks == 0 || other || self.share < -1.0 || self.age_s > LONG_S {
+            *self = Self {
+                first_m: range_m,
+                last_m: range_m,
+                looks: 1,
+                ..Self::default()
+            };
+            return None;
+        }
+        self.looks = self.looks.saturating_add(1);
+        self.largest_m = max(self.largest_m, step_m);
+        let approaches = self.looks >= LOOKS
+            && self.share > 1.0
+            && self.largest_m < LARGEST_STEP * self.own_m
+            && step_m > LAST_STEP_M;
+        approaches.then_some(Approach {
+            off_rad,
+            range_m,
+            speed_m_s: (self.first_m - range_m) / self.age_s,
+        })
+    }
+}
+
+impl Movement {
+    /// One tick, in which something was seen to approach, or not.
+    pub(super) fn step(&mut self, approach: Option<&Approach>, turned_rad: f32) {
+        self.lively_s -= TICK_S;
+        self.ahead_s -= TICK_S;
+        self.last.off_rad -= turned_rad;
+        if let Some(approach) = approach {
+            self.last = *approach;
+            self.lively_s = LIVELY_S;
+            if !approach.is_aside() {
+                self.ahead_s = AHEAD_S;
+            }
+        }
+    }
+
+    /// Things move here.
+    pub(super) fn is_lively(&self) -> bool {
+        self.lively_s > 0.0
+    }
+
+    /// Something has just approached: silence where it was is none of a sonar that fails.
+    pub(super) fn is_passing(&self) -> bool {
+        self.lively_s > LIVELY_S - LATELY_S
+    }
+
+    /// The robot gives way.
+    pub(super) fn gives_way(&self) -> bool {
+        self.wait_s > 0.0
+    }
+
+    /// It stands or backs off for that.
+    pub(super) fn waits(&self) -> bool {
+        self.gives_way() && self.out_m <= 0.0
+    }
+
+    /// Between which directions the servo swings while the robot gives way: what approached and ahead [rad].
+    pub(super) fn swing(&self) -> Option<(f32, f32)> {
+        let off_rad = clamp(self.last.off_rad, -SWEEP_RAD, SWEEP_RAD);
+        self.gives_way()
+            .then(|| (min(off_rad, -AROUND_RAD), max(off_rad, AROUND_RAD)))
+    }
+}
+
+impl Mission<'_> {
+    /// Gives way to what approaches; none if the robot may drive.
+    pub(super) fn give_way(&self, state: &mut State, estimate: &Estimate) -> Option<Drive> {
+        let movement = &mut state.movement;
+        let Approach {
+            range_m, speed_m_s, ..
+        } = movement.last;
+        let fresh = movement.lively_s > LIVELY_S - FRESH_S;
+        let aside = movement.last.is_aside();
+        let soon = range_m < min(ASIDE_M, speed_m_s * SOON_S);
+        if !movement.gives_way() {
+            if !fresh || (aside && !soon) {
+                return None;
+            }
+            movement.wait_s = WAIT_S + STEP_S * from_u32(dice(estimate.pose.x_m));
+            movement.back_m = 0.0;
+        }
+        let rolled_m = abs(estimate.rolled_m);
+        if movement.out_m > 0.0 {
+            movement.out_m -= rolled_m;
+            if movement.out_m > 0.0 && state.gap_m > STOP_M {
+                return Some(straight(OUT_M_S));
+            }
+            movement.wait_s = 0.0;
+            return None;
+        }
+        // What comes from the side may run into a robot that stands: on, out of its way.
+        let free = state.gap_m > FREE_M && movement.ahead_s < 0.0;
+        if fresh && aside && soon && free && state.phase == Phase::GoToGoal {
+            movement.out_m = OUT_M;
+            return Some(straight(OUT_M_S));
+        }
+        if movement.lively_s < LIVELY_S - movement.wait_s {
+            movement.wait_s = 0.0;
+            return None;
+        }
+        let blind = aside && state.detour.is_some();
+        let evades = fresh && range_m < EVADE_M && !blind && movement.back_m < MOST_BACK_M;
+        Some(if evades {
+            movement.back_m += rolled_m;
+            straight(-BACK_M_S)
+        } else if estimate.standing() {
+            Drive::Release
+        } else {
+            straight(0.0)
+        })
+    }
+}
+
+/// Straight on.
+fn straight(forward_m_s: f32) -> Drive {
+    Drive::Twist {
+        forward_m_s,
+        yaw_rad_s: 0.0,
+    }
+}
+
+/// A number from 0 to 7 that the last digits of a place give: another one for each robot.
+fn dice(x_m: f32) -> u32 {
+    round(x_m * 4_000.0).unsigned_abs() & 7
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::View;
+    use crate::types::SonarId;
+
+    /// Time between two looks [s].
+    const LOOK_S: f32 = 0.06;
+
+    /// After how many of 20 looks a thing approaches that is `range_m(time)` away along an axis, before a robot this fast.
+    fn approaches(axis_rad: f32, robot_m_s: f32, range_m: impl Fn(f32) -> f32) -> Option<u8> {
+        let mut track = Track::default();
+        (1..=20).find(|look| {
+            let reading = Reading {
+                sonar: SonarId::Front,
+                range: Range::Valid(range_m(LOOK_S * f32::from(*look))),
+                view: View {
+                    axis_rad,
+                    ..View::default()
+                },
+                servo_rad: axis_rad,
+            };
+            let since = Since {
+                age_s: LOOK_S,
+                rolled_m: LOOK_S * robot_m_s,
+                turned_rad: 0.0,
+                aside_rad: 0.0,
+            };
+            track.ingest(&reading, &since).is_some()
+        })
+    }
+
+    #[test]
+    fn a_wall_that_the_robot_drives_to_does_not_approach_and_a_person_does() {
+        assert_eq!(approaches(0.0, 0.4, |time_s| 1.1 - 0.4 * time_s), None);
+        assert_eq!(approaches(0.0, -0.2, |time_s| 0.5 + 0.2 * time_s), None);
+        // Half a metre away, at 0.3 m/s: seen at the third look, before a robot that stands and one that drives.
+        assert_eq!(approaches(0.0, 0.0, |time_s| 0.5 - 0.3 * time_s), Some(3));
+        assert_eq!(approaches(0.0, 0.4, |time_s| 0.5 - 0.7 * time_s), Some(3));
+        assert_eq!(approaches(1.5, 0.4, |time_s| 0.5 - 0.6 * time_s), Some(3));
+        // It goes away.
+        assert_eq!(approaches(0.0, 0.0, |time_s| 0.3 + 0.3 * time_s), None);
+    }
+
+    #[test]
+    fn another_face_in_the_beam_does_not_approach() {
+        let corner = |time_s: f32| if time_s > 0.3 { 0.35 } else { 0.41 };
+        assert_eq!(approaches(1.5, 0.0, corner), None);
+    }
+}
