@@ -94,7 +94,13 @@ impl Given {
     }
 }
 
-/// The native robot's inputs in each of [`RECORDED`], and with [`NOISE`].
+/// Where mode 8 gives way.
+const CROSSING: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../../examples/crossing/mode8-crossing.toml"
+);
+
+/// The native robot's inputs in each of [`RECORDED`], and with [`NOISE`], and in [`CROSSING`].
 fn recorded() -> impl Iterator<Item = (String, Given)> {
     let tapes = RECORDED
         .into_iter()
@@ -102,6 +108,7 @@ fn recorded() -> impl Iterator<Item = (String, Given)> {
     let tapes = tapes.chain([
         ("mode3-final", 1, Some(NOISE)),
         ("mode4-final", 1, Some(NOISE)),
+        (CROSSING, 1, None),
     ]);
     let tapes = tapes.map(|(scenario, seed, fault)| {
         let tape = Tape::of(scenario, seed, fault.as_slice(), &[]);
