@@ -5,6 +5,7 @@
 //! [`sketches`] the images that tests and examples run, [`figures`] the figures and tables of docs/theory, [`fuzz`] the
 //! fuzz targets. Each prints what it does; none needs anything but cargo to start.
 
+use std::io::Write as _;
 use std::process::ExitCode;
 
 mod bench;
@@ -99,7 +100,8 @@ fn main() -> ExitCode {
     };
     let (command, only, seeds, seconds) = match request {
         Request::Help(command) => {
-            println!("{}", help(command.as_deref()));
+            // A reader that has seen enough, as `head`, is no error.
+            let _ = writeln!(std::io::stdout(), "{}", help(command.as_deref()));
             return ExitCode::SUCCESS;
         }
         Request::Run {

@@ -51,7 +51,7 @@ fn parse() -> Option<Args> {
 
 fn main() -> ExitCode {
     let Some(args) = parse() else {
-        eprintln!("faults: see the head of examples/faults.rs for the arguments");
+        eprintln!("faults: see the head of tools/src/bin/faults.rs for the arguments");
         return ExitCode::from(2);
     };
     match campaign(&args) {

@@ -13,8 +13,8 @@
 use super::gaze::SWEEP_RAD;
 use super::{Drive, Mission, Phase, State};
 use crate::estimate::Estimate;
-use crate::math::{abs, clamp, from_u32, max, min, round, sin_cos};
-use crate::types::{Range, Reading, TICK_S};
+use crate::math::{abs, clamp, max, min, round, sin_cos};
+use crate::types::{Range, Reading};
 use core::f32::consts::PI;
 
 /// Looks along beams whose axes differ by less are of one thing [rad].
@@ -42,23 +42,22 @@ const ARM_M: f32 = 0.13;
 const LOOK_AGAIN: f32 = -0.3;
 const SUSPECT: f32 = 0.1;
 
-/// Where something has approached within this, anything may have gone elsewhere; and what has just approached may be gone
-/// at once [s].
-const LIVELY_S: f32 = 20.0;
-const LATELY_S: f32 = 2.0;
+/// Where something has approached within 20 s, anything may have gone elsewhere; within 2 s it may be gone at once; for
+/// 0.3 s it is evaded [ticks].
+const LIVELY_TICKS: u16 = 2_000;
+const PASSING_TICKS: u16 = 200;
+const FRESH_TICKS: u16 = 30;
 /// Speed where things move, and along an obstacle near by, which may be one of them [m/s].
 pub(super) const WARY_M_S: f32 = 0.2;
 pub(super) const BESIDE_M_S: f32 = 0.12;
-/// An approach is evaded for so long after the last look at it [s].
-const FRESH_S: f32 = 0.3;
 /// Beyond this off the heading something is beside the robot [rad].
 const ASIDE_RAD: f32 = 1.1;
 /// There it counts within this, if it would be here so soon [m, s].
 const ASIDE_M: f32 = 0.9;
 const SOON_S: f32 = 2.0;
-/// Shortest wait after the last approach, and each of up to seven steps that the robot's place adds [s].
-const WAIT_S: f32 = 1.0;
-const STEP_S: f32 = 0.15;
+/// Shortest wait after the last approach, and each of up to seven steps that the robot's place adds [ticks].
+const WAIT_TICKS: u8 = 100;
+const STEP_TICKS: u8 = 15;
 /// While it waits, the servo looks this far to both sides of ahead at least [rad].
 const AROUND_RAD: f32 = 0.38;
 /// What is nearer is evaded, by so much at most, and so fast [m, m, m/s].
@@ -71,8 +70,9 @@ const OUT_M: f32 = 0.45;
 const OUT_M_S: f32 = 0.5;
 const FREE_M: f32 = 0.7;
 const STOP_M: f32 = 0.3;
-/// No way out leads ahead where something has approached from there within this [s].
-const AHEAD_S: f32 = 1.5;
+/// No way out leads ahead where something has approached from there within this [ticks].
+const AHEAD_TICKS: u8 = 150;
+
 /// The looks of one sonar along one beam.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Track {
@@ -112,13 +112,13 @@ pub(super) struct Approach {
 /// What is known of things that move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Movement {
-    /// The last that approached, and how long that still counts [s].
+    /// The last that approached, and how long that still counts.
     last: Approach,
-    lively_s: f32,
-    /// How long it still counts that something ahead approached [s].
-    ahead_s: f32,
-    /// The robot gives way until nothing has approached for so long [s]; 0: it does not.
-    wait_s: f32,
+    lively_ticks: u16,
+    /// How long it still counts that something ahead approached.
+    ahead_ticks: u8,
+    /// The robot gives way until nothing has approached for so long; 0: it does not.
+    wait_ticks: u8,
     /// What is left of its way out ahead [m]; none where it stands or backs off.
     out_m: f32,
     /// Its way back so far [m].
@@ -148,7 +148,8 @@ impl Track {
         let range_m = match reading.range {
             Range::Valid(range_m) if range_m < JUDGED_M => range_m,
             _ => {
-                *self = Self::default();
+                self.looks = 0;
+                self.share = 0.0;
                 return None;
             }
         };
@@ -169,12 +170,9 @@ impl Track {
         self.age_s += since.age_s;
         self.share = self.own_m / (NOISE_M + NOISE_CUBED * range_m * range_m * range_m);
         if self.looks == 0 || other || self.share < -1.0 || self.age_s > LONG_S {
-            *self = Self {
-                first_m: range_m,
-                last_m: range_m,
-                looks: 1,
-                ..Self::default()
-            };
+            self.first_m = range_m;
+            (self.own_m, self.largest_m, self.share, self.age_s) = (0.0, 0.0, 0.0, 0.0);
+            self.looks = 1;
             return None;
         }
         self.looks = self.looks.saturating_add(1);
@@ -194,31 +192,36 @@ impl Track {
 impl Movement {
     /// One tick, in which something was seen to approach, or not.
     pub(super) fn step(&mut self, approach: Option<&Approach>, turned_rad: f32) {
-        self.lively_s -= TICK_S;
-        self.ahead_s -= TICK_S;
+        self.lively_ticks = self.lively_ticks.saturating_sub(1);
+        self.ahead_ticks = self.ahead_ticks.saturating_sub(1);
         self.last.off_rad -= turned_rad;
         if let Some(approach) = approach {
             self.last = *approach;
-            self.lively_s = LIVELY_S;
+            self.lively_ticks = LIVELY_TICKS;
             if !approach.is_aside() {
-                self.ahead_s = AHEAD_S;
+                self.ahead_ticks = AHEAD_TICKS;
             }
         }
     }
 
     /// Things move here.
     pub(super) fn is_lively(&self) -> bool {
-        self.lively_s > 0.0
+        self.lively_ticks > 0
+    }
+
+    /// Something has approached within this [ticks].
+    fn is_within(&self, ticks: u16) -> bool {
+        self.lively_ticks > LIVELY_TICKS - ticks
     }
 
     /// Something has just approached: silence where it was is none of a sonar that fails.
     pub(super) fn is_passing(&self) -> bool {
-        self.lively_s > LIVELY_S - LATELY_S
+        self.is_within(PASSING_TICKS)
     }
 
     /// The robot gives way.
     pub(super) fn gives_way(&self) -> bool {
-        self.wait_s > 0.0
+        self.wait_ticks > 0
     }
 
     /// It stands or backs off for that.
@@ -241,14 +244,14 @@ impl Mission<'_> {
         let Approach {
             range_m, speed_m_s, ..
         } = movement.last;
-        let fresh = movement.lively_s > LIVELY_S - FRESH_S;
+        let fresh = movement.is_within(FRESH_TICKS);
         let aside = movement.last.is_aside();
         let soon = range_m < min(ASIDE_M, speed_m_s * SOON_S);
         if !movement.gives_way() {
             if !fresh || (aside && !soon) {
                 return None;
             }
-            movement.wait_s = WAIT_S + STEP_S * from_u32(dice(estimate.pose.x_m));
+            movement.wait_ticks = WAIT_TICKS + STEP_TICKS * dice(estimate.pose.x_m);
             movement.back_m = 0.0;
         }
         let rolled_m = abs(estimate.rolled_m);
@@ -257,17 +260,17 @@ impl Mission<'_> {
             if movement.out_m > 0.0 && state.gap_m > STOP_M {
                 return Some(straight(OUT_M_S));
             }
-            movement.wait_s = 0.0;
+            movement.wait_ticks = 0;
             return None;
         }
         // What comes from the side may run into a robot that stands: on, out of its way.
-        let free = state.gap_m > FREE_M && movement.ahead_s < 0.0;
+        let free = state.gap_m > FREE_M && movement.ahead_ticks == 0;
         if fresh && aside && soon && free && state.phase == Phase::GoToGoal {
             movement.out_m = OUT_M;
             return Some(straight(OUT_M_S));
         }
-        if movement.lively_s < LIVELY_S - movement.wait_s {
-            movement.wait_s = 0.0;
+        if !movement.is_within(u16::from(movement.wait_ticks)) {
+            movement.wait_ticks = 0;
             return None;
         }
         let blind = aside && state.detour.is_some();
@@ -292,8 +295,9 @@ fn straight(forward_m_s: f32) -> Drive {
 }
 
 /// A number from 0 to 7 that the last digits of a place give: another one for each robot.
-fn dice(x_m: f32) -> u32 {
-    round(x_m * 4_000.0).unsigned_abs() & 7
+fn dice(x_m: f32) -> u8 {
+    let [digits, ..] = round(x_m * 4_000.0).to_le_bytes();
+    digits & 7
 }
 
 #[cfg(test)]

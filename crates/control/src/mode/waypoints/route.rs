@@ -34,10 +34,12 @@ impl Default for Route {
     /// The square of the report: 1 m, counter-clockwise, once.
     fn default() -> Self {
         let mut route = Route::empty(false, false);
-        for (x_m, y_m) in [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)] {
+        for corner in 0..4_u8 {
+            let ahead = matches!(corner, 0 | 1);
+            let left = matches!(corner, 1 | 2);
             let corner = Waypoint {
-                x_m,
-                y_m,
+                x_m: f32::from(u8::from(ahead)),
+                y_m: f32::from(u8::from(left)),
                 heading_rad: None,
             };
             // Four of sixteen fit.
