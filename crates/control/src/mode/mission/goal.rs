@@ -73,7 +73,7 @@ impl Mission<'_> {
         // Around an obstacle its faces beside the robot come and go: they count where other things have moved.
         let around = state.detour.is_some() && !state.movement.is_lively();
         let approach = state.watch.approach.as_ref();
-        let approach = approach.filter(|approach| !(around && approach.is_aside()));
+        let approach = approach.filter(|approach| !(around && approach.is_aside() && !approach.is_faster(estimate.rolled_m)));
         state.movement.step(approach, estimate.turned_rad);
         if let (Some(approach), Some(reading)) = (approach, &estimate.reading) {
             let robot = estimate.transform();

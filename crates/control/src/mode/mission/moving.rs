@@ -14,11 +14,13 @@ use super::gaze::SWEEP_RAD;
 use super::{Drive, Mission, Phase, State};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, round, sin_cos};
-use crate::types::{Range, Reading};
+use crate::types::{Range, Reading, TICK_S};
 use core::f32::consts::PI;
 
 /// Looks along beams whose axes differ by less are of one thing [rad].
 const BESIDE_RAD: f32 = 0.12;
+/// From look to look the robot turns by less: in a turn on the spot other faces come into the beams [rad].
+const TURNED_RAD: f32 = 0.05;
 /// Half of a beam, and of what its axis may have turned [rad].
 const HALF_RAD: f32 = 0.4;
 /// Farthest range that is judged [m].
@@ -41,6 +43,12 @@ const ARM_M: f32 = 0.13;
 /// Shares of the noise: from here on more looks are wanted, and the robot is slow.
 const LOOK_AGAIN: f32 = -0.3;
 const SUSPECT: f32 = 0.1;
+/// From here on it approaches.
+const CERTAIN: f32 = 1.5;
+/// From here on the robot may drive out of its way.
+const SURE: f32 = 3.0;
+/// A face seen by the edge of a beam nears by this share of the robot's way at most.
+const FACE: f32 = 1.2;
 
 /// Where something has approached within 20 s, anything may have gone elsewhere; within 2 s it may be gone at once; for
 /// 0.3 s it is evaded [ticks].
@@ -107,6 +115,8 @@ pub(super) struct Approach {
     pub range_m: f32,
     /// How fast the range falls [m/s].
     speed_m_s: f32,
+    /// How sure that is, as [`Track::share`].
+    share: f32,
 }
 
 /// What is known of things that move.
@@ -129,6 +139,16 @@ impl Approach {
     /// It is beside the robot.
     pub(super) fn is_aside(&self) -> bool {
         abs(self.off_rad) > ASIDE_RAD
+    }
+
+    /// Before it is evaded: it is no corner that comes into a beam.
+    fn is_sure(&self) -> bool {
+        self.share > SURE
+    }
+
+    /// It nears a robot that rolls so far in a tick faster than a slanted face does which only the edge of a beam sees.
+    pub(super) fn is_faster(&self, rolled_m: f32) -> bool {
+        self.is_sure() && self.speed_m_s * TICK_S > FACE * rolled_m
     }
 }
 
@@ -164,7 +184,9 @@ impl Track {
             + ARM_M * abs(since.turned_rad)
             + SLANT * range_m * since.aside_rad;
         let step_m = self.last_m - range_m - nearer_m;
-        let other = since.aside_rad > BESIDE_RAD || abs(range_m - self.last_m) > JUMP_M;
+        let other = since.aside_rad > BESIDE_RAD
+            || abs(since.turned_rad) > TURNED_RAD
+            || abs(range_m - self.last_m) > JUMP_M;
         self.last_m = range_m;
         self.own_m += step_m;
         self.age_s += since.age_s;
@@ -178,13 +200,14 @@ impl Track {
         self.looks = self.looks.saturating_add(1);
         self.largest_m = max(self.largest_m, step_m);
         let approaches = self.looks >= LOOKS
-            && self.share > 1.0
+            && self.share > CERTAIN
             && self.largest_m < LARGEST_STEP * self.own_m
             && step_m > LAST_STEP_M;
         approaches.then_some(Approach {
             off_rad,
             range_m,
             speed_m_s: (self.first_m - range_m) / self.age_s,
+            share: self.share,
         })
     }
 }
@@ -229,11 +252,17 @@ impl Movement {
         self.gives_way() && self.out_m <= 0.0
     }
 
-    /// Between which directions the servo swings while the robot gives way: what approached and ahead [rad].
+    /// Between which directions the servo swings while the robot gives way: straight ahead on its way out, else what
+    /// approached and ahead [rad].
     pub(super) fn swing(&self) -> Option<(f32, f32)> {
+        if !self.gives_way() {
+            return None;
+        }
+        if !self.waits() {
+            return Some((0.0, 0.0));
+        }
         let off_rad = clamp(self.last.off_rad, -SWEEP_RAD, SWEEP_RAD);
-        self.gives_way()
-            .then(|| (min(off_rad, -AROUND_RAD), max(off_rad, AROUND_RAD)))
+        Some((min(off_rad, -AROUND_RAD), max(off_rad, AROUND_RAD)))
     }
 }
 
@@ -265,8 +294,9 @@ impl Mission<'_> {
         }
         // What comes from the side may run into a robot that stands: on, out of its way.
         let free = state.gap_m > FREE_M && movement.ahead_ticks == 0;
-        if fresh && aside && soon && free && state.phase == Phase::GoToGoal {
+        if fresh && aside && soon && free && movement.last.is_sure() && state.phase == Phase::GoToGoal {
             movement.out_m = OUT_M;
+            state.gaze.turn_to(0.0);
             return Some(straight(OUT_M_S));
         }
         if !movement.is_within(u16::from(movement.wait_ticks)) {
