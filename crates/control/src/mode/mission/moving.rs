@@ -5,10 +5,11 @@
 //!     -> what is left is the thing's own -> it approaches, if that is more than noise and about the same in each step
 //! ```
 //!
-//! The bound is that of the point in the cone that the sonar nears fastest: a thing that stands never exceeds it. A single
-//! jump is another face in the beam. Something ahead is waited for; before what comes from the side near by the robot
-//! drives on, if the way is free, since it may stand in its way, or else backs off. Nobody is sure to stop for the robot,
-//! and two that wait for each other do not wait for equally long.
+//! The bound is that of the point in the cone that the sonar nears fastest: a corner that stands never exceeds it. A face
+//! does whose normal lies outside the cone, as they come beside a robot that goes around an obstacle; there more is asked
+//! for. A single jump is another face in the beam. Something ahead is waited for; before what comes from the side near by
+//! the robot drives on, if the way is free, since it may stand in its way, or else backs off. Nobody is sure to stop for
+//! the robot, and two that wait for each other do not wait for equally long.
 
 use super::gaze::SWEEP_RAD;
 use super::{Drive, Mission, Phase, State};
