@@ -168,12 +168,10 @@ pub(super) fn look(state: &mut State, estimate: &Estimate, front_m: f32) -> Look
             .unwrap_or_else(|| swing(state, estimate)),
     };
     let sweeps = matches!(state.phase, Phase::SweepRight | Phase::SweepLeft) && !gives_way;
-    let straight = state.phase == Phase::GoToGoal && state.detour.is_none();
     let swing = Swing {
         right_rad,
         left_rad,
         looks: match sweeps && state.watch.landmarks.is_alive() {
-            _ if straight && state.watch.holds_gaze() => MOST_LOOKS,
             true => 1,
             false if gives_way => LOOKS_AT_MOVING,
             false => LOOKS,

@@ -73,7 +73,9 @@ impl Mission<'_> {
         // Around an obstacle its faces beside the robot come and go: they count where other things have moved.
         let around = state.detour.is_some() && !state.movement.is_lively();
         let approach = state.watch.approach.as_ref();
-        let approach = approach.filter(|approach| !(around && approach.is_aside() && !approach.is_faster(estimate.rolled_m)));
+        let approach = approach.filter(|approach| {
+            !(around && approach.is_aside() && !approach.is_faster(estimate.rolled_m))
+        });
         state.movement.step(approach, estimate.turned_rad);
         if let (Some(approach), Some(reading)) = (approach, &estimate.reading) {
             let robot = estimate.transform();
@@ -254,7 +256,7 @@ impl Mission<'_> {
         let free_m_s = sqrt(2.0 * self.params.get(ParamId::LineBrake) * room_m);
         if state.doubts() {
             min(free_m_s, DOUBT_M_S)
-        } else if state.movement.is_lively() || state.watch.is_wary() {
+        } else if state.movement.is_lively() {
             min(free_m_s, WARY_M_S)
         } else {
             free_m_s

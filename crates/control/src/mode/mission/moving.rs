@@ -41,10 +41,7 @@ const LAST_STEP_M: f32 = 0.003_6;
 const LONG_S: f32 = 1.0;
 /// A sonar is no farther from the middle of the axis [m].
 const ARM_M: f32 = 0.13;
-/// Shares of the noise: from here on more looks are wanted, and the robot is slow.
-const LOOK_AGAIN: f32 = -0.3;
-const SUSPECT: f32 = 0.1;
-/// From here on it approaches.
+/// Shares of the noise: from here on it approaches.
 const CERTAIN: f32 = 1.5;
 /// From here on the robot may drive out of its way.
 const SURE: f32 = 3.0;
@@ -154,16 +151,6 @@ impl Approach {
 }
 
 impl Track {
-    /// The front sonar should look on where it does.
-    pub(super) fn holds_gaze(&self) -> bool {
-        self.looks > 1 && self.share > LOOK_AGAIN
-    }
-
-    /// What is seen may approach: the robot should be slow.
-    pub(super) fn is_suspicious(&self) -> bool {
-        self.share > SUSPECT
-    }
-
     /// Ingests a look; says whether something approaches.
     pub(super) fn ingest(&mut self, reading: &Reading, since: &Since) -> Option<Approach> {
         let range_m = match reading.range {
@@ -295,7 +282,13 @@ impl Mission<'_> {
         }
         // What comes from the side may run into a robot that stands: on, out of its way.
         let free = state.gap_m > FREE_M && movement.ahead_ticks == 0;
-        if fresh && aside && soon && free && movement.last.is_sure() && state.phase == Phase::GoToGoal {
+        if fresh
+            && aside
+            && soon
+            && free
+            && movement.last.is_sure()
+            && state.phase == Phase::GoToGoal
+        {
             movement.out_m = OUT_M;
             state.gaze.turn_to(0.0);
             return Some(straight(OUT_M_S));

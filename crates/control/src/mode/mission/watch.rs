@@ -327,17 +327,6 @@ impl Watch {
         })
     }
 
-    /// The front sonar should look on where it does: that may approach.
-    pub(super) fn holds_gaze(&self) -> bool {
-        let [.., front] = &self.sonars;
-        front.track.holds_gaze()
-    }
-
-    /// Something may approach: the robot should be slow.
-    pub(super) fn is_wary(&self) -> bool {
-        self.sonars.iter().any(|sonar| sonar.track.is_suspicious())
-    }
-
     /// Whether some sonar may be wrong: the robot should be slow.
     pub(super) fn doubts(&self) -> bool {
         self.walls_silent > 0
