@@ -229,7 +229,7 @@ impl Bridge for Dds {
     }
 
     fn receive(&mut self) -> Option<Incoming> {
-        // Not told yet: the next time.
+        // Not published yet: the next time.
         let _ = self.domain.tell();
         for _ in 0..=self.carriers.len() {
             let (channel, in_a_row) = self.next;

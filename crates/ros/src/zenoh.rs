@@ -120,7 +120,7 @@ fn now_ns() -> i64 {
     i64::try_from(since.unwrap_or_default().as_nanos()).unwrap_or(i64::MAX)
 }
 
-/// What comes in on a subscription. Whoever attaches nothing is heard too.
+/// What comes in on a subscription. A sender that attaches nothing is accepted too.
 fn message(channel: Channel, sample: &Sample) -> Incoming {
     let attached = sample.attachment();
     let attached = attached.and_then(|attached| Attached::read(&attached.to_bytes()));

@@ -129,7 +129,7 @@ fn an_order_reaches_the_robot_of_its_session_and_no_other() {
     assert_eq!(
         bench.turning(),
         [true, false, true],
-        "1 has heard nothing since"
+        "robot 1 got no order since"
     );
 }
 

@@ -19,8 +19,8 @@ use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// Changes of the graph are told together, this often at most.
-const TOLD: std::time::Duration = std::time::Duration::from_millis(50);
+/// Least time between two publications of the graph; changes in between go together.
+const LEAST_INTERVAL: std::time::Duration = std::time::Duration::from_millis(50);
 /// RustDDS 0.15.1 loses writers and readers that are made faster than its thread announces them: its queue has room for
 /// 512. So there is a rest after so many.
 const AT_ONCE: usize = 64;
@@ -60,8 +60,8 @@ struct Graph {
     statuses: DomainParticipantStatusListener,
     /// By namespace and name.
     nodes: BTreeMap<NodeName, Entities>,
-    /// When it was told last, and whether it has changed since.
-    told: Instant,
+    /// When it was published last, and whether it has changed since.
+    published: Instant,
     changed: bool,
     /// Writers and readers made.
     made: usize,
@@ -142,7 +142,7 @@ impl Domain {
             writer: writer.map_err(|error| refused(&error))?,
             statuses: participant.status_listener(),
             nodes: BTreeMap::new(),
-            told: Instant::now(),
+            published: Instant::now(),
             changed: false,
             made: 0,
             types: BTreeMap::new(),
@@ -177,7 +177,7 @@ impl Domain {
     /// Tells the others what has changed, if that is due.
     pub(super) fn tell(&self) -> Result<(), String> {
         let mut graph = self.graph();
-        match graph.changed && graph.told.elapsed() >= TOLD {
+        match graph.changed && graph.published.elapsed() >= LEAST_INTERVAL {
             true => graph.tell(&self.participant),
             false => Ok(()),
         }
@@ -247,7 +247,7 @@ impl Domain {
 
 impl Graph {
     fn tell(&mut self, participant: &DomainParticipant) -> Result<(), String> {
-        self.told = Instant::now();
+        self.published = Instant::now();
         let nodes = self.nodes.iter();
         let nodes = nodes.map(|((namespace, name), of)| NodeEntities {
             namespace,

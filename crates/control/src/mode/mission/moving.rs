@@ -88,8 +88,6 @@ pub(super) struct Track {
     /// How much nearer what it sees has come by itself, at least: in all, and in the largest step [m].
     own_m: f32,
     largest_m: f32,
-    /// The same in all, as a share of what noise may account for.
-    share: f32,
     /// Time since the first look [s].
     age_s: f32,
     /// 0: nothing is followed.
@@ -113,8 +111,8 @@ pub(super) struct Approach {
     pub range_m: f32,
     /// How fast the range falls [m/s].
     speed_m_s: f32,
-    /// How sure that is, as [`Track::share`].
-    share: f32,
+    /// No corner that comes into a beam explains it.
+    sure: bool,
 }
 
 /// What is known of things that move.
@@ -139,14 +137,9 @@ impl Approach {
         abs(self.off_rad) > ASIDE_RAD
     }
 
-    /// Before it is evaded: it is no corner that comes into a beam.
-    fn is_sure(&self) -> bool {
-        self.share > SURE
-    }
-
     /// It nears a robot that rolls so far in a tick faster than a slanted face does which only the edge of a beam sees.
     pub(super) fn is_faster(&self, rolled_m: f32) -> bool {
-        self.is_sure() && self.speed_m_s * TICK_S > FACE * rolled_m
+        self.sure && self.speed_m_s * TICK_S > FACE * rolled_m
     }
 }
 
@@ -157,7 +150,6 @@ impl Track {
             Range::Valid(range_m) if range_m < JUDGED_M => range_m,
             _ => {
                 self.looks = 0;
-                self.share = 0.0;
                 return None;
             }
         };
@@ -178,24 +170,24 @@ impl Track {
         self.last_m = range_m;
         self.own_m += step_m;
         self.age_s += since.age_s;
-        self.share = self.own_m / (NOISE_M + NOISE_CUBED * range_m * range_m * range_m);
-        if self.looks == 0 || other || self.share < -1.0 || self.age_s > LONG_S {
+        let share = self.own_m / (NOISE_M + NOISE_CUBED * range_m * range_m * range_m);
+        if self.looks == 0 || other || share < -1.0 || self.age_s > LONG_S {
             self.first_m = range_m;
-            (self.own_m, self.largest_m, self.share, self.age_s) = (0.0, 0.0, 0.0, 0.0);
+            (self.own_m, self.largest_m, self.age_s) = (0.0, 0.0, 0.0);
             self.looks = 1;
             return None;
         }
         self.looks = self.looks.saturating_add(1);
         self.largest_m = max(self.largest_m, step_m);
         let approaches = self.looks >= LOOKS
-            && self.share > CERTAIN
+            && share > CERTAIN
             && self.largest_m < LARGEST_STEP * self.own_m
             && step_m > LAST_STEP_M;
         approaches.then_some(Approach {
             off_rad,
             range_m,
             speed_m_s: (self.first_m - range_m) / self.age_s,
-            share: self.share,
+            sure: share > SURE,
         })
     }
 }
@@ -282,13 +274,7 @@ impl Mission<'_> {
         }
         // What comes from the side may run into a robot that stands: on, out of its way.
         let free = state.gap_m > FREE_M && movement.ahead_ticks == 0;
-        if fresh
-            && aside
-            && soon
-            && free
-            && movement.last.is_sure()
-            && state.phase == Phase::GoToGoal
-        {
+        if fresh && aside && soon && free && movement.last.sure && state.phase == Phase::GoToGoal {
             movement.out_m = OUT_M;
             state.gaze.turn_to(0.0);
             return Some(straight(OUT_M_S));

@@ -169,7 +169,7 @@ impl SonarState {
 }
 
 /// Memory of the watch, by `SonarId` number.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Watch {
     sonars: [SonarState; 3],
     /// What the reading of this tick shows to approach.
@@ -186,6 +186,23 @@ pub(super) struct Watch {
     blind_m: f32,
     /// Way since the front sonar's last echo; none before the first, and where no known face must answer [m].
     silent_m: Option<f32>,
+}
+
+impl Default for Watch {
+    // Not derived: the default of an array is built on the stack first. Nor inlined, for the same reason.
+    #[inline(never)]
+    fn default() -> Self {
+        Self {
+            sonars: [SonarState::default(); 3],
+            approach: None,
+            landmarks: Landmarks::default(),
+            unanswered: 0,
+            aside_m: 0.0,
+            walls_silent: 0,
+            blind_m: 0.0,
+            silent_m: None,
+        }
+    }
 }
 
 impl Watch {
