@@ -20,6 +20,8 @@ def test_the_examples_of_the_page_run(
     rumbo_command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    # Files of a checkout are named from its folder.
+    (tmp_path / "examples").symlink_to(PAGE.parents[1] / "examples")
     subprocess.run([rumbo_command, "run", "mode1", "--seed", "7", "--out", "out"], check=True, capture_output=True)
     examples = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
     assert len(examples) >= 6

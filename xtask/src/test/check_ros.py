@@ -227,7 +227,8 @@ def check_two(peer, first, first_odometry):
     second = lab("--namespace", "second", "--stamped", "--scenario", "mode1")
     odometry = peer.listen(Odometry, "/second/odom")
     clock = peer.listen(Clock, "/second/clock")
-    wait_for("the second robot", lambda: odometry and clock)
+    # A stamp of 0, 2 s before 2 s, would be none.
+    wait_for("the second robot", lambda: odometry and clock and clock[-1].clock.sec > 2)
     nodes = {("rumbo", "/"), ("rumbo", "/second")}
     wait_for("both nodes", lambda: nodes <= set(peer.node.get_node_names_and_namespaces()))
     peer.must("/second/rumbo/mode/twist")
