@@ -212,7 +212,7 @@ fn to_left(side: Side, value: f32) -> f32 {
 }
 
 /// The same way at a yaw rate at which a corner of the robot touches gently.
-fn slow_corners(drive: Drive) -> Drive {
+pub(super) fn slow_corners(drive: Drive) -> Drive {
     match drive {
         Drive::Twist {
             forward_m_s,

@@ -70,9 +70,11 @@ impl Gaze {
         }
     }
 
-    /// Enough looks at the target: `looks` of them, and more while they contradict each other.
-    fn is_done(&self, looks: u8) -> bool {
-        self.looks >= if self.wild { MOST_LOOKS } else { looks }
+    /// Enough looks at the target: `looks` of them, and more while they contradict each other or what they see may
+    /// approach.
+    fn is_done(&self, looks: u8, watch: &Watch) -> bool {
+        let most = self.wild || watch.looks_again();
+        self.looks >= if most { MOST_LOOKS } else { looks }
     }
 
     /// It has looked beyond this direction; positive is left.
@@ -88,7 +90,7 @@ impl Gaze {
     /// On to the next direction, if there were so many looks at this one; after two looks the sonar may be put to the
     /// proof.
     pub(super) fn step(&mut self, watch: &Watch, estimate: &Estimate, swing: &Swing) {
-        if !self.is_done(swing.looks) {
+        if !self.is_done(swing.looks, watch) {
             return;
         }
         let proof = if !swing.proves || self.since_proof < BETWEEN_PROOFS {
@@ -167,7 +169,7 @@ pub(super) fn look(state: &mut State, estimate: &Estimate, front_m: f32) -> Look
             .swing()
             .unwrap_or_else(|| swing(state, estimate)),
     };
-    let sweeps = matches!(state.phase, Phase::SweepRight | Phase::SweepLeft) && !gives_way;
+    let sweeps = state.sweeps() && !gives_way;
     let swing = Swing {
         right_rad,
         left_rad,

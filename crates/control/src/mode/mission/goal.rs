@@ -1,6 +1,6 @@
 //! Reach a point around obstacles: the states on the straight line to the goal; around an obstacle: `detour.rs`.
 
-use super::detour::{following, towards};
+use super::detour::{following, slow_corners, towards};
 use super::gaze::{SWEEP_RAD, look};
 use super::moving::{BESIDE_M_S, WARY_M_S};
 use super::obstacle::Among;
@@ -76,6 +76,9 @@ impl Mission<'_> {
         let approach = approach.filter(|approach| {
             !(around && approach.is_aside() && !approach.is_faster(estimate.rolled_m))
         });
+        if following(state.phase) && state.watch.nears_aside() {
+            state.movement.be_careful();
+        }
         state.movement.step(approach, estimate.turned_rad);
         if let (Some(approach), Some(reading)) = (approach, &estimate.reading) {
             let robot = estimate.transform();
@@ -92,7 +95,7 @@ impl Mission<'_> {
         let drive = match self.prove(state, estimate)? {
             Some(drive) => drive,
             // On from where the robot stands now.
-            None if proving && !following(state.phase) => {
+            None if proving && !following(state.phase) && !state.sweeps() => {
                 self.face(state, &estimate.pose, goal_m, FACED_RAD);
                 Drive::Release
             }
@@ -247,7 +250,11 @@ impl Mission<'_> {
                 state.watch.landmarks.move_origin(pose, facing);
             }
         }
-        step.drive
+        if state.doubts() {
+            slow_corners(step.drive)
+        } else {
+            step.drive
+        }
     }
 
     /// Fastest speed from which the robot stops before what is ahead.
@@ -256,8 +263,11 @@ impl Mission<'_> {
         let free_m_s = sqrt(2.0 * self.params.get(ParamId::LineBrake) * room_m);
         if state.doubts() {
             min(free_m_s, DOUBT_M_S)
+        } else if state.movement.is_careful() {
+            min(free_m_s, BESIDE_M_S)
         } else if state.movement.is_lively() {
-            min(free_m_s, WARY_M_S)
+            let around = state.detour.is_some();
+            min(free_m_s, if around { BESIDE_M_S } else { WARY_M_S })
         } else {
             free_m_s
         }
@@ -266,12 +276,7 @@ impl Mission<'_> {
     /// Fastest speed with something this near.
     pub(super) fn careful_m_s(&self, state: &State, error_rad: f32) -> f32 {
         if state.near_m < CAREFUL_M {
-            let around_m_s = if state.movement.is_lively() && state.detour.is_some() {
-                BESIDE_M_S
-            } else {
-                self.around_m_s
-            };
-            around_m_s / (1.0 + abs(error_rad) * (1.0 / CAREFUL_RAD))
+            self.around_m_s / (1.0 + abs(error_rad) * (1.0 / CAREFUL_RAD))
         } else {
             self.params.get(ParamId::MissionCruise)
         }

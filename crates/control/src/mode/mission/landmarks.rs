@@ -9,9 +9,9 @@
 //! |---|---|
 //! | two equal echoes in a row from a place | the landmark there is renewed, or the one silent for longest gives way; all silences are cleared |
 //! | two silences in a row at a landmark | one more silence of that landmark; with [`SILENCES`] of them it is given up |
-//! | [`DOUBT_AFTER`] silences at landmarks since the last echo | doubt: the robot is slow for the next [`DOUBT_M`] |
-//! | [`LASTING`] | doubt until the next echo |
-//! | [`DEAF_AFTER`] | deaf |
+//! | [`DOUBT_AFTER`] silences at landmarks since the last echo | doubt: the robot is slow until the next echo |
+//! | [`DOUBT_M`] of way in doubt, or [`DEAF_AFTER`] silences | it must be tested |
+//! | [`LASTING`] silences, and nothing to test it by | doubt until the next echo |
 
 use super::echoes::{Beam, direction};
 use super::place::{Place, fractions};
@@ -145,9 +145,14 @@ impl Landmarks {
         self.trusted_s = TRUST_S;
     }
 
-    /// It cannot be tested here: it stays in doubt until its next echo.
+    /// It cannot be tested here: after many silences it stays in doubt until its next echo.
     pub(super) fn postpone(&mut self) {
-        self.silences = core::cmp::min(self.silences, LASTING);
+        self.silences = if self.silences < LASTING { 0 } else { LASTING };
+    }
+
+    /// It did not answer, and what should have may be gone: it stays in doubt until its next echo.
+    pub(super) fn distrust(&mut self) {
+        self.silences = LASTING;
     }
 
     /// All around an obstacle was looked at: silence so long is one of a deaf sonar.
@@ -174,13 +179,13 @@ impl Landmarks {
 
     /// The sonar may be deaf: the robot should be slow.
     pub(super) fn doubts(&self) -> bool {
-        let lately = self.silences >= DOUBT_AFTER && self.doubt_m < DOUBT_M;
-        lately || self.silences >= LASTING
+        self.silences >= DOUBT_AFTER
     }
 
-    /// It is deaf.
+    /// It must be tested: too many silences, or a long way in doubt.
     pub(super) fn is_deaf(&self) -> bool {
-        self.silences >= DEAF_AFTER
+        let long = self.doubts() && self.silences < LASTING && self.doubt_m > DOUBT_M;
+        long || self.silences >= DEAF_AFTER
     }
 
     /// The place at `origin` becomes the origin.

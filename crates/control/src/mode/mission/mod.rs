@@ -306,6 +306,11 @@ impl State {
         self.watch.doubts() || self.unseen_m > UNSEEN_M
     }
 
+    /// It looks to the right and to the left before an obstacle.
+    fn sweeps(&self) -> bool {
+        matches!(self.phase, Phase::SweepRight | Phase::SweepLeft)
+    }
+
     /// The state for display.
     fn shown(&self, state: u8) -> u8 {
         match self.proof {
@@ -330,8 +335,8 @@ impl State {
             Range::Clear if sure && front => self.echoes.silence(&robot, reading),
             Range::Clear if sure => self.echoes.ingest(&robot, reading, sure),
             Range::Valid(range_m) => {
-                // While the robot gives way, what passes leaves no points behind, unless it is near.
-                if !self.movement.gives_way() || range_m < PASSING_M {
+                // While the robot waits, what passes leaves no points behind, unless it is near.
+                if !self.movement.waits() || range_m < PASSING_M {
                     self.echoes.ingest(&robot, reading, sure);
                 }
                 if sure && front {

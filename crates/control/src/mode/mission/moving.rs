@@ -22,8 +22,8 @@ use core::f32::consts::PI;
 const BESIDE_RAD: f32 = 0.12;
 /// From look to look the robot turns by less: in a turn on the spot other faces come into the beams [rad].
 const TURNED_RAD: f32 = 0.05;
-/// Half of a beam, and of what its axis may have turned [rad].
-const HALF_RAD: f32 = 0.4;
+/// Half of a beam, of what its axis may have turned, and of a slanted face that still answers [rad].
+const HALF_RAD: f32 = 0.55;
 /// Farthest range that is judged [m].
 const JUDGED_M: f32 = 1.2;
 /// What noise may shorten a range by: at once, and more with the cube of the range [m].
@@ -41,7 +41,9 @@ const LAST_STEP_M: f32 = 0.003_6;
 const LONG_S: f32 = 1.0;
 /// A sonar is no farther from the middle of the axis [m].
 const ARM_M: f32 = 0.13;
-/// Shares of the noise: from here on it approaches.
+/// Shares of the noise: from here on the front sonar looks again, and the robot is slow beside an obstacle.
+const LOOK_AGAIN: f32 = 0.4;
+/// From here on it approaches.
 const CERTAIN: f32 = 1.5;
 /// From here on the robot may drive out of its way.
 const SURE: f32 = 3.0;
@@ -49,13 +51,14 @@ const SURE: f32 = 3.0;
 const FACE: f32 = 1.2;
 
 /// Where something has approached within 20 s, anything may have gone elsewhere; within 2 s it may be gone at once; for
-/// 0.3 s it is evaded [ticks].
+/// 0.3 s it is evaded. For 1 s the robot is slow beside what may approach [ticks].
 const LIVELY_TICKS: u16 = 2_000;
 const PASSING_TICKS: u16 = 200;
 const FRESH_TICKS: u16 = 30;
-/// Speed where things move, and along an obstacle near by, which may be one of them [m/s].
+const CAREFUL_TICKS: u8 = 100;
+/// Speed where things move, and around an obstacle, which may be one of them [m/s].
 pub(super) const WARY_M_S: f32 = 0.2;
-pub(super) const BESIDE_M_S: f32 = 0.12;
+pub(super) const BESIDE_M_S: f32 = 0.08;
 /// Beyond this off the heading something is beside the robot [rad].
 const ASIDE_RAD: f32 = 1.1;
 /// There it counts within this, if it would be here so soon [m, s].
@@ -129,6 +132,8 @@ pub(super) struct Movement {
     out_m: f32,
     /// Its way back so far [m].
     back_m: f32,
+    /// For so long the robot is slow beside what may approach.
+    careful_ticks: u8,
 }
 
 impl Approach {
@@ -144,6 +149,16 @@ impl Approach {
 }
 
 impl Track {
+    /// It may approach: more looks say whether.
+    pub(super) fn may_approach(&self) -> bool {
+        self.looks > 1 && self.share() > LOOK_AGAIN
+    }
+
+    /// How much nearer it has come by itself, over what noise does.
+    fn share(&self) -> f32 {
+        self.own_m / (NOISE_M + NOISE_CUBED * self.last_m * self.last_m * self.last_m)
+    }
+
     /// Ingests a look; says whether something approaches.
     pub(super) fn ingest(&mut self, reading: &Reading, since: &Since) -> Option<Approach> {
         let range_m = match reading.range {
@@ -170,7 +185,7 @@ impl Track {
         self.last_m = range_m;
         self.own_m += step_m;
         self.age_s += since.age_s;
-        let share = self.own_m / (NOISE_M + NOISE_CUBED * range_m * range_m * range_m);
+        let share = self.share();
         if self.looks == 0 || other || share < -1.0 || self.age_s > LONG_S {
             self.first_m = range_m;
             (self.own_m, self.largest_m, self.age_s) = (0.0, 0.0, 0.0);
@@ -197,6 +212,7 @@ impl Movement {
     pub(super) fn step(&mut self, approach: Option<&Approach>, turned_rad: f32) {
         self.lively_ticks = self.lively_ticks.saturating_sub(1);
         self.ahead_ticks = self.ahead_ticks.saturating_sub(1);
+        self.careful_ticks = self.careful_ticks.saturating_sub(1);
         self.last.off_rad -= turned_rad;
         if let Some(approach) = approach {
             self.last = *approach;
@@ -205,6 +221,16 @@ impl Movement {
                 self.ahead_ticks = AHEAD_TICKS;
             }
         }
+    }
+
+    /// The obstacle beside the robot may approach: another robot that goes around this one.
+    pub(super) fn be_careful(&mut self) {
+        self.careful_ticks = CAREFUL_TICKS;
+    }
+
+    /// The robot should be slow for that.
+    pub(super) fn is_careful(&self) -> bool {
+        self.careful_ticks > 0
     }
 
     /// Things move here.

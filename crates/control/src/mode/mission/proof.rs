@@ -131,6 +131,7 @@ impl Mission<'_> {
                 // What should answer may have gone.
                 state.proof = None;
                 state.watch.postpone();
+                state.watch.landmarks.distrust();
                 return Ok(None);
             }
             Stage::Face if silent => return Err(Fault::SonarFaulty),

@@ -249,6 +249,18 @@ impl Watch {
         worth
     }
 
+    /// What the front sonar sees where it looks may approach.
+    pub(super) fn looks_again(&self) -> bool {
+        let [_, _, front] = &self.sonars;
+        front.track.may_approach()
+    }
+
+    /// What a sonar at the side sees may approach.
+    pub(super) fn nears_aside(&self) -> bool {
+        let [left, right, _] = &self.sonars;
+        left.track.may_approach() || right.track.may_approach()
+    }
+
     /// The servo angle that tests the front sonar [rad]; none while it works, or where nothing must answer.
     pub(super) fn look(&self, estimate: &Estimate, front_m: f32) -> Option<f32> {
         if self.landmarks.is_alive() {
