@@ -1,5 +1,5 @@
 //! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, everything that can
-//! fail in the middle of drives, a million frames over a link with faults, and the image for 75 minutes under a flood
+//! fail in the middle of drives, mode 8 among what moves, a million frames over a link with faults, and the image for 75 minutes under a flood
 //! of bytes, and beside the native robot; sweeps of the Python package on Ray; the fuzz targets for ten minutes each.
 //!
 //! Runs and requirements are those of `rumbo_experiment::campaign`. Each program is built in release mode, and its
@@ -25,6 +25,8 @@ const FAULTS: &str = "faults";
 const FAULTS_SEEDS: u32 = 50;
 const FAULTS_SEEDS_IMAGE: u32 = 5;
 const FAULTS_INSTANTS_IMAGE: u32 = 2;
+/// Mode 8 among people who cross its way and among other robots.
+const MOVING: &str = "moving";
 /// The fuzz targets.
 const FUZZ: &str = "fuzz";
 /// A class of a hundred hand-ins, thirty of them hostile.
@@ -85,6 +87,13 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == FAULTS) {
         met &= faults(project, seeds)?;
     }
+    if only.is_empty() || only.iter().any(|name| name == MOVING) {
+        let args = match seeds {
+            Some(seeds) => vec!["--seeds".to_owned(), seeds.to_string()],
+            None => vec!["--write".to_owned()],
+        };
+        met &= tool(project, MOVING, &args)?;
+    }
     if only.is_empty() || only.iter().any(|name| name == RAY) {
         wheel::on_ray(project).map_err(said)?;
     }
@@ -97,7 +106,7 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
         only.iter()
             .filter(|name| {
                 ![
-                    LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, TUNE, FAULTS, RAY, RELEASE,
+                    LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, TUNE, FAULTS, MOVING, RAY, RELEASE,
                 ]
                 .contains(&name.as_str())
             })

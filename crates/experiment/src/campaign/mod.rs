@@ -5,6 +5,7 @@
 //! shortest ones. `cargo xtask campaign` prints this for thousands of seeds; a test judges a sample in the same way.
 
 pub mod faults;
+pub mod moving;
 
 use crate::files::{FileError, Kind, Library, Overrides, Setup};
 use crate::metrics::Metrics;

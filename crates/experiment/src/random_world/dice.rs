@@ -3,13 +3,13 @@
 use rumbo_plant::noise::{Noise, source};
 
 /// A sequence that depends on the seed alone, not on anything else that the seed draws.
-pub(super) struct Dice {
+pub(crate) struct Dice {
     noise: Noise,
     step: u64,
 }
 
 impl Dice {
-    pub(super) const fn new(seed: u64) -> Self {
+    pub(crate) const fn new(seed: u64) -> Self {
         Self {
             noise: Noise::new(seed, 0),
             step: 0,
@@ -17,7 +17,7 @@ impl Dice {
     }
 
     /// Uniform between two values.
-    pub(super) fn within(&mut self, from: f64, to: f64) -> f64 {
+    pub(crate) fn within(&mut self, from: f64, to: f64) -> f64 {
         self.step += 1;
         from + (to - from) * self.noise.uniform(source::WORLD, self.step)
     }
@@ -28,7 +28,7 @@ impl Dice {
     }
 
     /// True with a probability.
-    pub(super) fn chance(&mut self, probability: f64) -> bool {
+    pub(crate) fn chance(&mut self, probability: f64) -> bool {
         self.within(0.0, 1.0) < probability
     }
 

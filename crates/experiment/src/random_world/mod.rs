@@ -15,7 +15,7 @@ mod layouts;
 
 use crate::shortest_path::{Floor, Path};
 use arrangement::Arrangement;
-use dice::Dice;
+pub(crate) use dice::Dice;
 use rumbo_plant::params::Body;
 use rumbo_plant::world::{Block, Point, Wall, World};
 

@@ -1,0 +1,261 @@
+//! Robots among what moves: arrangements drawn by seeds, how many robots arrive, and what is touched how fast.
+//!
+//! An arrangement is the text of a scenario and of its world, so that `rumbo run` can repeat it.
+
+use crate::files::{FileError, Kind, Library, Overrides};
+use crate::random_world::Dice;
+use crate::run::{self, RunResult};
+use rayon::prelude::*;
+use rumbo_wire::FromRobot;
+use std::f64::consts::TAU;
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A goal 4 m ahead, across the way of the two people of the world `crossing`.
+    Crossing,
+    /// The same, with two people of drawn places, sizes and speeds.
+    People,
+    /// So many robots in a room of 3 x 3 m: three go each to the next one's place, others to the one across.
+    Room(usize),
+}
+
+impl Place {
+    /// Those of the campaign.
+    pub const ALL: [Self; 5] = [
+        Self::Crossing,
+        Self::People,
+        Self::Room(3),
+        Self::Room(4),
+        Self::Room(6),
+    ];
+
+    /// The scenario of a seed, and its world if that is not a built-in one.
+    #[must_use]
+    pub fn draw(self, seed: u64) -> (String, Option<String>) {
+        let dice = &mut Dice::new(seed);
+        match self {
+            Self::Crossing => (goal_ahead("crossing"), None),
+            Self::People => (goal_ahead("drawn"), Some(people(dice))),
+            Self::Room(robots) => (room(robots, dice), Some(ROOM.to_owned())),
+        }
+    }
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Crossing => f.write_str("crossing"),
+            Self::People => f.write_str("people"),
+            Self::Room(robots) => write!(f, "room{robots}"),
+        }
+    }
+}
+
+const ROOM: &str = "\
+title = \"A room\"
+[arena]
+from_m = [-1.5, -1.5]
+to_m = [1.5, 1.5]
+walled = true
+";
+
+/// The head of a scenario in a world, with its limit.
+fn head(world: &str) -> String {
+    format!(
+        "title = \"What moves in mode 8\"\nrobot = \"memoria\"\nrig = \"final\"\nworld = \"{world}\"\nmode = \"mission\"\nduration_s = 120\n\
+         calibrated = true\n[limits]\n\"contact_speed_m_s\" = {{ max = 0.1 }}\n"
+    )
+}
+
+/// Sends a goal, and ON.
+fn commands(table: &str, [x_m, y_m]: [f64; 2]) -> String {
+    format!(
+        "[[{table}]]\nat_s = 0.4\ngoal_m = [{x_m:.3}, {y_m:.3}]\n[[{table}]]\nat_s = 0.5\narm = true\n"
+    )
+}
+
+fn goal_ahead(world: &str) -> String {
+    head(world) + &commands("command", [4.0, 0.0])
+}
+
+/// Two who cross the way to a goal 4 m ahead, back and forth.
+fn people(dice: &mut Dice) -> String {
+    let mut world =
+        "title = \"Two people\"\n[arena]\nfrom_m = [-0.5, -1.5]\nto_m = [4.5, 1.5]\n".to_owned();
+    for middle_m in [1.3, 2.7] {
+        let [from_m, to_m] = [(); 2].map(|()| middle_m + dice.within(-0.3, 0.3));
+        let side = if dice.chance(0.5) { 1.2 } else { -1.2 };
+        let body = if dice.chance(0.5) {
+            format!("diameter_m = {:.3}", dice.within(0.2, 0.4))
+        } else {
+            let [long_m, wide_m] = [dice.within(0.2, 0.5), dice.within(0.15, 0.3)];
+            format!("size_m = [{long_m:.3}, {wide_m:.3}]")
+        };
+        let [speed_m_s, pause_s, start_s] = [
+            dice.within(0.2, 0.5),
+            dice.within(0.5, 2.0),
+            dice.within(0.0, 4.0),
+        ];
+        world += &format!(
+            "[[mover]]\n{body}\npath_m = [[{from_m:.3}, {side}], [{to_m:.3}, {}]]\nspeed_m_s = {speed_m_s:.3}\n\
+             pause_s = {pause_s:.3}\nstart_s = {start_s:.3}\nrepeat = \"back_and_forth\"\n",
+            -side
+        );
+    }
+    world
+}
+
+/// Robots around the middle of a room, each nearly facing its goal.
+fn room(robots: usize, dice: &mut Dice) -> String {
+    let corners = robots == 4;
+    let turn_rad = if corners {
+        TAU / 8.0
+    } else {
+        dice.within(0.0, TAU)
+    };
+    let places_m: Vec<[f64; 2]> = (0..robots)
+        .map(|robot| {
+            let angle_rad = turn_rad + TAU * robot as f64 / robots as f64;
+            let radius_m = if corners { 1.41 } else { 1.1 };
+            [angle_rad.cos(), angle_rad.sin()].map(|of| radius_m * of + dice.within(-0.1, 0.1))
+        })
+        .collect();
+    let on = if robots == 3 { 1 } else { robots / 2 };
+    let mut text = head("drawn");
+    for (robot, [x_m, y_m]) in places_m.iter().enumerate() {
+        let [to_x_m, to_y_m] = places_m[(robot + on) % robots];
+        let (dx_m, dy_m) = (to_x_m - x_m, to_y_m - y_m);
+        let heading_rad = dy_m.atan2(dx_m) + dice.within(-0.3, 0.3);
+        let (sin, cos) = heading_rad.sin_cos();
+        let goal_m = [dx_m * cos + dy_m * sin, dy_m * cos - dx_m * sin];
+        text += &format!(
+            "[[fleet]]\nname = \"r{robot}\"\nstart = {{ x_m = {x_m:.3}, y_m = {y_m:.3}, heading_deg = {:.2} }}\n",
+            heading_rad.to_degrees()
+        );
+        text += &commands("fleet.command", goal_m);
+    }
+    text
+}
+
+/// A touch that a robot felt.
+#[derive(Clone, Debug)]
+pub struct Touch {
+    /// The robot's number.
+    pub robot: usize,
+    /// When it began [s].
+    pub at_s: f64,
+    /// State of its mode then.
+    pub state: u8,
+    /// Its own speed then [m/s].
+    pub speed_m_s: f64,
+}
+
+/// What became of a seed's robots.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The seed.
+    pub seed: u64,
+    /// How many robots there were.
+    pub robots: usize,
+    /// How many of them arrived in time.
+    pub arrived: usize,
+    /// Fastest touch of the run [m/s]; 0 without one.
+    pub fastest_m_s: f64,
+    /// Touches, in order of robots.
+    pub touches: Vec<Touch>,
+}
+
+/// Runs a place with these seeds, on all cores; in order of seeds.
+///
+/// # Errors
+/// An arrangement that does not fit together.
+pub fn drive(
+    place: Place,
+    seeds: std::ops::Range<u64>,
+    overrides: &Overrides,
+) -> Result<Vec<Outcome>, FileError> {
+    seeds
+        .into_par_iter()
+        .map(|seed| {
+            let (scenario, world) = place.draw(seed);
+            let mut library = Library::new().holding(Kind::Scenario, "moving", &scenario);
+            if let Some(world) = world {
+                library = library.holding(Kind::World, "drawn", &world);
+            }
+            let result = run::run(&library.setup("moving", overrides)?, seed)?;
+            Ok(Outcome::of(seed, result))
+        })
+        .collect()
+}
+
+impl Outcome {
+    fn of(seed: u64, result: RunResult) -> Self {
+        let fastest_m_s = result.metrics.get("contact_speed_m_s").copied();
+        let alone = result.robots.is_empty();
+        let arrived = if alone { "reached" } else { "arrived" };
+        let arrived = result.metrics.get(arrived).copied().unwrap_or_default();
+        let robots = if alone { vec![result] } else { result.robots };
+        Self {
+            seed,
+            robots: robots.len(),
+            arrived: arrived as usize,
+            fastest_m_s: fastest_m_s.filter(|speed| speed.is_finite()).unwrap_or(0.0),
+            touches: robots.iter().enumerate().flat_map(touches).collect(),
+        }
+    }
+}
+
+fn touches((robot, result): (usize, &RunResult)) -> Vec<Touch> {
+    let trace = &result.trace;
+    let begins = trace.samples.windows(2).filter_map(|pair| match pair {
+        [before, now] if now.touching && !before.touching => Some((before, now)),
+        _ => None,
+    });
+    begins
+        .map(|(before, now)| {
+            let state = trace
+                .messages
+                .iter()
+                .rev()
+                .find_map(|message| match message.what {
+                    FromRobot::Telemetry(telemetry) if message.t_s <= now.t_s => {
+                        Some(telemetry.state)
+                    }
+                    _ => None,
+                });
+            let way_m = (now.x_m - before.x_m).hypot(now.y_m - before.y_m);
+            Touch {
+                robot,
+                at_s: now.t_s,
+                state: state.unwrap_or_default(),
+                speed_m_s: way_m / (now.t_s - before.t_s),
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_can_be_drawn_and_seeds_differ() {
+        for place in Place::ALL {
+            let drawn = [1, 2].map(|seed| place.draw(seed));
+            assert_eq!(drawn[0] == drawn[1], place == Place::Crossing, "{place}");
+            for (scenario, world) in drawn {
+                let library = Library::new()
+                    .holding(Kind::Scenario, "moving", &scenario)
+                    .holding(Kind::World, "drawn", &world.unwrap_or_default());
+                let setup = library.setup("moving", &Overrides::default()).unwrap();
+                let robots = if let Place::Room(robots) = place {
+                    robots
+                } else {
+                    1
+                };
+                assert_eq!(setup.robots().len(), robots);
+            }
+        }
+    }
+}
