@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use rumbo_log::{Burst, Entry, Log, LogWriter, Manifest, Names, ReadError, Said, Sent, Source};
-use std::io::Cursor;
+use std::io::{self, Cursor, Seek, SeekFrom, Write};
 
 type Writer = LogWriter<Cursor<Vec<u8>>>;
 
@@ -185,4 +185,59 @@ fn readings_are_read_as_they_were_recorded_ranges_without_an_echo_and_unknown_on
     assert_eq!(third.t_ms, 60);
     assert!(std::sync::Arc::ptr_eq(&first.names, &third.names));
     assert_eq!(log.duration_s(), 0.06);
+}
+
+/// Takes everything and keeps nothing.
+#[derive(Default)]
+struct Nowhere(u64);
+
+impl Write for Nowhere {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for Nowhere {
+    fn seek(&mut self, _: SeekFrom) -> io::Result<u64> {
+        Ok(self.0)
+    }
+}
+
+/// Of an hour's session, with the rates of the lab, flushed as the station does it.
+fn record_an_hour(log: &mut LogWriter<Nowhere>, from_us: u64) {
+    let mut names = Names::default();
+    for t_us in (from_us..from_us + 3_600_000_000).step_by(20_000) {
+        let t_ms = (t_us / 1_000) as i64;
+        log.record(&burst(t_us)).unwrap();
+        let signals = vec![("true_x_m".into(), 0.1)];
+        let reading = names.reading(t_ms, Source::Truth, signals);
+        log.record(&Entry::Readings(vec![reading])).unwrap();
+        if t_us % 200_000 == 0 {
+            log.record(&Entry::State(Box::default())).unwrap();
+        }
+        if t_us % 400_000 == 0 {
+            log.flush().unwrap();
+        }
+    }
+}
+
+#[test]
+fn an_hour_of_log_leaves_nothing_in_memory_but_its_index() {
+    let mut log = LogWriter::new(Nowhere::default(), &Manifest::default()).unwrap();
+    let hours = [0, 1].map(|hour| {
+        let from_us = hour * 3_600_000_000;
+        allocation_counter::measure(|| record_an_hour(&mut log, from_us))
+    });
+    const CHUNKS: i64 = 9_000;
+    for kept in hours {
+        // Of each chunk where its topics begin, and how it is compressed; the entries themselves are in a list, which has up
+        // to twice the room that it needs.
+        assert!(kept.count_current <= 2 * CHUNKS + 10, "{kept:?}");
+        assert!(kept.bytes_current < 350 * CHUNKS, "{kept:?}");
+    }
 }
