@@ -54,3 +54,28 @@ impl OrderSender {
         self.queue.try_send(order).map_err(|_| NotTaken)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stop_for_one_is_set_for_all_even_behind_a_full_queue() {
+        let sides = OrderSender::of(3);
+        let is_set =
+            |(_, orders): &(OrderSender, Orders)| orders.stop.swap(false, Ordering::SeqCst);
+        let (second, _) = &sides[1];
+        let arm = || Order::Robot(Command::Arm);
+        while second.send(arm()).is_ok() {}
+        assert_eq!(sides.iter().filter(|side| is_set(side)).count(), 0);
+        for (sender, _) in &sides {
+            // What finds no room in the queue is there all the same.
+            let _ = sender.send(Order::Robot(Command::Stop));
+            assert_eq!(sides.iter().filter(|side| is_set(side)).count(), 3);
+        }
+        // Other orders are that robot's alone.
+        let waiting = sides.iter().map(|(_, orders)| orders.queue.try_iter());
+        let arms = waiting.map(|orders| orders.filter(|order| *order == arm()).count());
+        assert_eq!(arms.collect::<Vec<_>>(), [0, WAITING, 0]);
+    }
+}

@@ -77,15 +77,20 @@ async fn a_client_does_not_keep_a_session_going() {
     assert!(client.order(ARM).is_err());
 }
 
-#[tokio::test]
-async fn each_of_several_robots_has_a_client_and_stop_for_one_stops_all() {
+/// The lab of two robots.
+fn two_robots() -> Lab {
     let config = LabConfig {
         at: ServeAt::here(0),
         ..LabConfig::default()
     };
     let robot = |name: &str| (name.to_owned(), Box::<Toy>::default() as _);
     let others = vec![robot("second")];
-    let lab = serve_fleet(config, robot("first"), others, Extras::default()).unwrap();
+    serve_fleet(config, robot("first"), others, Extras::default()).unwrap()
+}
+
+#[tokio::test]
+async fn each_of_several_robots_has_a_client_and_stop_for_one_stops_all() {
+    let lab = two_robots();
     let (names, mut clients): (Vec<_>, Vec<_>) = lab.clients().unwrap().into_iter().unzip();
     assert_eq!(names, ["first", "second"]);
     for client in &mut clients {
@@ -99,5 +104,34 @@ async fn each_of_several_robots_has_a_client_and_stop_for_one_stops_all() {
     clients[0].order(Order::Robot(Command::Stop)).unwrap();
     for client in &mut clients {
         wait_for_state(client, |state| !state.robot.armed).await;
+    }
+}
+
+#[tokio::test]
+async fn two_people_have_control_of_a_robot_each_and_stop_of_either_stops_both() {
+    let lab = two_robots();
+    let key = open(&lab);
+    let mut pages = Vec::new();
+    for robot in ["first", "second"] {
+        let mut page = connect_to(robot, &lab, &key).await;
+        wait_for(&mut page, |message| event(message, "connected")).await;
+        pages.push(page);
+    }
+    for stops in 0..2 {
+        for page in &mut pages {
+            say(page, json!({"type": "arm"})).await;
+            wait_for(page, |message| armed(message, true)).await;
+        }
+        // A third one has control of neither.
+        let mut guest = connect_to("second", &lab, &key).await;
+        say(&mut guest, json!({"type": "disarm"})).await;
+        wait_for(&mut guest, |message| {
+            event(message, "another page has control")
+        })
+        .await;
+        say(&mut pages[stops], json!({"type": "stop"})).await;
+        for page in &mut pages {
+            wait_for(page, |message| armed(message, false)).await;
+        }
     }
 }

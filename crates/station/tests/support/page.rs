@@ -83,9 +83,12 @@ pub(crate) type Page =
     tokio_tungstenite::WebSocketStream<tokio_tungstenite::MaybeTlsStream<tokio::net::TcpStream>>;
 
 pub(crate) async fn connect(lab: &Lab, key: &str, origin: Option<&str>) -> Result<Page, Error> {
-    let mut request = format!("ws://{}/ws", host(lab))
-        .into_client_request()
-        .unwrap();
+    connect_at("/ws", lab, key, origin).await
+}
+
+async fn connect_at(at: &str, lab: &Lab, key: &str, origin: Option<&str>) -> Result<Page, Error> {
+    let address = format!("ws://{}{at}", host(lab));
+    let mut request = address.into_client_request().unwrap();
     let protocols = HeaderValue::from_str(&format!("rumbo, {key}")).unwrap();
     let headers = request.headers_mut();
     headers.insert("Sec-WebSocket-Protocol", protocols);
@@ -100,6 +103,14 @@ pub(crate) async fn connect(lab: &Lab, key: &str, origin: Option<&str>) -> Resul
 pub(crate) async fn connect_own(lab: &Lab, key: &str) -> Page {
     let origin = format!("http://{}", host(lab));
     connect(lab, key, Some(&origin)).await.unwrap()
+}
+
+/// The page of one of several robots.
+#[allow(dead_code, reason = "not every test has several")]
+pub(crate) async fn connect_to(robot: &str, lab: &Lab, key: &str) -> Page {
+    let origin = format!("http://{}", host(lab));
+    let at = format!("/ws?robot={robot}");
+    connect_at(&at, lab, key, Some(&origin)).await.unwrap()
 }
 
 pub(crate) async fn say(page: &mut Page, order: Value) {
