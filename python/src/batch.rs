@@ -20,7 +20,7 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 /// Between two looks for Ctrl-C [ticks]: a second of simulated time.
 const STRIDE_TICKS: u32 = 100;
 /// An action: wheel speeds, left and right [rad/s], and where the servo points [rad].
-const ACTION: usize = 3;
+pub(crate) const ACTION: usize = 3;
 
 /// Robots of one setup.
 #[pyclass(frozen, module = "rumbo._rumbo")]
@@ -77,14 +77,9 @@ impl Batch {
     fn advance(&self, py: Python<'_>, ticks: u32) -> PyResult<()> {
         let mut held = self.lock()?;
         let robots = &mut *held;
-        let mut left = ticks;
-        while left > 0 {
-            let now = left.min(STRIDE_TICKS);
-            left -= now;
-            on_threads(py, self.count, self.threads, || robots.advance(now))?;
-            py.check_signals()?;
-        }
-        Ok(())
+        in_strides(py, ticks, |now| {
+            on_threads(py, self.count, self.threads, || robots.advance(now))
+        })
     }
 
     /// Writes what each robot's program knows, and ground truth: a row for each robot.
@@ -108,19 +103,12 @@ impl Batch {
         known: PyReadwriteArray2<'_, f32>,
         truth: PyReadwriteArray2<'_, f64>,
     ) -> PyResult<()> {
-        has_rows("actions", actions.shape(), self.count, ACTION)?;
-        if !actions.is_c_contiguous() || active.len() != self.count {
-            return Err(PyValueError::new_err(
-                "actions must be C-contiguous, and active must have a value for each robot",
-            ));
-        }
-        let (actions, active) = (actions.as_slice()?, active.as_slice()?);
-        check_actions(actions)?;
+        let (actions, active) = checked(&actions, &active, self.count)?;
         self.step(py, known, truth, ticks, |index, robot| {
             if active.get(index) != Some(&true) {
                 return false;
             }
-            if let Some([left, right, servo_rad]) = actions.as_chunks().0.get(index) {
+            if let Some([left, right, servo_rad]) = actions.get(index) {
                 let (left, right) = (*left, *right);
                 // In range: only a robot of another mode refuses it, and that one drives by its mode.
                 let _ = robot.command(&Command::WheelReference(Wheels { left, right }));
@@ -136,7 +124,8 @@ impl Batch {
         let robots = &mut *held;
         let mut chosen = vec![false; self.count];
         for index in indices {
-            *chosen.get_mut(index).ok_or_else(|| self.beyond(index))? = true;
+            let chosen = chosen.get_mut(index);
+            *chosen.ok_or_else(|| beyond(index, self.count))? = true;
         }
         on_threads(py, self.count, self.threads, || {
             robots.for_each(|index, robot| {
@@ -154,7 +143,7 @@ impl Batch {
     /// Puts new robots of these seeds in place of those of these numbers.
     fn renew(&self, py: Python<'_>, indices: Vec<usize>, seeds: Vec<u64>) -> PyResult<()> {
         if let Some(index) = indices.iter().find(|index| **index >= self.count) {
-            return Err(self.beyond(*index));
+            return Err(beyond(*index, self.count));
         }
         let mut held = self.lock()?;
         let robots = &mut *held;
@@ -172,7 +161,7 @@ impl Batch {
     /// Points the servo of one robot; `None` leaves it to the mode.
     fn aim(&self, index: usize, servo_rad: Option<f32>) -> PyResult<()> {
         if let Some(servo_rad) = servo_rad {
-            check_actions(&[0.0, 0.0, servo_rad])?;
+            check_actions(&[[0.0, 0.0, servo_rad]])?;
         }
         self.with(index, |robot| robot.aim(servo_rad.map(ServoAngle)))
     }
@@ -211,26 +200,13 @@ impl Batch {
 
 impl Batch {
     fn lock(&self) -> PyResult<MutexGuard<'_, Robots>> {
-        self.robots.try_lock().map_err(|error| {
-            PyRuntimeError::new_err(match error {
-                TryLockError::WouldBlock => {
-                    "another thread is stepping these robots; give each thread its own"
-                }
-                TryLockError::Poisoned(_) => {
-                    "an earlier step of these robots failed; make new ones"
-                }
-            })
-        })
-    }
-
-    fn beyond(&self, index: usize) -> PyErr {
-        PyIndexError::new_err(format!("robot {index}: there are {}", self.count))
+        hold(&self.robots)
     }
 
     fn with<T>(&self, index: usize, act: impl FnOnce(&mut Robot) -> T) -> PyResult<T> {
         let mut robots = self.lock()?;
         let robot = robots.robots_mut().get_mut(index);
-        robot.map(act).ok_or_else(|| self.beyond(index))
+        robot.map(act).ok_or_else(|| beyond(index, self.count))
     }
 
     fn step(
@@ -249,6 +225,55 @@ impl Batch {
             robots.step(known, truth, ticks, act);
         })
     }
+}
+
+/// Robots that only one thread steps at a time.
+pub(crate) fn hold<T>(robots: &Mutex<T>) -> PyResult<MutexGuard<'_, T>> {
+    robots.try_lock().map_err(|error| {
+        PyRuntimeError::new_err(match error {
+            TryLockError::WouldBlock => {
+                "another thread is stepping these robots; give each thread its own"
+            }
+            TryLockError::Poisoned(_) => "an earlier step of these robots failed; make new ones",
+        })
+    })
+}
+
+pub(crate) fn beyond(index: usize, count: usize) -> PyErr {
+    PyIndexError::new_err(format!("robot {index}: there are {count}"))
+}
+
+/// Advances by this many ticks, with a look for Ctrl-C in between.
+pub(crate) fn in_strides(
+    py: Python<'_>,
+    ticks: u32,
+    mut advance: impl FnMut(u32) -> PyResult<()>,
+) -> PyResult<()> {
+    let mut left = ticks;
+    while left > 0 {
+        let now = left.min(STRIDE_TICKS);
+        left -= now;
+        advance(now)?;
+        py.check_signals()?;
+    }
+    Ok(())
+}
+
+/// An action for each of so many robots, and whether it is given to it.
+pub(crate) fn checked<'a>(
+    actions: &'a PyReadonlyArray2<'_, f32>,
+    active: &'a PyReadonlyArray1<'_, bool>,
+    count: usize,
+) -> PyResult<(&'a [[f32; ACTION]], &'a [bool])> {
+    has_rows("actions", actions.shape(), count, ACTION)?;
+    if !actions.is_c_contiguous() || active.len() != count {
+        return Err(PyValueError::new_err(
+            "actions must be C-contiguous, and active must have a value for each robot",
+        ));
+    }
+    let actions = actions.as_slice()?.as_chunks().0;
+    check_actions(actions)?;
+    Ok((actions, active.as_slice()?))
 }
 
 /// Does the work on a pool of this many threads; for a single robot on this one.
@@ -290,7 +315,7 @@ pub(crate) fn rows<'a, T: numpy::Element>(
     Ok(array.as_slice_mut()?)
 }
 
-pub(crate) fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize) -> PyResult<()> {
+fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize) -> PyResult<()> {
     if shape == [rows, columns] {
         return Ok(());
     }
@@ -300,13 +325,13 @@ pub(crate) fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize)
 }
 
 /// Every number is one that the robot takes.
-pub(crate) fn check_actions(actions: &[f32]) -> PyResult<()> {
+fn check_actions(actions: &[[f32; ACTION]]) -> PyResult<()> {
     const LIMITS: [(&str, f32, &str); ACTION] = [
         ("left wheel speed", MAX_WHEEL_RAD_S, "rad/s"),
         ("right wheel speed", MAX_WHEEL_RAD_S, "rad/s"),
         ("servo angle", FRAC_PI_2, "rad"),
     ];
-    for (index, action) in actions.as_chunks::<ACTION>().0.iter().enumerate() {
+    for (index, action) in actions.iter().enumerate() {
         for (column, (value, (what, most, unit))) in action.iter().zip(LIMITS).enumerate() {
             if value.is_nan() || value.abs() > most {
                 return Err(PyValueError::new_err(format!(

@@ -1,21 +1,16 @@
 //! The robots of a scenario with several, in one world, stepped from Python: for `rumbo.Fleet` and the parallel environments.
 
-use crate::batch::{check_actions, corners, has_rows, rows};
+use crate::batch::{beyond, checked, corners, hold, in_strides, rows};
 use crate::guard::{detached, exception};
 use crate::setup::Setup;
-use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rumbo_control::mode::ModeId;
 use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Driver, OBSERVED, TRUE, Team};
 use rumbo_wire::Command;
-use std::sync::{Mutex, MutexGuard, TryLockError};
-
-/// Between two looks for Ctrl-C [ticks]: a second of simulated time.
-const STRIDE_TICKS: u32 = 100;
-/// An action: wheel speeds, left and right [rad/s], and where the servo points [rad].
-const ACTION: usize = 3;
+use std::sync::{Mutex, MutexGuard};
 
 /// Robots in one world.
 #[pyclass(frozen, module = "rumbo._rumbo")]
@@ -63,14 +58,7 @@ impl Fleet {
     fn advance(&self, py: Python<'_>, ticks: u32) -> PyResult<()> {
         let mut held = self.lock()?;
         let team = &mut *held;
-        let mut left = ticks;
-        while left > 0 {
-            let now = left.min(STRIDE_TICKS);
-            left -= now;
-            detached(py, || team.advance(now))?;
-            py.check_signals()?;
-        }
-        Ok(())
+        in_strides(py, ticks, |now| detached(py, || team.advance(now)))
     }
 
     /// Writes what each robot's program knows, and ground truth: a row for each robot.
@@ -94,17 +82,10 @@ impl Fleet {
         active: PyReadonlyArray1<'_, bool>,
         ticks: u32,
     ) -> PyResult<()> {
-        has_rows("actions", actions.shape(), self.names.len(), ACTION)?;
-        if !actions.is_c_contiguous() || active.len() != self.names.len() {
-            return Err(PyValueError::new_err(
-                "actions must be C-contiguous, and active must have a value for each robot",
-            ));
-        }
-        let (actions, active) = (actions.as_slice()?, active.as_slice()?);
-        check_actions(actions)?;
+        let (actions, active) = checked(&actions, &active, self.names.len())?;
         {
             let mut team = self.lock()?;
-            let rows = actions.as_chunks::<ACTION>().0.iter().zip(active);
+            let rows = actions.iter().zip(active);
             for (index, ([left, right, servo_rad], active)) in rows.enumerate() {
                 let (left, right) = (*left, *right);
                 let command = match active {
@@ -140,10 +121,7 @@ impl Fleet {
     /// The fault that one robot has latched, in words.
     fn fault(&self, index: usize) -> PyResult<Option<&'static str>> {
         if index >= self.names.len() {
-            return Err(PyIndexError::new_err(format!(
-                "robot {index}: there are {}",
-                self.names.len()
-            )));
+            return Err(beyond(index, self.names.len()));
         }
         Ok(self.lock()?.fault(index))
     }
@@ -151,15 +129,6 @@ impl Fleet {
 
 impl Fleet {
     fn lock(&self) -> PyResult<MutexGuard<'_, Team>> {
-        self.team.try_lock().map_err(|error| {
-            PyRuntimeError::new_err(match error {
-                TryLockError::WouldBlock => {
-                    "another thread is stepping these robots; give each thread its own"
-                }
-                TryLockError::Poisoned(_) => {
-                    "an earlier step of these robots failed; make new ones"
-                }
-            })
-        })
+        hold(&self.team)
     }
 }

@@ -17,7 +17,7 @@ pub use session::{Endpoint, Session};
 
 use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming, ServiceType};
 use crate::topics::Quality;
-use crate::types::{Definition, dds_type};
+use crate::types::Definition;
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -227,11 +227,7 @@ impl Bridge for Zenoh {
         of: &Definition,
         quality: Quality,
     ) -> Result<Channel, BridgeError> {
-        let subject = Subject {
-            name: name.to_owned(),
-            kind: dds_type(of.name, ""),
-            hash: of.hash(),
-        };
+        let subject = Subject::topic(name, of);
         self.add(Kind::Publisher, &subject, quality, |node, key, token| {
             let publisher = node.session.session.declare_publisher(key.clone());
             // Who reads too slowly loses messages, and is not waited for.
@@ -281,11 +277,7 @@ impl Bridge for Zenoh {
         of: &Definition,
         quality: Quality,
     ) -> Result<Channel, BridgeError> {
-        let subject = Subject {
-            name: name.to_owned(),
-            kind: dds_type(of.name, ""),
-            hash: of.hash(),
-        };
+        let subject = Subject::topic(name, of);
         let channel = self.carriers.len();
         self.add(Kind::Subscription, &subject, quality, |node, key, _| {
             let arrived: Arrived<Incoming> = Arc::default();
@@ -300,11 +292,7 @@ impl Bridge for Zenoh {
     }
 
     fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError> {
-        let subject = Subject {
-            name: name.to_owned(),
-            kind: dds_type(of.name, ""),
-            hash: of.hash.to_owned(),
-        };
+        let subject = Subject::service(name, of);
         self.add(Kind::Service, &subject, SERVICE, |node, key, _| {
             let arrived: Arrived<Query> = Arc::default();
             let into = Arc::clone(&arrived);

@@ -9,7 +9,9 @@
 //!
 //! A slash within a part is written `%`. Of the quality of service what is the default of `rmw_zenoh_cpp` is left out.
 
+use crate::bridge::ServiceType;
 use crate::topics::Quality;
+use crate::types::{Definition, dds_type};
 use twox_hash::XxHash3_128;
 
 /// What a token stands for.
@@ -50,6 +52,24 @@ pub(super) struct Subject {
 }
 
 impl Subject {
+    /// A topic.
+    pub(super) fn topic(name: &str, of: &Definition) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind: dds_type(of.name, ""),
+            hash: of.hash(),
+        }
+    }
+
+    /// A service.
+    pub(super) fn service(name: &str, of: ServiceType) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind: dds_type(of.name, ""),
+            hash: of.hash.to_owned(),
+        }
+    }
+
     /// The key of its data.
     pub(super) fn key(&self, domain: u16) -> String {
         let name = self.name.trim_start_matches('/');
