@@ -12,6 +12,7 @@
 //! `rmw_dds_common/msg/ParticipantEntitiesInfo`.
 
 mod domain;
+mod farewell;
 mod raw;
 
 pub use domain::Domain;
@@ -109,6 +110,8 @@ impl Dds {
 impl Drop for Dds {
     fn drop(&mut self) {
         self.domain.remove(&self.node);
+        // Before the domain, which may be left with it.
+        self.carriers.clear();
     }
 }
 

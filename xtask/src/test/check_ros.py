@@ -250,8 +250,11 @@ def check_two(peer, first, first_odometry):
     refused = peer.call("/rumbo/mode/manual")
     assert "disarm first" in refused.message, refused
     peer.must("/rumbo/stop")
+    assert len(peer.seen("/second/")) > 50
     second.end()
     wait_for("one node less", lambda: ("rumbo", "/second") not in peer.node.get_node_names_and_namespaces())
+    # Before the lease of its participant is over, which is longer than any patience here.
+    wait_for("its topics and services to be gone", lambda: not peer.seen("/second/"))
     assert ("rumbo", "/") in peer.node.get_node_names_and_namespaces()
     assert first.process.poll() is None
 

@@ -147,6 +147,13 @@ class Peer:
         self.node.create_subscription(kind, topic, received.append, quality)
         return received
 
+    def seen(self, where=""):
+        """The writers and readers of others, those of services too, of which the name has this in it."""
+        names = [name for name, _ in self.node.get_topic_names_and_types(no_demangle=True) if where in name]
+        infos = self.node.get_publishers_info_by_topic, self.node.get_subscriptions_info_by_topic
+        found = [each for name in names for info in infos for each in info(name, no_mangle=True)]
+        return [each for each in found if each.node_name != self.node.get_name()]
+
     def call(self, service):
         client = self.node.create_client(Trigger, service)
         assert client.wait_for_service(PATIENCE_S), service

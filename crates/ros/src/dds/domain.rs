@@ -2,6 +2,7 @@
 //!
 //! The nodes of several robots share the participant, as the nodes of one process do in ROS 2.
 
+use super::farewell::Farewell;
 use super::raw::{AsIs, Raw};
 use crate::bridge::{BridgeError, Reach};
 use crate::topics::Quality;
@@ -69,6 +70,8 @@ struct Graph {
     types: BTreeMap<String, String>,
     /// What is wrong with a topic and has not been said yet, by its name.
     troubles: BTreeMap<String, String>,
+    /// After the participant, which is in the listener.
+    _farewell: Farewell,
 }
 
 /// Namespace (`/`, or `/name`) and name of a node.
@@ -147,6 +150,11 @@ impl Domain {
             made: 0,
             types: BTreeMap::new(),
             troubles: BTreeMap::new(),
+            _farewell: Farewell {
+                participant: participant.guid(),
+                domain,
+                reach,
+            },
         };
         Ok(Self {
             subscriber: subscriber.map_err(|error| refused(&error))?,
@@ -167,7 +175,7 @@ impl Domain {
         graph.changed = true;
     }
 
-    /// Takes a node off the graph. Others forget one that says nothing after some seconds anyway.
+    /// Takes a node off the graph.
     pub(super) fn remove(&self, node: &NodeName) {
         let mut graph = self.graph();
         graph.nodes.remove(node);
