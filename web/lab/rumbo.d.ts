@@ -16,6 +16,8 @@ export class Lab {
   show(recording: Recording): void;
   /** Shows the lab again. */
   resume(): void;
+  /** Makes the page that of another robot in the world. */
+  select(robot: number): void;
   /** Warns the page. */
   warn(text: string): void;
   /** Takes an order, as JSON. */
@@ -24,6 +26,8 @@ export class Lab {
   advance(): void;
   /** The messages that are new to the page, as JSON. */
   news(): string[];
+  /** Gives its memory back. */
+  free(): void;
 }
 
 export class Robot {
@@ -78,8 +82,8 @@ export class Recording {
   constructor(file: string, bytes: Uint8Array);
 }
 
-/** The hash of a headless run, by the native program, or by an image if it is not empty. */
-export function run_hash(scenario: string, seed: number, image: Uint8Array): string;
+/** The hash of a headless run of a `Start` as JSON, by the native program, or by an image if it is not empty. */
+export function run_hash(start: string, image: Uint8Array): string;
 
 /** The names of the scenarios, in order. */
 export function scenarios(): string[];

@@ -6,7 +6,8 @@
  * Strings from the page are orders; null says that it has read what it was sent, and may be sent more: a slow page loses
  * samples of plots, and the session does not wait for it. 'save' asks for the recording, a file `{ name, bytes }`; such a
  * file from the page is shown as a replay, as 'replay' shows the recording, and 'resume' shows the lab again. 'share' asks
- * for the run as a link carries it, `{ shared }`. `{ connect }` begins a session with the robot at a port, `{ choose }`
+ * for the run as a link carries it, `{ shared }`. `{ open }` begins anew with what it gives, and with the rest as it is;
+ * `{ robot }` makes the page that of another robot in the world. `{ connect }` begins a session with the robot at a port, `{ choose }`
  * looks for it at another one, and 'leave' goes back to the lab; `{ port }` is the port's name or null, `{ back }` the
  * name when it is there again or null when it is gone, `{ refused }` why there is none. `{ flash }` writes a program to a board, `{ flashed }` says how far that is. To the page go arrays of the messages of the station's WebSocket, or `{ error }` when the session has ended.
  */
@@ -184,12 +185,28 @@ function askRobot(robot, data) {
   else session.warn('not while a real robot is driven: go back to the lab first');
 }
 
+/**
+ * Begins anew, as `changes` say; a scenario that is given comes with its own world and robots.
+ * @param {Lab} before @param {import('../src/run_link.js').Start} changes
+ */
+function begin(before, changes) {
+  const { file, edited, parameters } = JSON.parse(before.share());
+  try {
+    lab = new Lab(JSON.stringify(changes.file ? { parameters, ...changes } : { file, edited, parameters, ...changes }));
+    before.free();
+  } catch (error) {
+    before.warn(`${changes.scenario}: ${error}`);
+  }
+}
+
 /** What the page asks of the lab. @param {Lab} lab @param {any} data */
 function askLab(lab, data) {
   if (data === 'save') orWarn(lab, () => give(recorded(lab)));
   else if (data === 'replay') show(lab, recorded(lab));
   else if (data === 'resume') lab.resume();
   else if (data === 'share') self.postMessage({ shared: lab.share() });
+  else if (data.open) begin(lab, data.open);
+  else if ('robot' in Object(data)) lab.select(data.robot);
   else if (data.connect) connect(data.connect).catch(end);
   else if (data.flash) write(data.flash).catch(end);
   else if (data.bytes) show(lab, data);
@@ -217,6 +234,7 @@ async function open() {
   const { start, version } = readLink(location.search);
   try {
     if (start.edited) start.edited = await unpack(start.edited);
+    if (start.file) start.file = await unpack(start.file);
     const made = new Lab(JSON.stringify(start));
     if (version !== null && version !== made.version) made.warn(`the link is of version ${version}, this is ${made.version}: the run may differ`);
     return made;

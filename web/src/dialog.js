@@ -61,21 +61,21 @@ export function saveFile(name, content) {
 }
 
 /**
- * A button that opens a file of the reader's.
+ * A button that opens a file of the reader's, or several at once.
  * @param {string} text
  * @param {string} accept
- * @param {(file: File) => void} taken
+ * @param {(file: File, all: File[]) => void} taken
  */
-export function fileButton(text, accept, taken) {
-  const input = create('input', { type: 'file', accept, hidden: true });
+export function fileButton(text, accept, taken, multiple = false) {
+  const input = create('input', { type: 'file', accept, multiple, hidden: true });
   const button = create('button', { type: 'button', textContent: text });
   button.addEventListener('click', () => input.click());
   input.addEventListener('change', () => {
-    const file = input.files?.[0];
-    if (!file) return;
+    const files = [...input.files ?? []];
+    if (!files[0]) return;
     // The same file can be opened again.
     input.value = '';
-    taken(file);
+    taken(files[0], files);
   });
   return create('span', {}, button, input);
 }

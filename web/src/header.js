@@ -13,7 +13,7 @@ const SPEEDS = [0, 0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
 /** The scenario's own world or rig. */
 const OWN = '';
 /** The world that was edited here: `EDITED` of `crates/lab`. */
-const EDITED = 'edited';
+export const EDITED = 'edited';
 /** Without a message from the server for this long, the display is stale [ms]. */
 const STALE_MS = 1_500;
 

@@ -32,7 +32,7 @@ import { Recordings } from './recordings.js';
 import { ReplayBar } from './replay.js';
 import { ReportDialog } from './report_dialog.js';
 import { RobotPort } from './robot_port.js';
-import { offerRobots } from './robots.js';
+import { listen, offerRobots, openScenario } from './robots.js';
 import { Seat } from './seat.js';
 import { Share } from './share.js';
 import { isEmbedded, linkPages } from './site.js';
@@ -137,7 +137,8 @@ const events = new EventList((t_s) => {
   if (replay.shown) replay.seek(t_s);
 });
 const consoles = new Consoles(send, (usart) => store.readings.printedBy(usart).length > 0, (usart) => plots.showPrinted(usart));
-const program = new ProgramPanel(send, complain, showRecording);
+const program = new ProgramPanel(send, complain, showRecording, (files) => openScenario(files, askLab, complain));
+listen(askLab, () => simulated?.choice ?? null);
 /** The run that the consoles are of. @type {number | null} */
 let consoleRun = null;
 const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);

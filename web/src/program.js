@@ -41,12 +41,13 @@ export class ProgramPanel {
 
   /**
    * A sketch or an image that is dropped on the page runs, where there is an emulated Mega to run it. On the site a
-   * recording that is dropped is shown.
+   * recording that is dropped is shown, and a scenario begins.
    * @param {(order: import('./types.js').Order) => void} send
    * @param {(why: string) => void} complain
    * @param {(file: File) => void} showRecording
+   * @param {(files: File[]) => void} openScenario
    */
-  constructor(send, complain, showRecording) {
+  constructor(send, complain, showRecording, openScenario) {
     const carriesFile = (/** @type {DragEvent} */ event) => ((isSite && !document.body.classList.contains('at-port')) || !this.#panel.hidden) && event.dataTransfer?.types.includes('Files');
     const run = async (/** @type {File} */ file) => {
       if (file.size > LARGEST) complain(t('{}: not sent, a program has at most {} MB', file.name, LARGEST / 1e6));
@@ -56,10 +57,12 @@ export class ProgramPanel {
       if (carriesFile(event)) event.preventDefault();
     });
     addEventListener('drop', async (event) => {
-      const file = event.dataTransfer?.files[0];
+      const files = [...event.dataTransfer?.files ?? []];
+      const [file] = files;
       if (!file || !carriesFile(event)) return;
       event.preventDefault();
       if (isSite && /\.mcap$/i.test(file.name)) showRecording(file);
+      else if (isSite && /\.toml$/i.test(file.name)) openScenario(files);
       else await run(file);
     });
     if (!isSite) return;
@@ -67,7 +70,9 @@ export class ProgramPanel {
     // Fingers drop no files.
     const choose = fileButton(t('Run a program…'), '.elf,.hex', run);
     choose.title = t('Run a program for the Arduino Mega, .elf or .hex, on an emulated one');
-    this.#drop.before(choose);
+    const opens = fileButton(t('Open a scenario…'), '.toml', (_, files) => openScenario(files), true);
+    opens.title = t('Open the file of a scenario, and that of its world if it has one of its own');
+    this.#drop.before(choose, opens);
   }
 
   /** @param {State} state */

@@ -8,12 +8,14 @@
  * What runs, as the lab takes it: `Start` of `crates/browser`.
  * @typedef {object} Start
  * @property {string} [scenario]
- * @property {string} [world]
+ * @property {string} [file] The file of that scenario, if it is not built in, packed by `pack` in a link.
+ * @property {number} [robots] Copies of its robot.
+ * @property {string | null} [world]
  * @property {string} [edited] The file of an edited world, packed by `pack` in a link.
- * @property {string} [rig]
+ * @property {string | null} [rig]
  * @property {string} [robot]
  * @property {number} [seed]
- * @property {Record<string, number>} parameters
+ * @property {Record<string, number>} [parameters]
  * @property {string} [drive] Commands with their times.
  * @property {number} [until_s] The run was driven until then.
  * @property {string} [hash] Of the run until then.
@@ -22,8 +24,8 @@
 /** Some programs cut a longer address [characters]. */
 export const LONGEST = 2_048;
 
-const TEXTS = /** @type {const} */ (['scenario', 'world', 'edited', 'rig', 'robot', 'drive', 'hash']);
-const NUMBERS = /** @type {const} */ (['seed', 'until_s']);
+const TEXTS = /** @type {const} */ (['scenario', 'file', 'world', 'edited', 'rig', 'robot', 'drive', 'hash']);
+const NUMBERS = /** @type {const} */ (['robots', 'seed', 'until_s']);
 
 /** What a link says, and the version of Rumbo that made it. @param {string} text @returns {{start: Start, version: string | null}} */
 export function readLink(text) {
@@ -35,7 +37,7 @@ export function readLink(text) {
     return value;
   };
   const version = take('version') ?? null;
-  /** @type {Start} */
+  /** @type {Start & {parameters: Record<string, number>}} */
   const start = { parameters: {} };
   for (const name of TEXTS) {
     const value = take(name);
@@ -87,7 +89,7 @@ async function bytesOf(stream, most) {
   const all = [];
   const reader = stream.getReader();
   for (let read = await reader.read(); !read.done; read = await reader.read()) {
-    if (all.length + read.value.length > most) throw new Error('its world is too large');
+    if (all.length + read.value.length > most) throw new Error('a file in it is too large');
     for (const byte of read.value) all.push(byte);
   }
   return new Uint8Array(all);

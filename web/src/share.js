@@ -47,7 +47,7 @@ export class Share {
     this.#by_hand.addEventListener('change', () => this.#show());
     button.addEventListener('click', async () => {
       const shared = await ask();
-      this.#shared = { ...shared, edited: shared.edited && await pack(shared.edited) };
+      this.#shared = { ...shared, edited: shared.edited && await pack(shared.edited), file: shared.file && await pack(shared.file) };
       this.#show();
       this.#dialog.open();
       this.#link.select();
@@ -56,12 +56,12 @@ export class Share {
     addEventListener('hashchange', () => location.reload());
   }
 
-  /** A link without its world would open something else. */
+  /** A link without its files would open something else. */
   #refuse() {
     this.#row.hidden = true;
     this.#link.value = '';
     setText(this.#copied, '');
-    setText(this.#about, t('The edited world is too large for a link, which has at most 2 KB: save it as a file in the editor.'));
+    setText(this.#about, t('The edited world, or the scenario, is too large for a link, which has at most 2 KB: pass on its file.'));
   }
 
   #show() {
@@ -69,10 +69,11 @@ export class Share {
     const shared = this.#shared;
     if (!scene || !shared) return;
     const { robot } = readLink(location.hash).start;
-    const choice = shared.edited ? { ...scene.choice, world: null, edited: shared.edited, robot } : { ...scene.choice, robot };
+    const { edited, file } = shared;
+    const choice = { ...scene.choice, ...(edited ? { world: null, edited } : {}), file, robots: shared.robots > 1 ? shared.robots : null, robot };
     const changed = table.flatMap(({ name, value, default: usual }) => (value === null || value === usual ? [] : [[name, value]]));
     const setUp = writeLink(location.href, { ...choice, parameters: Object.fromEntries(changed) }, version);
-    if (shared.edited && setUp.length > LONGEST) return this.#refuse();
+    if ((edited || file) && setUp.length > LONGEST) return this.#refuse();
     const { drive, until_s, hash, parameters, changes } = shared;
     const driven = drive === null || changes === 0 ? null : writeLink(location.href, { ...choice, parameters, drive, until_s, hash }, version);
     const why = shared.why_not ?? (driven !== null && driven.length > LONGEST ? 'a link has at most 2 KB, this one would be longer' : null);

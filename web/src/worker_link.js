@@ -11,6 +11,8 @@ import { saveFile } from './dialog.js';
  * The run as a link carries it: `Shared` of `crates/browser`.
  * @typedef {object} Shared
  * @property {string | null} edited The file of the edited world in which it drives; `Share` packs it.
+ * @property {string | null} file The file of a scenario that is not built in; `Share` packs it.
+ * @property {number} robots Copies of the scenario's robot.
  * @property {Record<string, number>} parameters With which it began.
  * @property {string | null} drive The commands given by hand.
  * @property {string | null} why_not Why a link cannot repeat them.
@@ -76,8 +78,9 @@ export class WorkerLink {
 
   /**
    * Saves the recording of the run so far as a file; shows it as a replay; shows the lab again; leaves the real robot for
-   * the lab; drives a real robot; looks for it at another port; writes a program to a board.
-   * @param {'save' | 'replay' | 'resume' | 'leave' | {connect: import('./robot_port.js').Wanted} | {choose: string} | {flash: import('./flash_form.js').Program}} what
+   * the lab; begins anew; goes over to another robot in the world; drives a real robot; looks for it at another port;
+   * writes a program to a board.
+   * @param {'save' | 'replay' | 'resume' | 'leave' | {open: import('./run_link.js').Start} | {robot: number} | {connect: import('./robot_port.js').Wanted} | {choose: string} | {flash: import('./flash_form.js').Program}} what
    */
   ask(what) {
     this.#worker?.postMessage(what);

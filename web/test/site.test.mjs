@@ -14,6 +14,7 @@ import { open, skip } from './site.mjs';
 
 const SKETCH = join(process.env['SKETCHES'] ?? '', 'memoria-mode5.elf');
 const FIRMWARE = process.env['FIRMWARE'] ?? '';
+const [CORNERS = '', SQUARE = ''] = ['corners', 'square'].map((name) => new URL(`../../examples/fleet/${name}.toml`, import.meta.url).pathname);
 const SEEDS = 5;
 
 /** @type {Awaited<ReturnType<typeof open>>} */
@@ -233,24 +234,27 @@ test('a dropped image runs on an emulated Mega with its consoles', { skip: skip 
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('left_rpm').y.some((/** @type {number} */ rpm) => rpm > 40));
 });
 
-test('every scenario has the same bits as natively, and so has an image', { skip: skip || (process.env['HASHES'] ? false : 'HASHES names no program: `cargo build -p rumbo-tools --bin hashes`') }, async () => {
+test('every scenario has the same bits as natively, and so have several robots and an image', { skip: skip || (process.env['HASHES'] ? false : 'HASHES names no program: `cargo build -p rumbo-tools --bin hashes`') }, async () => {
   const images = [SKETCH, FIRMWARE].filter((path) => existsSync(path));
-  const native = spawnSync(process.env['HASHES'] ?? '', [String(SEEDS), ...images], { encoding: 'utf8' });
+  const native = spawnSync(process.env['HASHES'] ?? '', [String(SEEDS), CORNERS, ...images], { encoding: 'utf8' });
   assert.equal(native.status, 0, native.stderr);
   /** @type {Record<string, string[]>} */
   const expected = JSON.parse(native.stdout);
   const data = Object.fromEntries(images.map((path) => [path, readFileSync(path).toString('base64')]));
-  const found = await page.evaluate(async ({ names, data, seeds }) => {
+  // Of several robots, in files that are not built in.
+  const [file, edited] = [CORNERS, SQUARE].map((path) => readFileSync(path, 'utf8'));
+  const given = { [CORNERS]: { scenario: 'corners', file, edited } };
+  const found = await page.evaluate(async ({ names, data, given, seeds }) => {
     const { default: init, run_hash } = await import(new URL('lab/rumbo.js', location.href).href);
     await init();
     const hashes = (/** @type {string} */ name) => {
       const image = data[name];
       const bytes = Uint8Array.from(atob(image ?? ''), (each) => each.charCodeAt(0));
-      if (image) return [run_hash('mode5', 1, bytes)];
-      return Array.from({ length: seeds }, (_, index) => run_hash(name, index + 1, bytes));
+      if (image) return [run_hash(JSON.stringify({ scenario: 'mode5' }), bytes)];
+      return Array.from({ length: seeds }, (_, index) => run_hash(JSON.stringify({ scenario: name, ...given[name], seed: index + 1 }), bytes));
     };
     return Object.fromEntries(names.map((name) => [name, hashes(name)]));
-  }, { names: Object.keys(expected), data, seeds: SEEDS });
+  }, { names: Object.keys(expected), data, given, seeds: SEEDS });
   assert.ok(Object.keys(expected).length > 50);
   assert.deepEqual(found, expected);
 });

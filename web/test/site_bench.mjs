@@ -61,7 +61,7 @@ const share = (page) => page.evaluate(async () => {
 const headless = (page) => page.evaluate(async (seeds) => {
   const { default: init, run_hash, scenarios } = await import(new URL('lab/rumbo.js', location.href).href);
   await init();
-  for (const name of scenarios()) for (let seed = 1; seed <= seeds; seed++) run_hash(name, seed, new Uint8Array());
+  for (const name of scenarios()) for (let seed = 1; seed <= seeds; seed++) run_hash(JSON.stringify({ scenario: name, seed }), new Uint8Array());
 }, SEEDS);
 
 /** The same natively: time of the processor [s]. */
@@ -100,7 +100,7 @@ function busy() {
 const emulated = (page, image) => page.evaluate(async ({ scenario, data }) => {
   const { default: init, run_hash } = await import(new URL('lab/rumbo.js', location.href).href);
   await init();
-  run_hash(scenario, 1, Uint8Array.from(atob(data), (each) => each.charCodeAt(0)));
+  run_hash(JSON.stringify({ scenario }), Uint8Array.from(atob(data), (each) => each.charCodeAt(0)));
 }, { scenario: SCENARIO, data: image.toString('base64') });
 
 const made = folder();

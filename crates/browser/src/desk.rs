@@ -1,12 +1,13 @@
 //! A session and the one page that it has: orders in, messages out, and the recording of the run.
 
 use crate::drive::Change;
-use crate::recording::Recording;
+use crate::recording::{ROOM, Recording};
 use rumbo_log::{Level, LoggedEvent, Manifest};
 use rumbo_session::{
     Board, Cursor, Driver, Event, Extras, Host, Lease, Order, PageId, Target, ToPage, View,
 };
 use rumbo_wire::Command;
+use std::rc::Rc;
 
 /// Longest time spent on one round of slices, so that orders do not wait \[us\].
 pub(crate) const ROUND_US: u64 = 20_000;
@@ -24,6 +25,8 @@ pub(crate) struct Page {
     pub(crate) unlike: Option<&'static str>,
     /// The recording has just run out of room.
     pub(crate) full: bool,
+    /// Room for a recording \[bytes\].
+    room: usize,
     /// Numbers of sessions.
     ids: fn() -> u8,
 }
@@ -54,14 +57,22 @@ impl Host for Page {
             (_, Some(_)) => Some("the robot began with parameters that are saved on it"),
             _ => None,
         };
-        self.recording = Some(Recording::new(manifest, self.day_ms));
+        self.recording = Some(Recording::new(manifest, self.day_ms, self.room));
         None
     }
 }
 
+/// What a session's page is told first: the robots in its world, if there are several, and which of them it is of.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Place {
+    pub(crate) robots: Rc<[String]>,
+    pub(crate) own: usize,
+}
+
 /// A session with its page.
-pub(crate) struct Desk<T: Target> {
+pub(crate) struct Desk<T: Target + ?Sized> {
     pub(crate) driver: Driver<Page, T>,
+    place: Place,
     /// Orders since the last round.
     waiting: Vec<Order>,
     lease: Lease,
@@ -74,11 +85,12 @@ pub(crate) struct Desk<T: Target> {
     warnings: Vec<String>,
 }
 
-impl<T: Target> Desk<T> {
+impl<T: Target + ?Sized> Desk<T> {
     /// A session in real time that has begun; `day_ms` is the time of day \[ms since 1970\], `wall_us` the wall clock,
     /// and `ids` gives the numbers of its sessions with the robot.
     pub(crate) fn new(
-        target: T,
+        target: Box<T>,
+        place: Place,
         extras: Extras,
         ids: fn() -> u8,
         wall_us: u64,
@@ -91,13 +103,15 @@ impl<T: Target> Desk<T> {
             changes: Vec::new(),
             unlike: None,
             full: false,
+            room: ROOM / place.robots.len().max(1),
             ids,
         };
-        let mut driver = Driver::new(Box::new(target), page, 1.0, extras);
+        let mut driver = Driver::new(target, page, 1.0, extras);
         driver.begin(wall_us);
         let mut lease = Lease::default();
         Self {
             driver,
+            place,
             waiting: Vec::new(),
             // The first page is always admitted.
             page: lease.join(true).unwrap_or_default(),
@@ -152,7 +166,7 @@ impl<T: Target> Desk<T> {
     pub(crate) fn news(&mut self, shown: Option<&Board>) -> Vec<String> {
         let mut messages = Vec::new();
         if !std::mem::replace(&mut self.greeted, true) {
-            messages.extend(ToPage::hello(&[], 0).json());
+            messages.extend(ToPage::hello(&self.place.robots, self.place.own).json());
         }
         let view = self.lease.view(self.page);
         if self.seat.replace(view) != Some(view) {

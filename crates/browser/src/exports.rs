@@ -1,8 +1,9 @@
 //! What JavaScript sees of it.
 
-use crate::lab::{Lab as Inner, Start};
+use crate::lab::Lab as Inner;
 use crate::robot::Robot as Real;
 use crate::showing::Showing;
+use crate::start::Start;
 use rumbo_flash::{Action, Programmer};
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -82,6 +83,11 @@ impl Lab {
     /// Shows the lab again.
     pub fn resume(&mut self) {
         self.0.show(None);
+    }
+
+    /// Makes the page that of another robot in the world.
+    pub fn select(&mut self, robot: usize) {
+        self.0.select(robot);
     }
 
     /// Warns the page.
@@ -259,11 +265,15 @@ pub struct LogFile {
     pub bytes: Vec<u8>,
 }
 
-/// The hash of a headless run as 16 hexadecimal digits, by the native program, or by an image if it is not empty.
+/// The hash of a headless run as 16 hexadecimal digits: of a [`Start`] as JSON, by the native program, or by an image if
+/// it is not empty.
 #[wasm_bindgen]
-pub fn run_hash(scenario: &str, seed: u32, image: &[u8]) -> Result<String, String> {
+pub fn run_hash(start: &str, image: &[u8]) -> Result<String, String> {
+    let start: Start = serde_json::from_str(start).map_err(|error| error.to_string())?;
     let image = (!image.is_empty()).then_some(("image", image));
-    let hash = rumbo_lab::run_hash(scenario, seed.into(), image);
+    let hash = start
+        .setup()
+        .and_then(|setup| rumbo_lab::run_hash(setup, start.seed, image));
     hash.map(|hash| format!("{hash:016x}"))
         .map_err(|error| error.to_string())
 }

@@ -1,7 +1,7 @@
 //! A link that drives: the orders in it, each given at its time, and whether the run is the one that was shared.
 
 use crate::drive::{self, MOST};
-use crate::lab::Start;
+use crate::start::Start;
 use rumbo_log::Level;
 use rumbo_session::{Order, WorldAct, WorldOrder};
 use std::collections::VecDeque;

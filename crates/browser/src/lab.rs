@@ -1,52 +1,33 @@
-//! A session with a simulated robot, and the one page that it has.
+//! The sessions with simulated robots, one or several in one world, and the one page that they have.
 
-use crate::desk::{Desk, ROUND_US};
+use crate::desk::{Desk, Place, ROUND_US};
 use crate::drive;
 use crate::following::{Following, is_by_hand};
 use crate::showing::Showing;
-use rumbo_experiment::files::{FileError, Overrides};
-use rumbo_lab::SimulatedRobot;
-use rumbo_log::{Choice, Level, WriteError};
-use rumbo_session::{Extras, Order, TargetError, stop_first};
+use crate::start::Start;
+use rumbo_experiment::files::FileError;
+use rumbo_lab::edited_world;
+use rumbo_log::{Level, WriteError};
+use rumbo_session::{Extras, Order, Target, TargetError, stop_first};
 use rumbo_wire::Command;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
+const STOP: Order = Order::Robot(Command::Stop);
 /// The session's number. The robot begins anew with each run, so none is left of another session, and the same orders
 /// make the same bytes.
 const SESSION: u8 = 1;
-
-/// What runs when the page is opened: as its address says, or else the first scenario.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(default, deny_unknown_fields)]
-pub struct Start {
-    /// The scenario's name.
-    pub scenario: String,
-    /// Another world than the scenario's.
-    pub world: Option<String>,
-    /// The file of an edited world, in place of `world`.
-    pub edited: Option<String>,
-    /// Other sonars than the scenario's.
-    pub rig: Option<String>,
-    /// Another robot than the scenario's.
-    pub robot: Option<String>,
-    /// Draws the robot and its noise.
-    pub seed: u64,
-    /// Values of parameters by name, which hold in every run of the page.
-    pub parameters: BTreeMap<String, f64>,
-    /// Commands to repeat in the first run, as [`Shared::drive`].
-    pub drive: Option<String>,
-    /// Until then it was driven \[s\].
-    pub until_s: Option<f64>,
-    /// What the run until then was, as [`Shared::hash`].
-    pub hash: Option<String>,
-}
 
 /// The run as a link carries it: what the page does not know of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shared {
     /// The file of the edited world in which it drives.
     pub edited: Option<String>,
+    /// The file of the scenario, if it is not built in.
+    pub file: Option<String>,
+    /// Copies of the scenario's robot.
+    pub robots: usize,
     /// With which it began, besides the scenario's.
     pub parameters: BTreeMap<String, f64>,
     /// The commands given by hand since, with their times; `None`: a link cannot repeat them.
@@ -61,27 +42,17 @@ pub struct Shared {
     pub hash: Option<String>,
 }
 
-impl Default for Start {
-    fn default() -> Self {
-        Self {
-            scenario: "mode1".into(),
-            world: None,
-            edited: None,
-            rig: None,
-            robot: None,
-            seed: 1,
-            parameters: BTreeMap::new(),
-            drive: None,
-            until_s: None,
-            hash: None,
-        }
-    }
-}
-
 /// The lab of one page.
 pub struct Lab {
-    desk: Desk<SimulatedRobot>,
-    /// Those of the page's address.
+    /// That of the first robot, which has the time.
+    first: Desk<dyn Target>,
+    /// Those of the others in its world.
+    others: Vec<Desk<dyn Target>>,
+    /// Of which robot the page is.
+    own: usize,
+    /// What the page began with: a scenario that is not built in, by its name, copies of its robot, and parameters.
+    file: Option<(String, String)>,
+    robots: usize,
     parameters: BTreeMap<String, f64>,
     /// A link that still drives.
     following: Option<Following>,
@@ -96,55 +67,73 @@ impl Lab {
     /// No such scenario, world, rig, robot or parameter, or a value out of its range.
     pub fn new(start: Start, day_ms: f64) -> Result<Self, FileError> {
         let following = Following::of(&start);
-        let choice = Choice {
-            scenario: start.scenario,
-            world: start.world,
-            rig: start.rig,
-            seed: start.seed,
-        };
-        let overrides = Overrides {
-            robot: start.robot,
-            parameters: start.parameters.clone().into_iter().collect(),
-            ..Overrides::default()
-        };
-        let robot = match &start.edited {
-            Some(text) => SimulatedRobot::in_world(text, overrides, choice)?,
-            None => SimulatedRobot::new(overrides, choice)?,
-        };
+        let targets = start.targets()?;
+        let several = targets.len() > 1;
+        let names = targets.iter().filter(|_| several);
+        let names: Rc<[String]> = names.map(|(name, _)| name.clone()).collect();
         let extras = Extras {
             calibration: Some(rumbo_lab::calibration),
             ..Extras::default()
         };
-        let mut desk = Desk::new(robot, extras, || SESSION, 0, day_ms);
+        let mut desks = targets.into_iter().enumerate().map(|(own, (_, target))| {
+            let robots = Rc::clone(&names);
+            Desk::new(target, Place { robots, own }, extras, || SESSION, 0, day_ms)
+        });
+        let none = || FileError::Setting("there is no robot".into());
+        let mut first = desks.next().ok_or_else(none)?;
         let mut following = following.unwrap_or_else(|why| {
-            desk.warn(why);
+            first.warn(why);
             None
         });
         for (level, text) in following.iter_mut().flat_map(|link| link.notes.drain(..)) {
-            desk.driver.note(level, text, 0);
+            first.driver.note(level, text, 0);
         }
         Ok(Self {
-            desk,
+            first,
+            others: desks.collect(),
+            own: 0,
+            file: start.file.map(|text| (start.scenario, text)),
+            robots: start.robots,
             parameters: start.parameters,
             following,
             showing: None,
         })
     }
 
-    /// Takes an order of the page, to be executed in the next round; what is refused is reported with the next news.
-    pub fn order(&mut self, json: &str) {
-        self.desk.order(json);
+    /// That of the page.
+    fn desk(&mut self) -> &mut Desk<dyn Target> {
+        match self.own {
+            0 => &mut self.first,
+            other => &mut self.others[other - 1],
+        }
     }
 
-    /// Shows a recording, or `None`: the lab again, whose robot waits meanwhile. To the page it is a new connection.
+    fn desks(&mut self) -> impl Iterator<Item = &mut Desk<dyn Target>> {
+        std::iter::once(&mut self.first).chain(&mut self.others)
+    }
+
+    /// Makes the page that of another robot: to the page it is a new connection.
+    pub fn select(&mut self, robot: usize) {
+        if robot <= self.others.len() {
+            self.own = robot;
+            self.show(None);
+        }
+    }
+
+    /// Takes an order of the page, to be executed in the next round; what is refused is reported with the next news.
+    pub fn order(&mut self, json: &str) {
+        self.desk().order(json);
+    }
+
+    /// Shows a recording, or `None`: the lab again, whose robots wait meanwhile. To the page it is a new connection.
     pub fn show(&mut self, recording: Option<Showing>) {
         self.showing = recording.map(Box::new);
-        self.desk.begin_again();
+        self.desk().begin_again();
     }
 
     /// Warns the page, with the next news.
     pub fn warn(&mut self, text: String) {
-        self.desk.warn(text);
+        self.desk().warn(text);
     }
 
     /// Executes the orders, STOP first, and advances the robot by the time due: one round, which ends early rather than
@@ -154,87 +143,110 @@ impl Lab {
     /// The robot is gone for good, which no simulated one is.
     pub fn advance(&mut self, wall_us: impl Fn() -> u64, day_ms: f64) -> Result<(), TargetError> {
         let began_us = wall_us();
-        self.desk.driver.host().day_ms = day_ms;
-        let waiting = self.desk.take_orders();
+        let mut waiting = Vec::new();
+        for desk in self.desks() {
+            desk.driver.host().day_ms = day_ms;
+            waiting.push(desk.take_orders());
+        }
         if let Some(showing) = &mut self.showing {
-            showing.advance(&waiting, began_us, day_ms);
+            showing.advance(&waiting[self.own], began_us, day_ms);
             return Ok(());
         }
-        self.take_over(&waiting, began_us);
-        let stop = waiting.contains(&Order::Robot(Command::Stop));
-        self.desk.driver.obey(stop_first(waiting, stop), began_us)?;
-        self.desk.driver.wall_passed(began_us);
+        self.take_over(&waiting[0], began_us);
+        let stop = waiting.iter().flatten().any(|order| *order == STOP);
+        for (desk, orders) in self.desks().zip(waiting) {
+            desk.driver.obey(stop_first(orders, stop), began_us)?;
+        }
+        for other in &mut self.others {
+            other.driver.follow(&self.first.driver);
+        }
+        self.first.driver.wall_passed(began_us);
         let mut now_us = began_us;
         loop {
             self.follow(now_us)?;
-            if now_us >= began_us + ROUND_US || !self.desk.driver.slice(now_us)? {
+            if now_us >= began_us + ROUND_US || !self.first.driver.slice(now_us)? {
                 break;
+            }
+            for other in &mut self.others {
+                other.driver.step(now_us)?;
             }
             now_us = wall_us();
         }
-        self.desk.driver.update(now_us);
-        self.end_following(now_us);
-        if std::mem::take(&mut self.desk.driver.host().full) {
-            self.warn("the recording is full: save it, and reset for another one".into());
+        for desk in self.desks() {
+            desk.driver.update(now_us);
+            if std::mem::take(&mut desk.driver.host().full) {
+                desk.warn("the recording is full: save it, and reset for another one".into());
+            }
         }
+        self.end_following(now_us);
         Ok(())
     }
 
     /// An order given by hand ends what a link repeats; of a calibration no link has anything.
     fn take_over(&mut self, orders: &[Order], wall_us: u64) {
         if orders.contains(&Order::Calibrate) {
-            self.desk.driver.host().unlike = Some("a calibration is not in a link");
+            self.first.driver.host().unlike = Some("a calibration is not in a link");
         }
         if orders
             .iter()
             .any(|order| matches!(order, Order::Velocity(_)))
         {
-            self.desk.driver.host().unlike = Some("velocities, many a second, are not in a link");
+            self.first.driver.host().unlike = Some("velocities, many a second, are not in a link");
         }
         if orders.iter().any(is_by_hand) && self.following.take().is_some() {
             let text = "the link drives no further: an order was given here";
-            self.desk.driver.note(Level::Info, text.into(), wall_us);
+            self.first.driver.note(Level::Info, text.into(), wall_us);
         }
     }
 
     /// Gives the orders of a link that are due.
     fn follow(&mut self, wall_us: u64) -> Result<(), TargetError> {
-        let target_us = self.desk.driver.target_us();
+        let target_us = self.first.driver.target_us();
         while let Some(order) = self
             .following
             .as_mut()
             .and_then(|link| link.next(target_us))
         {
-            self.desk.driver.obey([order], wall_us)?;
+            self.first.driver.obey([order], wall_us)?;
         }
         Ok(())
     }
 
     /// At its end, compares the run with that of the link.
     fn end_following(&mut self, wall_us: u64) {
-        let target_us = self.desk.driver.target_us();
+        let target_us = self.first.driver.target_us();
         let over = |following: &mut Following| target_us >= following.until_us;
         if let Some(following) = self.following.take_if(over) {
             let hash = self.hash(following.until_us);
             let (level, text) = following.verdict(hash);
-            self.desk.driver.note(level, text, wall_us);
+            self.first.driver.note(level, text, wall_us);
         }
     }
 
     fn hash(&mut self, until_us: u64) -> Option<String> {
-        let recording = self.desk.recording();
+        let recording = self.first.recording();
         recording.and_then(|recording| recording.hash(until_us))
     }
 
     /// The run so far, for a link.
     pub fn share(&mut self) -> Shared {
-        let until_us = self.desk.driver.target_us();
+        let until_us = self.first.driver.target_us();
         let hash = self.hash(until_us);
-        let edited = self.desk.driver.target().edited_world().map(str::to_owned);
-        let page = self.desk.driver.host();
+        let several = !self.others.is_empty();
+        let recording = self.first.recording();
+        let edited = recording.and_then(|recording| edited_world(&recording.manifest));
+        let edited = edited.map(str::to_owned);
+        let scenario = recording.and_then(|recording| recording.manifest.scenario.as_ref());
+        let file = self
+            .file
+            .as_ref()
+            .filter(|(name, _)| Some(name) == scenario);
+        let file = file.map(|(_, text)| text.clone());
+        let page = self.first.driver.host();
         let changes = page.changes.len();
         let why_not = match page.unlike {
             Some(why) => Some(why.into()),
+            None if several => Some("there are several robots".into()),
             None if changes > drive::MOST => Some(format!(
                 "a link has at most {} changes of commands, this run has {changes}",
                 drive::MOST
@@ -248,13 +260,15 @@ impl Lab {
             until_s: until_us as f64 / 1e6,
             hash,
             edited,
+            file,
+            robots: self.robots,
             parameters: self.parameters.clone(),
         }
     }
 
     /// When the run began: time of day \[ms since 1970\].
     pub fn began_ms(&mut self) -> f64 {
-        let recording = self.desk.recording();
+        let recording = self.desk().recording();
         recording.map_or(0.0, |recording| recording.began_ms)
     }
 
@@ -263,7 +277,7 @@ impl Lab {
     /// # Errors
     /// Why it cannot be written.
     pub fn log(&mut self, started: String) -> Result<(String, Vec<u8>), WriteError> {
-        match self.desk.recording() {
+        match self.desk().recording() {
             Some(recording) => recording.log(started),
             None => Ok(Default::default()),
         }
@@ -272,6 +286,10 @@ impl Lab {
     /// What is new to the page, as JSON.
     pub fn news(&mut self) -> Vec<String> {
         let shown = self.showing.as_ref().map(|showing| &showing.board);
-        self.desk.news(shown)
+        let desk = match self.own {
+            0 => &mut self.first,
+            other => &mut self.others[other - 1],
+        };
+        desk.news(shown)
     }
 }

@@ -15,8 +15,10 @@ mod recording;
 mod robot;
 mod serial_port;
 mod showing;
+mod start;
 
 pub use flasher::programmer;
-pub use lab::{Lab, Shared, Start};
+pub use lab::{Lab, Shared};
 pub use robot::Robot;
 pub use showing::Showing;
+pub use start::Start;

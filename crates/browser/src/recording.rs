@@ -4,8 +4,8 @@ use rumbo_log::{Entry, LogWriter, Manifest, Row, WriteError};
 use std::io::Cursor;
 use std::sync::Arc;
 
-/// Room for a recording in memory \[bytes\]: some hours of driving.
-const ROOM: usize = 200 << 20;
+/// Room for recordings in memory \[bytes\]: some hours of driving of one robot.
+pub(crate) const ROOM: usize = 200 << 20;
 /// About what an entry takes besides its bytes or rows \[bytes\].
 const ENTRY: usize = 500;
 
@@ -14,16 +14,18 @@ pub(crate) const SOME: usize = 20;
 
 /// What has happened since the run began.
 pub(crate) struct Recording {
-    manifest: Manifest,
+    pub(crate) manifest: Manifest,
     /// Time of day when the run began \[ms since 1970\].
     pub(crate) began_ms: f64,
     entries: Vec<Arc<Entry>>,
     bytes: usize,
+    room: usize,
 }
 
 impl Recording {
-    pub(crate) fn new(manifest: Manifest, began_ms: f64) -> Self {
+    pub(crate) fn new(manifest: Manifest, began_ms: f64, room: usize) -> Self {
         Self {
+            room,
             manifest,
             began_ms,
             entries: Vec::new(),
@@ -33,18 +35,19 @@ impl Recording {
 
     /// Keeps an entry, while there is room; false when it has just run out.
     pub(crate) fn keep(&mut self, entry: &Arc<Entry>) -> bool {
-        if self.bytes >= ROOM {
+        if self.bytes >= self.room {
             return true;
         }
         self.bytes += ENTRY + size_of_content(entry);
         self.entries.push(Arc::clone(entry));
-        self.bytes < ROOM
+        self.bytes < self.room
     }
 
     /// The run up to this time of the target in one number; `None` where not all of it is kept.
     pub(crate) fn hash(&self, until_us: u64) -> Option<String> {
         let entries = self.entries.iter().map(AsRef::as_ref);
-        (self.bytes < ROOM).then(|| format!("{:016x}", rumbo_lab::recorded_hash(entries, until_us)))
+        (self.bytes < self.room)
+            .then(|| format!("{:016x}", rumbo_lab::recorded_hash(entries, until_us)))
     }
 
     /// The name of a file for it, and the file; `started` is when the run began, as in a manifest.

@@ -1,6 +1,6 @@
 //! A session with a real robot, and the one page that it has.
 
-use crate::desk::{Desk, ROUND_US};
+use crate::desk::{Desk, Place, ROUND_US};
 use crate::recording::{SOME, Saving};
 use crate::serial_port::SerialPort;
 use rumbo_log::{Level, WriteError};
@@ -38,8 +38,8 @@ impl Robot {
             text,
             calibration: Some(rumbo_lab::calibration),
         };
-        let port = SerialPort::new(port, baud);
-        let mut desk = Desk::new(port, extras, ids, wall_us, day_ms);
+        let port = Box::new(SerialPort::new(port, baud));
+        let mut desk = Desk::new(port, Place::default(), extras, ids, wall_us, day_ms);
         if let Some(warning) = warning {
             desk.driver.note(Level::Warning, warning, wall_us);
         }

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::logs;
 use crate::output;
 use crate::workshop::{self, Workshop};
-use rumbo_experiment::files::{Kind, Library, Overrides, ScenarioFile, fleet_around};
+use rumbo_experiment::files::{Kind, Library, Overrides, ScenarioFile};
 use rumbo_lab::{OwnProgram, SimulatedRobot};
 use rumbo_log::Choice;
 use rumbo_sim::debugging::Debugging;
@@ -111,27 +111,15 @@ fn served_fleet(
         rig: args.setting.rig.clone(),
         seed: args.seed.seed,
     };
+    if args.robots > 1 && !scenario.fleet.is_empty() {
+        return Err(Failure::Input(format!(
+            "--robots {}: scenario {} has robots of its own; leave --robots out",
+            args.robots, scenario.name
+        )));
+    }
     let library = Library::new().beside(&args.scenario);
-    let text = match scenario.fleet.len() {
-        0 => {
-            let chosen = Overrides {
-                world: choice.world.clone(),
-                rig: choice.rig.clone(),
-                ..overrides.clone()
-            };
-            let setup = Library::new().setup(&args.scenario, &chosen)?;
-            scenario.text.clone() + &fleet_around(&setup, args.robots.into())?
-        }
-        _ if args.robots > 1 => {
-            return Err(Failure::Input(format!(
-                "--robots {}: scenario {} has robots of its own; leave --robots out",
-                args.robots, scenario.name
-            )));
-        }
-        _ => scenario.text.clone(),
-    };
-    let library = library.holding(Kind::Scenario, &scenario.name, &text);
-    let robots = rumbo_lab::fleet(library, overrides, &choice)?;
+    let library = library.holding(Kind::Scenario, &scenario.name, &scenario.text);
+    let robots = rumbo_lab::fleet(library, overrides, &choice, args.robots.into())?;
     let mut robots = robots
         .into_iter()
         .map(|robot| -> Named { (robot.name(), Box::new(robot)) });

@@ -2,10 +2,10 @@
 //!
 //! They share the simulation. The first one's session has the time, and starts all of them again; the others go with it.
 
-use crate::prepare::{Prepared, prepare_fleet};
+use crate::prepare::{Prepared, chosen, prepare_fleet};
 use crate::robot::type_to;
 use crate::sight;
-use rumbo_experiment::files::{FileError, Library, Overrides};
+use rumbo_experiment::files::{FileError, Kind, Library, Overrides, fleet_around};
 use rumbo_log::{Choice, Manifest, Other, Scene, Source, Truth};
 use rumbo_session::{Abilities, LinkNews, Shown, Target, TargetError};
 use rumbo_sim::Sim;
@@ -44,15 +44,18 @@ struct About {
     manifest: Manifest,
 }
 
-/// The robots of a scenario with several, at their start, in order.
+/// The robots of a scenario with several, at their start, in order; or as many copies of the robot of another one as
+/// asked for.
 ///
 /// # Errors
-/// The problems of the files that overrides and choice name.
+/// The problems of the files that overrides and choice name; copies of robots that are several already.
 pub fn fleet(
     library: Library,
     overrides: Overrides,
     choice: &Choice,
+    robots: usize,
 ) -> Result<Vec<FleetRobot>, FileError> {
+    let library = with_copies(library, &overrides, choice, robots)?;
     let (fleet, robots) = begin(&library, &overrides, choice, &[])?;
     let count = robots.len();
     let world = Arc::new(Mutex::new(World {
@@ -70,6 +73,28 @@ pub fn fleet(
         ended: false,
     };
     Ok((0..count).map(robot).collect())
+}
+
+/// The library with the scenario of the choice as one of so many robots, unless it has robots of its own.
+fn with_copies(
+    library: Library,
+    overrides: &Overrides,
+    choice: &Choice,
+    robots: usize,
+) -> Result<Library, FileError> {
+    let scenario = library.scenario(&choice.scenario)?;
+    match scenario.fleet.len() {
+        0 => {
+            let setup = library.setup(&choice.scenario, &chosen(overrides, choice))?;
+            let text = scenario.text + &fleet_around(&setup, robots)?;
+            Ok(library.holding(Kind::Scenario, &choice.scenario, &text))
+        }
+        _ if robots > 1 => Err(FileError::Setting(format!(
+            "{robots} robots: scenario {} has robots of its own; leave their number out",
+            scenario.name
+        ))),
+        _ => Ok(library),
+    }
 }
 
 fn begin(

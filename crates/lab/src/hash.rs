@@ -1,20 +1,24 @@
 //! A run in one number: equal numbers are equal runs, to the last bit, on any machine.
 
 use crate::program::Held;
-use rumbo_experiment::files::{FileError, Library, Overrides};
+use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_log::{Entry, Row};
 use rumbo_sim::trace::Sample;
 
 const CRC: crc::Crc<u64> = crc::Crc::<u64>::new(&crc::CRC_64_XZ);
 
-/// Runs a scenario of ours with a seed, by the native program or an image (name and bytes of its file), as fast as it
-/// goes. Returns the CRC-64 of its ground truth, of all bytes on the link and the USARTs, and of its metrics.
+/// Runs a setup with a seed, by the native program or an image (name and bytes of its file), as fast as it
+/// goes. Returns the CRC-64 of the ground truth, of all bytes on the link and the USARTs of each robot, and of the
+/// metrics.
 ///
 /// # Errors
-/// No such scenario, or no image for its robot.
-pub fn run_hash(scenario: &str, seed: u64, image: Option<(&str, &[u8])>) -> Result<u64, FileError> {
-    let mut setup = Library::new().setup(scenario, &Overrides::default())?;
+/// No image for its robot, or values that do not fit together.
+pub fn run_hash(
+    mut setup: Setup,
+    seed: u64,
+    image: Option<(&str, &[u8])>,
+) -> Result<u64, FileError> {
     if let Some((name, bytes)) = image {
         setup.firmware = Some(Held::new(name, bytes)?.firmware(&setup, None)?);
     }
@@ -53,19 +57,21 @@ pub fn recorded_hash<'a>(entries: impl IntoIterator<Item = &'a Entry>, until_us:
 
 fn of(result: &RunResult) -> u64 {
     let mut digest = CRC.digest();
-    let trace = &result.trace;
-    for sample in &trace.samples {
-        values_of(sample).for_each(|value| digest.update(&bits(value)));
-    }
-    for burst in &trace.link {
-        digest.update(&burst.t_us.to_le_bytes());
-        digest.update(&[u8::from(burst.to_robot)]);
-        digest.update(&burst.bytes);
-    }
-    for said in &trace.consoles {
-        digest.update(&said.t_us.to_le_bytes());
-        digest.update(&[said.usart]);
-        digest.update(&said.bytes);
+    // Of several robots each has its own trace.
+    for RunResult { trace, .. } in std::iter::once(result).chain(&result.robots) {
+        for sample in &trace.samples {
+            values_of(sample).for_each(|value| digest.update(&bits(value)));
+        }
+        for burst in &trace.link {
+            digest.update(&burst.t_us.to_le_bytes());
+            digest.update(&[u8::from(burst.to_robot)]);
+            digest.update(&burst.bytes);
+        }
+        for said in &trace.consoles {
+            digest.update(&said.t_us.to_le_bytes());
+            digest.update(&[said.usart]);
+            digest.update(&said.bytes);
+        }
     }
     for (name, value) in &result.metrics {
         digest.update(name.as_bytes());

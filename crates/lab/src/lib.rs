@@ -21,4 +21,4 @@ pub use hash::{recorded_hash, run_hash};
 pub use program::{Made, Make, OwnProgram, Workshop, problem};
 pub use robot::{Cable, SimulatedRobot, type_to};
 pub use scene::{others, scene};
-pub use world::EDITED;
+pub use world::{EDITED, edited_world};

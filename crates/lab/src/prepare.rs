@@ -19,6 +19,15 @@ pub(crate) struct Prepared {
     pub(crate) manifest: Manifest,
 }
 
+/// The overrides with the world and the rig of a choice.
+pub(crate) fn chosen(overrides: &Overrides, choice: &Choice) -> Overrides {
+    Overrides {
+        world: choice.world.clone(),
+        rig: choice.rig.clone(),
+        ..overrides.clone()
+    }
+}
+
 /// Prepares the page's choice, on the emulated Mega with an image; `memory` is what the robot's EEPROM holds.
 pub(crate) fn prepare(
     library: &Library,
@@ -27,11 +36,7 @@ pub(crate) fn prepare(
     choice: Choice,
     memory: &[u8],
 ) -> Result<Prepared, FileError> {
-    let overrides = Overrides {
-        world: choice.world.clone(),
-        rig: choice.rig.clone(),
-        ..overrides.clone()
-    };
+    let overrides = chosen(overrides, &choice);
     let mut setup: Setup = library.setup(&choice.scenario, &overrides)?;
     let mut manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
     if let Some(held) = image {
@@ -50,11 +55,7 @@ pub(crate) fn prepare_fleet(
     choice: &Choice,
     memories: &[Vec<u8>],
 ) -> Result<Vec<Prepared>, FileError> {
-    let overrides = Overrides {
-        world: choice.world.clone(),
-        rig: choice.rig.clone(),
-        ..overrides.clone()
-    };
+    let overrides = chosen(overrides, choice);
     let setup = library.setup(&choice.scenario, &overrides)?;
     let robots = setup.fleet.iter().enumerate().map(|(number, own)| {
         let memory = memories.get(number).map_or(&[][..], Vec::as_slice);

@@ -3,7 +3,6 @@
 use crate::prepare::{Prepared, prepare};
 use crate::program::{Held, Make, OwnProgram};
 use crate::sight;
-use crate::world;
 use rumbo_control::mode::ModeId;
 use rumbo_emulator::observe::profile::Profile;
 use rumbo_experiment::files::{FileError, Library, Overrides};
@@ -63,17 +62,11 @@ impl SimulatedRobot {
         Self::of(Library::new(), overrides, choice)
     }
 
-    /// The same in the edited world of this text, whatever world the choice names.
+    /// The same with the files of a library.
     ///
     /// # Errors
-    /// The same, and those of the text.
-    pub fn in_world(text: &str, overrides: Overrides, choice: Choice) -> Result<Self, FileError> {
-        let library = world::holding(Library::new(), text);
-        let world = Some(world::EDITED.to_owned());
-        Self::of(library, overrides, Choice { world, ..choice })
-    }
-
-    fn of(library: Library, overrides: Overrides, choice: Choice) -> Result<Self, FileError> {
+    /// The same.
+    pub fn of(library: Library, overrides: Overrides, choice: Choice) -> Result<Self, FileError> {
         let Prepared {
             sim,
             mode,

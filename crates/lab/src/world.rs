@@ -5,7 +5,7 @@
 use crate::program::OwnProgram;
 use crate::robot::SimulatedRobot;
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup};
-use rumbo_log::Choice;
+use rumbo_log::{Choice, Manifest};
 use rumbo_session::{EditedWorld, TargetError};
 use toml::{Table, Value};
 
@@ -17,15 +17,15 @@ pub(crate) fn holding(library: Library, text: &str) -> Library {
     library.holding(Kind::World, EDITED, text)
 }
 
-impl SimulatedRobot {
-    /// The text of the edited world, if the robot drives in it.
-    #[must_use]
-    pub fn edited_world(&self) -> Option<&str> {
-        let edited = self.scene.choice.world.as_deref() == Some(EDITED);
-        let text = self.manifest.files.get("world");
-        text.filter(|_| edited).map(String::as_str)
-    }
+/// The text of the edited world, if that is the world of a run.
+#[must_use]
+pub fn edited_world(manifest: &Manifest) -> Option<&str> {
+    let edited = manifest.world.as_deref() == Some(EDITED);
+    let text = manifest.files.get("world");
+    text.filter(|_| edited).map(String::as_str)
+}
 
+impl SimulatedRobot {
     /// The world in which it drives, or the one given, to edit.
     pub(crate) fn to_edit(&self, given: Option<&str>) -> EditedWorld {
         match given {

@@ -1,9 +1,10 @@
-//! The hashes of headless runs, as the tests compare them with those of a browser: every scenario with these seeds, and
-//! one run of `mode5` by each image. Prints one JSON object: names of scenarios and paths of images to their hashes.
+//! The hashes of headless runs, as the tests compare them with those of a browser: every scenario with these seeds, those
+//! in files among them, and one run of `mode5` by each image. Prints one JSON object: names of scenarios and paths of files
+//! to their hashes.
 //!
-//! `hashes SEEDS [IMAGE]...`
+//! `hashes SEEDS [IMAGE | SCENARIO.toml]...`
 
-use rumbo_experiment::files::{Kind, Library};
+use rumbo_experiment::files::{Kind, Library, Overrides};
 use rumbo_lab::run_hash;
 use serde_json::{Map, json};
 use std::process::ExitCode;
@@ -25,12 +26,13 @@ fn hashes(mut arguments: impl Iterator<Item = String>) -> Result<String, String>
     let seeds = arguments.next().and_then(|count| count.parse::<u64>().ok());
     let seeds = seeds.ok_or("the first argument is the number of seeds")?;
     let mut found = Map::new();
-    for scenario in Library::new().list(Kind::Scenario) {
+    let (files, images): (Vec<_>, Vec<_>) = arguments.partition(|path| path.ends_with(".toml"));
+    for scenario in Library::new().list(Kind::Scenario).into_iter().chain(files) {
         let hashes = (1..=seeds).map(|seed| run(&scenario, seed, None));
         let hashes = hashes.collect::<Result<Vec<_>, _>>()?;
         found.insert(scenario, json!(hashes));
     }
-    for path in arguments {
+    for path in images {
         let image = std::fs::read(&path).map_err(|error| format!("{path}: {error}"))?;
         // Each run names it as the browser does.
         let hash = run("mode5", 1, Some(("image", &image)))?;
@@ -40,7 +42,8 @@ fn hashes(mut arguments: impl Iterator<Item = String>) -> Result<String, String>
 }
 
 fn run(scenario: &str, seed: u64, image: Option<(&str, &[u8])>) -> Result<String, String> {
-    let hash = run_hash(scenario, seed, image);
+    let setup = Library::new().setup(scenario, &Overrides::default());
+    let hash = setup.and_then(|setup| run_hash(setup, seed, image));
     hash.map(|hash| format!("{hash:016x}"))
         .map_err(|error| error.to_string())
 }

@@ -53,7 +53,9 @@ export const PAGE = {
   'The link opens this scenario, world, sensor layout and seed, and repeats this run from its start, to the last bit.':
     'El enlace abre este escenario, mundo, montaje y semilla, y repite esta ejecución desde el principio, bit a bit.',
   'with what was done by hand until {} s (changes of commands: {})': 'con lo hecho a mano hasta {} s (cambios de órdenes: {})',
-  'The edited world is too large for a link, which has at most 2 KB: save it as a file in the editor.': 'El mundo editado es demasiado grande para un enlace, que tiene 2 KB como máximo: guárdalo como archivo en el editor.',
+  'The edited world, or the scenario, is too large for a link, which has at most 2 KB: pass on its file.': 'El mundo editado, o el escenario, es demasiado grande para un enlace, que tiene 2 KB como máximo: entrega su archivo.',
+  'Open a scenario…': 'Abrir un escenario…', 'Open the file of a scenario, and that of its world if it has one of its own': 'Abre el archivo de un escenario, y el de su mundo si tiene uno propio',
+  'robots': 'robots', 'Copies of the robot, in one world': 'Copias del robot del escenario, en un mismo mundo',
   'What was done by hand is not in it: {}.': 'Lo hecho a mano no va en él: {}.', 'it has {} characters: some programs cut it': 'tiene {} caracteres: algunos programas lo cortan',
   'The link opens this scenario, world, sensor layout and seed, with these parameters.': 'El enlace abre este escenario, mundo, montaje y semilla, con estos parámetros.',
   'Run a program…': 'Ejecutar un programa…', 'Run a program for the Arduino Mega, .elf or .hex, on an emulated one': 'Ejecuta un programa para el Arduino Mega, .elf o .hex, en uno emulado',

@@ -6,7 +6,7 @@ use rumbo_log::Log;
 use std::cell::Cell;
 
 /// What the page gets while the lab is driven for this long, a round every 10 ms.
-fn drive(lab: &mut Lab, clock_us: &Cell<u64>, seconds: f64) -> Vec<String> {
+pub(crate) fn drive(lab: &mut Lab, clock_us: &Cell<u64>, seconds: f64) -> Vec<String> {
     let mut messages = Vec::new();
     for _ in 0..(seconds * 100.0) as u32 {
         clock_us.set(clock_us.get() + 10_000);
@@ -16,13 +16,13 @@ fn drive(lab: &mut Lab, clock_us: &Cell<u64>, seconds: f64) -> Vec<String> {
     messages
 }
 
-fn is(kind: &str) -> impl Fn(&&String) -> bool {
+pub(crate) fn is(kind: &str) -> impl Fn(&&String) -> bool {
     let start = format!("{{\"type\":\"{kind}\"");
     move |message: &&String| message.starts_with(&start)
 }
 
 /// The last state of these messages.
-fn state(messages: &[String]) -> &str {
+pub(crate) fn state(messages: &[String]) -> &str {
     messages.iter().rfind(is("state")).unwrap()
 }
 

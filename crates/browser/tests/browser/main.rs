@@ -6,5 +6,6 @@
     reason = "helpers of tests too"
 )]
 
+mod fleet;
 mod lab;
 mod robot;

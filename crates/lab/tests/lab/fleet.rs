@@ -25,7 +25,7 @@ fn choice() -> Choice {
 
 fn robots() -> Vec<FleetRobot> {
     let library = Library::new().holding(Kind::Scenario, "three", THREE);
-    fleet(library, Overrides::default(), &choice()).unwrap()
+    fleet(library, Overrides::default(), &choice(), 1).unwrap()
 }
 
 struct Quiet;

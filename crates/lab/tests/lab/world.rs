@@ -3,7 +3,7 @@
 
 use rumbo_experiment::files::{Kind, Library, Overrides, Setup};
 use rumbo_experiment::run;
-use rumbo_lab::{EDITED, SimulatedRobot};
+use rumbo_lab::{EDITED, SimulatedRobot, edited_world};
 use rumbo_log::Choice;
 use rumbo_session::Target;
 use serde_json::{Value, json};
@@ -126,7 +126,7 @@ fn one_that_is_refused_leaves_the_robot_where_it_is() {
     let why = robot.drive_in("title = 1").unwrap_err().to_string();
     assert!(why.contains("title"), "{why}");
     assert_eq!(robot.scene().unwrap(), before);
-    assert_eq!(robot.edited_world(), None);
+    assert_eq!(edited_world(&robot.manifest()), None);
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn the_edited_world_stays_in_the_list_and_its_text_in_the_manifest() {
     let choice = robot.drive_in(&model.to_string()).unwrap();
     assert_eq!((choice.scenario.as_str(), choice.seed), ("mode1", 1));
     let text = robot.manifest().files["world"].clone();
-    assert_eq!(robot.edited_world(), Some(text.as_str()));
+    assert_eq!(edited_world(&robot.manifest()), Some(text.as_str()));
     assert!(
         text.contains("title = \"Mine\"") && text.contains("[[box]]"),
         "{text}"
@@ -149,13 +149,14 @@ fn the_edited_world_stays_in_the_list_and_its_text_in_the_manifest() {
         ..choice.clone()
     };
     robot.reset(&own(None)).unwrap();
-    assert_eq!(robot.edited_world(), None);
+    assert_eq!(edited_world(&robot.manifest()), None);
     robot.reset(&own(Some(EDITED))).unwrap();
     let scene = robot.scene().unwrap();
     assert_eq!(scene.world_titles[EDITED], "Mine");
     assert!((scene.start.x_m - 0.1).abs() < 1e-12);
     assert_eq!(robot.manifest().files["world"], text);
     // A link opens it with its text.
-    let linked = SimulatedRobot::in_world(&text, Overrides::default(), own(None)).unwrap();
+    let library = Library::new().holding(Kind::World, EDITED, &text);
+    let linked = SimulatedRobot::of(library, Overrides::default(), own(Some(EDITED))).unwrap();
     assert_eq!(linked.scene().unwrap().obstacles, scene.obstacles);
 }
