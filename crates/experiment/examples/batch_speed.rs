@@ -1,14 +1,15 @@
 //! Robots in batches on the common task of `cargo xtask bench --only batch`: steps of 10 ms a second, memory per robot.
 //!
 //! An arena of 10 x 10 m with 20 boxes, three sonars, closed-loop avoidance. First the plant alone, with a few lines for a
-//! program; then the whole control program in the same world, commanded by the caller and by a scenario over its link.
+//! program; then the whole control program in the same world, commanded by the caller and by a scenario over its link;
+//! then several robots that share that world.
 //! `batch_speed SECONDS` prints a line for each measurement: what, instructions, threads, value. What one thread does counts
 //! by the processor's time (Linux), so that other work on the machine disturbs it less; `-wall` is by the clock on the wall.
 
 use rumbo_control::mode::ModeId;
 use rumbo_control::{ServoAngle, Wheels};
-use rumbo_experiment::batch::{Batch, Driver};
-use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup};
+use rumbo_experiment::batch::{Batch, Driver, Team};
+use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup, fleet_around};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::lanes::{LANES, Lanes};
@@ -22,6 +23,8 @@ use std::time::Instant;
 
 /// Robots: eight groups.
 const ROBOTS: usize = 8 * LANES;
+/// Robots in one world; alone as a team of one.
+const TEAMS: [usize; 3] = [1, 4, 16];
 const TICK_US: u64 = 10_000;
 /// Nearer than this the robot of the plant turns [m].
 const NEAR_M: f64 = 0.6;
@@ -59,6 +62,15 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
     }
+    for robots in TEAMS {
+        let speed = together(&arena, robots, seconds)?;
+        print(
+            &format!("together-{robots}"),
+            Lanes::SCALAR,
+            1,
+            speed.thread,
+        );
+    }
     print("memory", Lanes::SCALAR, 1, memory(&arena)?);
     Ok(())
 }
@@ -89,7 +101,11 @@ impl Start {
 
     /// After so many steps of each robot.
     fn speed(&self, steps: u64) -> Speed {
-        let all = (ROBOTS as u64 * steps) as f64;
+        self.speed_of(ROBOTS, steps)
+    }
+
+    fn speed_of(&self, robots: usize, steps: u64) -> Speed {
+        let all = (robots as u64 * steps) as f64;
         let wall_s = self.wall.elapsed().as_secs_f64();
         let used_s = self.thread_s.zip(thread_s()).map(|(from, to)| to - from);
         Speed {
@@ -243,6 +259,28 @@ fn by_scenario(arena: &Setup, lanes: Lanes, seconds: u64) -> Result<Speed, FileE
     let start = Start::now();
     batch.advance(seconds as u32 * 100);
     Ok(start.speed(seconds * 100))
+}
+
+/// The same of robots that share the world, as long as [`ROBOTS`] robots take one by one.
+fn together(arena: &Setup, robots: usize, seconds: u64) -> Result<Speed, FileError> {
+    let fleet = fleet_around(arena, robots)?;
+    let library = Library::new()
+        .holding(Kind::World, "arena", &arena.world.text)
+        .holding(
+            Kind::Scenario,
+            "bench",
+            &(arena.scenario.text.clone() + &fleet),
+        );
+    let setup = library.setup("bench", &Overrides::default())?;
+    let rounds = ROBOTS / robots;
+    let teams = seeds(rounds).into_iter();
+    let teams = teams.map(|seed| Team::new(&setup, |_| Driver::Scenario, seed));
+    let mut teams = teams.collect::<Result<Vec<_>, _>>()?;
+    let start = Start::now();
+    for team in &mut teams {
+        team.advance(seconds as u32 * 100);
+    }
+    Ok(start.speed_of(rounds * robots, seconds * 100))
 }
 
 /// Memory of a robot of a large batch [bytes], by what the process has resident (Linux).

@@ -1,5 +1,5 @@
 //! Many robots on the common task: the plant alone and with the whole control program, in lanes and one by one, beside
-//! rapier2d, by `crates/experiment/examples/batch_speed.rs` and `tools/rapier/`.
+//! rapier2d, and several in one world, by `crates/experiment/examples/batch_speed.rs` and `tools/rapier/`.
 //!
 //! The programs run by turns, one thread counts by its time on a processor, and each figure is the median of its rounds:
 //! ratios hold on a machine with other work. What two threads gain is by the clock on the wall, and needs an idle one.
@@ -134,6 +134,21 @@ fn figures(mut rounds: Rounds) -> Result<Vec<Figure>, String> {
             "95 %",
         ));
     }
+    let alone = median("together-1", "scalar", 1)?;
+    for robots in [4, 16] {
+        let each = median(&format!("together-{robots}"), "scalar", 1)?;
+        figures.push(Figure::new(
+            format!(
+                "{robots} robots in one world, the whole control program of each by its scenario"
+            ),
+            format!(
+                "{:.0} x real time; a robot takes {:.2} x the time of one alone",
+                each / 100.0 / f64::from(robots),
+                alone / each
+            ),
+            "",
+        ));
+    }
     let bytes = median("memory", "scalar", 1)?;
     figures.push(Figure::new(
         "memory of a robot in a batch",
@@ -152,6 +167,9 @@ mod tests {
         let mut rounds = Rounds::new();
         for [slow, fast] in [[1, 2], [3, 9], [2, 5]] {
             let mut text = format!("rapier2d - 1 {slow}00000\nmemory scalar 1 3072\n");
+            for (robots, speed) in [(1, 8), (4, 4), (16, 2)] {
+                text += &format!("together-{robots} scalar 1 {speed}00000\n");
+            }
             for what in ["plant", "caller", "scenario", "caller-wall"] {
                 for threads in [1, 2] {
                     text += &format!("{what} scalar {threads} {slow}00000\n");
@@ -167,6 +185,11 @@ mod tests {
         assert_eq!(
             plant.unwrap().measured,
             "0.50 M, 2.50 x scalar, 2.5 x rapier2d"
+        );
+        let fleet = figures.iter().find(|figure| figure.what.starts_with("4 "));
+        assert_eq!(
+            fleet.unwrap().measured,
+            "1000 x real time; a robot takes 2.00 x the time of one alone"
         );
         assert!(read("plant scalar 1", &mut Rounds::new()).is_err());
     }
