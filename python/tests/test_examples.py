@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import pathlib
 import runpy
 
@@ -32,3 +33,17 @@ def test_the_sweep_draws_bands_a_map_and_runs(monkeypatch: pytest.MonkeyPatch) -
     for line in runs.lines:
         assert np.ptp(line.get_ydata()) > 0.1
     pyplot.close("all")
+
+
+def test_a_policy_learns_in_a_minute_to_reach_some_goals_and_is_written(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: pathlib.Path
+) -> None:
+    pytest.importorskip("jax", reason="JAX is not installed")
+    monkeypatch.setenv("RUMBO_SHORT", "1")
+    monkeypatch.chdir(tmp_path)
+    learned = runpy.run_path(str(EXAMPLES / "ppo.py"))
+    # Without learning it reaches none.
+    assert learned["arrived"] > 0.2
+    network = json.loads((tmp_path / "goal.json").read_text())
+    assert len(network["inputs"]) == len(learned["INPUTS"])
+    assert [len(layer["biases"]) for layer in network["layers"]] == [32, 32, 3]

@@ -1,6 +1,7 @@
 //! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, everything that can
-//! fail in the middle of drives, mode 8 among what moves, a million frames over a link with faults, and the image for 75 minutes under a flood
-//! of bytes, and beside the native robot; sweeps of the Python package on Ray; the fuzz targets for ten minutes each.
+//! fail in the middle of drives, mode 8 among what moves, a million frames over a link with faults, and the image for 75
+//! minutes under a flood of bytes, and beside the native robot; sweeps of the Python package on Ray, a policy learned
+//! with it; the fuzz targets for ten minutes each.
 //!
 //! Runs and requirements are those of `rumbo_experiment::campaign`. Each program is built in release mode, and its
 //! output is printed as it comes.
@@ -39,6 +40,8 @@ const TUNE: &str = "tune";
 const TUNE_STARTS: u32 = 10;
 /// Sweeps of the Python package on Ray.
 const RAY: &str = "ray";
+/// A policy for mode 9, learned by the example of the Python package.
+const PYTHON: &str = "python";
 /// The release on a system with nothing else, and the crates that others can use alone.
 const RELEASE: &str = "release";
 /// Seconds of each.
@@ -97,6 +100,9 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == RAY) {
         wheel::on_ray(project).map_err(said)?;
     }
+    if only.is_empty() || only.iter().any(|name| name == PYTHON) {
+        wheel::learning(project).map_err(said)?;
+    }
     if only.is_empty() || only.iter().any(|name| name == RELEASE) {
         release::try_it(project).map_err(said)?;
         release::try_crates(project)?;
@@ -106,7 +112,8 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
         only.iter()
             .filter(|name| {
                 ![
-                    LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, TUNE, FAULTS, MOVING, RAY, RELEASE,
+                    LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, TUNE, FAULTS, MOVING, RAY, PYTHON,
+                    RELEASE,
                 ]
                 .contains(&name.as_str())
             })

@@ -68,6 +68,7 @@ class Core:
         self.task = task
         self.count = count
         self._settings = settings
+        self._robot = task.robot if settings.robot is None else settings.robot
         self._world = task.world if settings.world is None else settings.world
         space = observation_space()
         self._low, self._high = space.low, space.high
@@ -128,7 +129,7 @@ class Core:
             self.task.scenario,
             seeds=[int(seed) for seed in self.seeds],
             driver="caller",
-            robot=settings.robot,
+            robot=self._robot,
             world=self._world,
             parameters=settings.parameters,
             randomize=settings.randomize,

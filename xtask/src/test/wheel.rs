@@ -8,10 +8,12 @@ use super::{Stop, tools};
 use crate::project::{Project, output, run};
 
 /// Packages of PyPI; what type checkers find depends on their versions. They need Python 3.11, the wheel itself 3.10.
-const PACKAGES: [&str; 9] = [
+const PACKAGES: [&str; 11] = [
     "maturin==1.16.0",
     "numpy==2.4.6",
     "gymnasium==1.4.0",
+    "jax==0.10.2",
+    "optax==0.2.8",
     "pettingzoo==1.27.0",
     "matplotlib==3.11.2",
     "pytest==9.2.0",
@@ -74,6 +76,20 @@ pub(crate) fn on_ray(project: &Project) -> Result<(), Stop> {
         .env("RUMBO_COMMAND", rumbo)
         .arg("python/benches/on_ray.py");
     Ok(run(&mut bench)?)
+}
+
+/// Builds the package, installs it, and learns a policy as the example does, whole; it fails where too few goals are
+/// reached.
+pub(crate) fn learning(project: &Project) -> Result<(), Stop> {
+    let python = tools::python_with(project, "wheel", &PACKAGES)?;
+    install(project, &python, &wheel(project)?)?;
+    let folder = project.target.join("tmp/learning");
+    std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
+    let example = project.root.join("examples/python/ppo.py");
+    let mut learning = project.command(&python);
+    // It leaves the network here.
+    learning.current_dir(&folder).arg(example);
+    Ok(run(&mut learning)?)
 }
 
 /// A module of Python, as a program.
