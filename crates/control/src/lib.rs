@@ -21,6 +21,7 @@ pub mod motion;
 pub mod odometry;
 pub mod params;
 pub mod pid;
+pub mod policy;
 pub mod pursuit;
 pub mod range;
 pub mod rig;

@@ -9,6 +9,9 @@ pub use error::ImageError;
 
 use crate::model::{MODELS, Model};
 
+/// A byte of flash that is not programmed.
+const ERASED: u8 = 0xFF;
+
 /// A program for the chip.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Image {
@@ -97,6 +100,21 @@ impl Image {
             flash: bytes[..bytes.len().min(largest(Model::flash_bytes))].to_vec(),
             ..Image::default()
         }
+    }
+
+    /// The same with these bytes at an address behind the program; what lies between is erased.
+    ///
+    /// # Errors
+    /// The program reaches there, or the bytes do not fit.
+    pub fn with(mut self, at: u32, bytes: &[u8]) -> Result<Image, ImageError> {
+        let start = at as usize;
+        if self.flash.len() > start {
+            return Err(ImageError::Overlap(start));
+        }
+        self.flash.resize(start, ERASED);
+        self.flash.extend(bytes);
+        let model = self.model();
+        self.fitting(Some(model))
     }
 
     /// The flash from address 0 to the end of the program.

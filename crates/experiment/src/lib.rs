@@ -17,6 +17,7 @@ pub mod grade;
 pub mod metrics;
 pub mod observe;
 mod operator;
+pub mod quantise;
 pub mod random_world;
 pub mod run;
 pub mod shortest_path;

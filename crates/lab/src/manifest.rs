@@ -10,6 +10,9 @@ use std::path::Path;
 /// The names of the robots' files begin with it where there are several robots.
 pub const OF_FLEET: &str = "robot ";
 
+/// So does that of a policy.
+pub const OF_POLICY: &str = "policy ";
+
 /// The manifest of a setup as these overrides made it; `step_us` and the time are for the one who runs it.
 #[must_use]
 pub fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manifest {
@@ -32,6 +35,10 @@ pub fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manife
     let mut files: BTreeMap<String, String> = files.map(own).into();
     for robot in setup.fleet.iter().map(|each| &each.robot) {
         files.insert(format!("{OF_FLEET}{}", robot.name), robot.text.clone());
+    }
+    let robots = setup.robots().iter();
+    for policy in robots.filter_map(|robot| robot.policy.as_ref()) {
+        files.insert(format!("{OF_POLICY}{}", policy.name), policy.text.clone());
     }
     Manifest {
         kind,

@@ -16,6 +16,7 @@ pub mod latch;
 mod ledger;
 mod outbox;
 mod pilot;
+mod policy;
 mod report;
 mod robot;
 mod sonars;
@@ -23,6 +24,7 @@ mod store;
 mod supervisor;
 mod text;
 
+pub use policy::NETWORK_AT;
 #[cfg(not(target_arch = "avr"))]
 pub use robot::Loops;
 pub use robot::{Config, Robot};

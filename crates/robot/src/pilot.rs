@@ -9,6 +9,7 @@ use rumbo_control::estimate::{Estimate, Estimator};
 use rumbo_control::math::round;
 use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError};
 use rumbo_control::params::{ParamError, ParamId, Params};
+use rumbo_control::policy::{Known, Shape, observe};
 use rumbo_control::rig::Rig;
 use rumbo_control::{
     Drive, Duty, Fault, Inputs, Outputs, Range, ServoAngle, SonarId, Velocity, Wheels,
@@ -49,6 +50,8 @@ pub(crate) struct Pilot {
     encoders: EncoderWatch,
     low_battery_ticks: u8,
     refresh_in: u8,
+    /// Of the network of mode 9, if there is one.
+    network: Option<Shape>,
 }
 
 /// An outcome of the mode.
@@ -78,6 +81,7 @@ impl Default for Pilot {
             encoders: EncoderWatch::default(),
             low_battery_ticks: 0,
             refresh_in: FIRST_REFRESH_TICKS,
+            network: None,
         }
     }
 }
@@ -148,6 +152,27 @@ impl Pilot {
             reached: reached && !before.0,
             unreachable: unreachable && !before.1,
         })
+    }
+
+    /// There is such a network for mode 9.
+    pub(crate) fn learn(&mut self, network: Option<Shape>) {
+        self.network = network;
+    }
+
+    /// Works on a decision of mode 9, of whose network `read` gives the bytes.
+    pub(crate) fn decide(&mut self, read: impl Fn(u16) -> u8) {
+        let (estimator, estimate) = (&self.estimator, &self.estimate);
+        if let Some(shape) = &self.network {
+            self.mode.decide(shape, read, |goal_m| {
+                let known = Known {
+                    wheel_rad_s: &estimate.wheel_rad_s,
+                    ranges: &estimator.shown(estimate),
+                    servo_rad: estimate.servo_rad,
+                    pose: &estimate.pose,
+                };
+                observe(&known, goal_m)
+            });
+        }
     }
 
     /// A sonar answered at this tick, which makes the tick a long one.
@@ -289,6 +314,8 @@ impl Pilot {
             Err(Refusal::BatteryLow)
         } else if !self.mode.fits(self.params.rig()) {
             Err(Refusal::WrongRig)
+        } else if self.mode.id() == ModeId::Policy && self.network.is_none() {
+            Err(Refusal::NoPolicy)
         } else if self.mode.is_ready(&self.params, &self.estimate) {
             Ok(())
         } else if self.lacks_readings() {

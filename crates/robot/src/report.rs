@@ -327,7 +327,7 @@ fn write_row(line: &mut Line, status: &Status, signals: &Signals) {
             line.pwm(&telemetry.duty);
             return;
         }
-        ModeId::Mission => {
+        ModeId::Mission | ModeId::Policy => {
             line.speeds(&telemetry.wheel_ref_rad_s);
             line.angle(signals.heading_ref_rad);
             line.number(status.reference.left);

@@ -20,6 +20,7 @@ use crate::clock::Clock;
 use crate::governor::Governor;
 use crate::ledger::{Ledger, Verdict};
 use crate::pilot::Pilot;
+use crate::policy;
 use crate::report::{Language, Reporter};
 use crate::store::{Cell, Store};
 use crate::supervisor::Supervisor;
@@ -185,6 +186,19 @@ impl Robot {
             .tick(now, t_ms, busy, &status, || self.pilot.signals());
     }
 
+    /// Looks for a network of mode 9, before the robot starts; `read` gives a byte of where one may be. A damaged one is
+    /// none.
+    pub fn learn(&mut self, read: impl Fn(u16) -> u8) {
+        self.pilot.learn(policy::find(read));
+    }
+
+    /// After [`Robot::report`]: works on a decision of mode 9, of whose network `read` gives the bytes.
+    pub fn decide(&mut self, read: impl Fn(u16) -> u8) {
+        if self.supervisor.is_armed() {
+            self.pilot.decide(read);
+        }
+    }
+
     /// The next byte for the link, if any waits. Called for each of a frame's 30 bytes in a tick, hence inlined.
     #[inline(always)]
     pub fn transmit(&mut self) -> Option<u8> {
@@ -215,7 +229,7 @@ impl Robot {
 
     /// [`Robot::report`] without the report: the mode decides, and nothing is sent.
     #[cfg(not(target_arch = "avr"))]
-    pub fn decide(&mut self) {
+    pub fn think(&mut self) {
         if let Err(fault) = self.pilot.think(self.supervisor.is_armed()) {
             self.fail(fault);
         }

@@ -305,7 +305,9 @@ impl RobotClient {
                 match outcome.command {
                     Command::Reference(_) => self.reference = Wheels::both(value),
                     Command::WheelReference(wheels) => self.reference = wheels,
-                    Command::Goal { x_m, y_m } if self.mode == ModeId::Mission => {
+                    Command::Goal { x_m, y_m }
+                        if matches!(self.mode, ModeId::Mission | ModeId::Policy) =>
+                    {
                         self.reference = Wheels {
                             left: x_m,
                             right: y_m,

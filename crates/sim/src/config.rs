@@ -48,6 +48,8 @@ pub enum Program {
         parameters: Vec<(ParamId, f32)>,
         /// The battery's divider, where one is wired.
         divider: Option<Divider>,
+        /// The network of mode 9 beside it, in bytes ([`rumbo_control::policy`]); empty without one.
+        network: Arc<[u8]>,
     },
     /// The report's, native (docs/theory/baseline.md).
     Baseline {

@@ -22,4 +22,5 @@ pub mod wiring;
 pub use config::{Config, Program};
 pub use error::SimError;
 pub use instruments::{READING_US, loop_signals};
+pub use rumbo_robot::NETWORK_AT;
 pub use sim::{Burst, Latched, Sim, Touch};

@@ -386,11 +386,13 @@ pub enum Refusal {
     TooOld = 12,
     /// The sonar the mode needs works, and sees no wall that the mode can drive by.
     NoWall = 13,
+    /// No network lies beside the robot's program.
+    NoPolicy = 14,
 }
 
 impl Refusal {
     /// All refusals, by number.
-    pub const ALL: [Refusal; 13] = [
+    pub const ALL: [Refusal; 14] = [
         Refusal::NotFinite,
         Refusal::OutOfRange,
         Refusal::UnknownParam,
@@ -404,6 +406,7 @@ impl Refusal {
         Refusal::BatteryLow,
         Refusal::TooOld,
         Refusal::NoWall,
+        Refusal::NoPolicy,
     ];
 
     /// The refusal with this number.

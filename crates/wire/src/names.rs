@@ -32,6 +32,9 @@ impl Refusal {
             Refusal::NoWall => {
                 "no wall within reach of the sonar this mode needs; put the robot within 2.5 m of one"
             }
+            Refusal::NoPolicy => {
+                "the robot has no policy, or a damaged one; give one with --policy, to `rumbo flash` for a real robot"
+            }
             Refusal::WrongRig => {
                 "the robot's sonars do not sit where this mode needs them; mount them so and set the parameter `rig`"
             }

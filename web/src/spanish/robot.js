@@ -5,7 +5,7 @@
 export const ROBOT = {
   // Modes.
   'manual': 'manual', 'front distance': 'distancia', 'front align': 'alinear', 'wall hold': 'mantener pared', 'wall follow': 'seguir pared',
-  'wheel speed': 'velocidad', 'straight line': 'línea recta', 'waypoints': 'ruta', 'mission': 'misión', 'twist': 'twist',
+  'wheel speed': 'velocidad', 'straight line': 'línea recta', 'waypoints': 'ruta', 'mission': 'misión', 'policy': 'política', 'twist': 'twist',
   'basic movements, open loop or by speed': 'movimientos básicos, en lazo abierto o por velocidad',
   'stop at a distance from the wall ahead': 'parar a una distancia de la pared de enfrente',
   'stop square to the wall ahead, at a distance from it': 'parar perpendicular a la pared de enfrente, a una distancia de ella',
@@ -15,6 +15,7 @@ export const ROBOT = {
   'straight on at a commanded speed': 'en línea recta a la velocidad de referencia',
   'visit the waypoints of a route in turn, such as a square of 1 m': 'visitar por orden los puntos de una ruta, como un cuadrado de 1 m',
   'reach a goal around obstacles, or follow a lane of boxes': 'llegar a un destino rodeando obstáculos, o seguir un carril de cajas',
+  'reach a goal by a learned network': 'llegar a un destino con una red aprendida',
   'a forward speed and a yaw rate from outside': 'una velocidad de avance y otra de giro, desde fuera',
   // Groups of parameters.
   'arcs': 'arcos', 'approach to the wall': 'acercamiento a la pared', 'straightening': 'corrección del rumbo', 'angle to the wall': 'ángulo con la pared',
@@ -34,10 +35,11 @@ export const ROBOT = {
   'off': 'apagado', 'fault': 'fallo', 'armed': 'armado', 'state {}': 'estado {}', 'stop': 'parar', 'open loop': 'lazo abierto', 'by speed': 'por velocidad',
   'approach': 'acercarse', 'settle': 'asentarse', 'hold': 'mantener', 'look': 'mirar', 'turn': 'girar', 'measure': 'medir', 'follow': 'seguir', 'slow': 'despacio',
   'at rest': 'en reposo', 'turning': 'girando', 'drive': 'avanzar', 'wait': 'esperar', 'waiting': 'esperando', 'driving': 'en marcha', 'pursue': 'perseguir', 'final turn': 'giro final', 'done': 'acabado',
-  'wait for goal': 'esperar destino', 'initial turn': 'giro inicial', 'initialise': 'iniciar', 'go to goal': 'ir al destino', 'sweep right': 'barrer a la derecha',
+  'wait for goal': 'esperar destino', 'initial turn': 'giro inicial', 'initialise': 'iniciar', 'go to goal': 'ir al destino', 'seek': 'buscar', 'sweep right': 'barrer a la derecha',
   'sweep left': 'barrer a la izquierda', 'decide': 'decidir', 'avoidance turn': 'giro de evasión', 'advance seeking the obstacle': 'avanzar buscando el obstáculo',
   'advance along it': 'avanzar a su lado', 'advance a safe distance': 'avanzar distancia de seguridad', 'unreachable': 'inalcanzable', 'straight on': 'recto', 'prove the front sonar': 'comprobar el sonar delantero', 'give way to what moves': 'ceder el paso a lo que se mueve', 'reached': 'alcanzado',
   // Why a state leads to another.
+  'at the goal': 'en el destino', 'the robot is not at the goal any more': 'el robot ya no está en el destino',
   'a velocity comes': 'llega una velocidad', 'none for half a second': 'ninguna en medio segundo',
   '12.5 cm on': '12,5 cm más', 'a goal arrives': 'llega un destino', 'a movement by duty': 'un movimiento por PWM',
   'a movement by speed': 'un movimiento por velocidad', 'a setpoint that is not zero': 'una referencia que no es cero',
@@ -104,6 +106,8 @@ export const ROBOT = {
     'no hay ninguna pared al alcance del sonar que necesita este modo; pon el robot a menos de 2,5 m de una',
   'it is too old: given more than 2 s ago, or before the robot started again; give the order again':
     'es demasiado antigua: se dio hace más de 2 s, o antes de que el robot volviera a arrancar; da la orden otra vez',
+  'the robot has no policy, or a damaged one; give one with --policy, to `rumbo flash` for a real robot':
+    'el robot no tiene política, o está dañada; dale una con --policy, a `rumbo flash` si es un robot real',
   'no heartbeat arrives at the robot; connect, then arm again': 'al robot no le llega ningún latido; conecta y arma otra vez',
   'the robot did not understand the command; use the same version at both ends': 'el robot no entendió la orden; usa la misma versión en los dos extremos',
   'the robot\'s sonars do not sit where this mode needs them; mount them so and set the parameter `rig`':

@@ -6,13 +6,14 @@ export const SCENARIOS = {
   // Groups.
   'Calibration': 'Calibración', 'Free driving': 'Conducción libre', 'Mode 1: front distance': 'Modo 1: distancia', 'Mode 2: front align': 'Modo 2: alinear',
   'Mode 3: wall hold': 'Modo 3: mantener pared', 'Mode 4: wall follow': 'Modo 4: seguir pared', 'Mode 5: wheel speed': 'Modo 5: velocidad',
-  'Mode 6: straight line': 'Modo 6: línea recta', 'Mode 7: waypoints': 'Modo 7: ruta', 'Mode 8: mission': 'Modo 8: misión', 'Motors': 'Motores', 'Movements': 'Movimientos',
+  'Mode 6: straight line': 'Modo 6: línea recta', 'Mode 7: waypoints': 'Modo 7: ruta', 'Mode 8: mission': 'Modo 8: misión', 'Mode 9: policy': 'Modo 9: política', 'Motors': 'Motores', 'Movements': 'Movimientos',
   // Worlds.
   'A walled floor of 2.9 x 1.9 m to calibrate in: along its walls': 'Un suelo de 2,9 x 1,9 m con paredes para calibrar: a lo largo de ellas',
   'A lane of boxes: left, right, right, and out to the left': 'Un carril de cajas: izquierda, derecha, derecha y salida a la izquierda',
   'A box and a block of two behind it, on the way to a goal': 'Una caja y detrás un bloque de dos, de camino a un destino',
   'Two people who cross the way': 'Dos personas que cruzan el paso',
   'An empty floor': 'Un suelo vacío', 'Boxes at random and a goal, another arrangement for each seed': 'Cajas al azar y un destino, distintos con cada semilla',
+  'One to three groups of boxes and a goal that can be reached, others for each seed': 'De uno a tres grupos de cajas y un destino alcanzable, distintos con cada semilla',
   'A walled room of 4 x 3 m with boxes': 'Una habitación de 4 x 3 m con cajas', 'A wall across the way at x = 1.20 m': 'Una pared que cierra el paso en x = 1,20 m',
   'A straight wall of 7.5 m along y = 0.65 m': 'Una pared recta de 7,5 m a lo largo de y = 0,65 m',
   // Titles of scenarios.
@@ -36,6 +37,7 @@ export const SCENARIOS = {
   'The goals (1, 1), (0.5, -0.5), (0.5, -0.5), (-1, -1), one after the other': 'Los destinos (1, 1), (0,5, −0,5), (0,5, −0,5), (−1, −1), uno tras otro',
   'A lane of boxes': 'Un carril de cajas', 'To (2.5, 0) around a box and a block of two': 'A (2,5, 0) rodeando una caja y un bloque de dos',
   'A goal in a random world': 'Un destino en un mundo aleatorio',
+  'A goal among boxes by a learned policy': 'Un destino entre cajas con una política aprendida',
   'Forward, open loop': 'Adelante, en lazo abierto', 'Forward, at 60 rpm': 'Adelante, a 60 rpm', 'Backward, open loop': 'Atrás, en lazo abierto', 'Backward, at 60 rpm': 'Atrás, a 60 rpm',
   'Turn left about the centre, open loop': 'Giro a la izquierda sobre el centro, en lazo abierto', 'Turn left about the centre, at 60 rpm': 'Giro a la izquierda sobre el centro, a 60 rpm',
   'Turn right about the centre, open loop': 'Giro a la derecha sobre el centro, en lazo abierto', 'Turn right about the centre, at 60 rpm': 'Giro a la derecha sobre el centro, a 60 rpm',

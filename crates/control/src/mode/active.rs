@@ -2,8 +2,8 @@
 
 use super::description::{Description, ReferenceKind};
 use super::{
-    Action, Look, Mode, SetpointError, front_align, front_distance, manual, mission, straight_line,
-    twist, wall_follow, wall_hold, waypoints, wheel_speed,
+    Action, Look, Mode, SetpointError, front_align, front_distance, manual, mission, policy,
+    straight_line, twist, wall_follow, wall_hold, waypoints, wheel_speed,
 };
 use crate::estimate::Estimate;
 use crate::params::Params;
@@ -128,6 +128,8 @@ modes! {
     Waypoints: waypoints;
     /// A goal around obstacles, or a lane of boxes (memoria 5).
     Mission: mission;
+    /// A goal by a learned network.
+    Policy: policy;
     /// A forward speed and a yaw rate from outside.
     Twist: twist;
 }
@@ -170,7 +172,6 @@ mod tests {
             assert_eq!(ModeId::from_number(mode as u8), Some(mode));
             assert_eq!(ActiveMode::new(mode).id(), mode);
         }
-        assert_eq!(ModeId::from_number(9), None);
         assert_eq!(ModeId::from_number(11), None);
     }
 

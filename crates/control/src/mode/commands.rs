@@ -3,7 +3,7 @@
 use super::mission::Task;
 use super::waypoints::{self, Route, Waypoint};
 use super::{
-    ActiveMode, Level, MAX_WHEEL_RAD_S, Movement, SetpointError, manual, twist, wheel_speed,
+    ActiveMode, Level, MAX_WHEEL_RAD_S, Movement, SetpointError, manual, policy, twist, wheel_speed,
 };
 use crate::math::is_finite;
 use crate::types::{Velocity, Wheels};
@@ -20,7 +20,7 @@ impl ActiveMode {
         wheel_speed::set(references, value)
     }
 
-    /// Sets the goal: the task of mode 8, a route of one waypoint in mode 7. It may arrive at any time.
+    /// Sets the goal: the task of mode 8, that of mode 9, a route of one waypoint in mode 7. It may arrive at any time.
     ///
     /// # Errors
     /// Why it is refused; the last one stays.
@@ -32,6 +32,7 @@ impl ActiveMode {
                 *task = Task::Goal { x_m, y_m };
                 state.renew();
             }
+            Self::Policy(goal, _) => *goal = policy::Goal(Some((x_m, y_m))),
             Self::Waypoints(..) => {
                 self.begin_route(false, false)?;
                 self.add_waypoint(Waypoint {

@@ -10,6 +10,7 @@ pub mod front_align;
 pub mod front_distance;
 pub mod manual;
 pub mod mission;
+pub mod policy;
 pub mod straight_line;
 pub mod twist;
 pub mod wall_follow;

@@ -12,8 +12,9 @@ mod pilot;
 mod robot;
 mod team;
 
-pub use pilot::{Driver, OBSERVED, TRUE};
+pub use pilot::{Driver, TRUE};
 pub use robot::Robot;
+pub use rumbo_control::policy::OBSERVED;
 pub use team::Team;
 
 use crate::files::{FileError, Setup};

@@ -4,34 +4,13 @@ use crate::files::commands::read_one;
 use crate::files::{FileError, Setup, goal_seen_from};
 use crate::operator::Operator;
 use crate::run::prepare;
+use rumbo_control::ServoAngle;
 use rumbo_control::mode::ModeId;
-use rumbo_control::range::REACH_M;
-use rumbo_control::{AgedRange, Range, ServoAngle, TICK_S};
+use rumbo_control::policy::{Known, Observation, observe};
 use rumbo_sim::Sim;
 use rumbo_wire::{Command, Refusal};
 use std::borrow::Cow;
 use std::sync::Arc;
-
-/// Ages of ranges end here [s].
-const OLDEST_S: f32 = 1.0;
-
-/// What the robot's program knows, in the order of [`super::Robot::observed`].
-pub const OBSERVED: [&str; 14] = [
-    "left_rad_s",
-    "right_rad_s",
-    "range_left_m",
-    "range_right_m",
-    "range_front_m",
-    "age_left_s",
-    "age_right_s",
-    "age_front_s",
-    "servo_rad",
-    "x_m",
-    "y_m",
-    "heading_rad",
-    "goal_ahead_m",
-    "goal_left_m",
-];
 
 /// Ground truth, in the order of [`super::Robot::true_values`].
 pub const TRUE: [&str; 20] = [
@@ -231,37 +210,27 @@ impl Pilot {
         }
     }
 
-    /// What the robot's program knows after its last tick, by [`OBSERVED`]; zeros if the program is not Rumbo's own.
+    /// What the robot's program knows after its last tick; zeros if the program is not Rumbo's own.
     ///
-    /// Ranges are those of telemetry, the front one in the servo's direction: [`REACH_M`] where nothing is within reach, 0
-    /// before the first reading and of a sonar that is faulty or not there. Ages are at most a second. The pose is by
-    /// odometry from the start, the goal as seen from there; without a goal it is 0.
-    pub(super) fn observed(&self, sim: &Sim) -> [f32; OBSERVED.len()] {
+    /// Ranges are those of telemetry, the front one in the servo's direction. The pose is by odometry from the start, the
+    /// goal as seen from there; without a goal it is 0.
+    pub(super) fn observed(&self, sim: &Sim) -> Observation {
         let Some(known) = sim.knowledge() else {
-            return [0.0; OBSERVED.len()];
+            return Observation::default();
         };
         let [_, wheels] = known.wheel_rad_s;
-        let [left, right, front] = known.ranges;
-        let (ahead_m, left_m) = self.goal.map_or((0.0, 0.0), |goal| {
-            let [x_m, y_m] = goal.from_start_m;
-            known.pose.to_local(x_m, y_m)
-        });
-        [
-            wheels.left,
-            wheels.right,
-            range_m(left),
-            range_m(right),
-            range_m(front),
-            age_s(left),
-            age_s(right),
-            age_s(front),
-            known.servo_rad,
-            known.pose.x_m,
-            known.pose.y_m,
-            known.pose.heading_rad,
-            ahead_m,
-            left_m,
-        ]
+        let pose = &known.pose;
+        let [x_m, y_m] = match self.goal {
+            Some(goal) => goal.from_start_m,
+            None => [pose.x_m, pose.y_m],
+        };
+        let known = Known {
+            wheel_rad_s: &wheels,
+            ranges: &known.ranges,
+            servo_rad: known.servo_rad,
+            pose,
+        };
+        observe(&known, &(x_m, y_m))
     }
 
     /// Ground truth now, by [`TRUE`]: ranges infinite where nothing is within reach, `fault` the number of the latched one or
@@ -297,16 +266,4 @@ impl Pilot {
             goal_y_m,
         ]
     }
-}
-
-fn range_m(aged: AgedRange) -> f32 {
-    match aged.range {
-        Range::Valid(range_m) => range_m,
-        Range::Clear => REACH_M,
-        Range::Faulty => 0.0,
-    }
-}
-
-fn age_s(aged: AgedRange) -> f32 {
-    (f32::from(aged.age_ticks) * TICK_S).min(OLDEST_S)
 }

@@ -1,7 +1,8 @@
 //! One robot of a batch: its simulation, and who commands it.
 
-use super::pilot::{Driver, OBSERVED, Pilot, TRUE};
+use super::pilot::{Driver, Pilot, TRUE};
 use crate::files::{FileError, Setup};
+use rumbo_control::policy::Observation;
 use rumbo_control::{ServoAngle, TICK_US};
 use rumbo_plant::lanes::{LANES, Lanes};
 use rumbo_plant::world::World;
@@ -83,8 +84,8 @@ impl Robot {
         self.pilot.aim(&mut self.sim, servo);
     }
 
-    /// What its program knows after its last tick: see [`OBSERVED`].
-    pub fn observed(&self) -> [f32; OBSERVED.len()] {
+    /// What its program knows after its last tick: see [`super::OBSERVED`].
+    pub fn observed(&self) -> Observation {
         self.pilot.observed(&self.sim)
     }
 

@@ -1,7 +1,8 @@
 //! The robots of a scenario with several, in one world, stepped by a caller.
 
-use super::pilot::{Driver, OBSERVED, Pilot, TRUE};
+use super::pilot::{Driver, Pilot, TRUE};
 use crate::files::{FileError, Setup};
+use rumbo_control::policy::OBSERVED;
 use rumbo_control::{ServoAngle, TICK_US};
 use rumbo_plant::world::World;
 use rumbo_sim::fleet::Fleet;

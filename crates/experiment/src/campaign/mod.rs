@@ -17,6 +17,8 @@ use rumbo_sim::trace::Trace;
 const PASS: f64 = 0.99;
 /// Share of the reachable goals that must be reached.
 const REACHED: f64 = 0.98;
+/// Share of the goals that a policy must reach: 85 % by floats, of which integers may lose 3 points.
+const POLICY: f64 = 0.82;
 /// Largest median of path over shortest path, in worlds that block the straight line.
 const RATIO_MEDIAN: f64 = 1.3;
 /// The same for the 95th percentile.
@@ -95,7 +97,9 @@ pub fn campaign(
 /// Summary of the runs of a scenario.
 #[must_use]
 pub fn judge(setup: &Setup, results: &[RunResult]) -> Vec<Finding> {
-    if setup.world.random.is_some() {
+    if setup.scenario.mode == ModeId::Policy {
+        vec![judge_policy(setup, results)]
+    } else if setup.world.random.is_some() {
         let mut findings = vec![judge_limits(setup, results)];
         let metrics: Vec<&Metrics> = results.iter().map(|result| &result.metrics).collect();
         findings.extend(judge_worlds(&metrics).into_iter().map(|finding| Finding {
@@ -106,6 +110,25 @@ pub fn judge(setup: &Setup, results: &[RunResult]) -> Vec<Finding> {
     } else {
         vec![judge_limits(setup, results)]
     }
+}
+
+/// Share of the goals reached in time, without a hard contact or a fault.
+fn judge_policy(setup: &Setup, results: &[RunResult]) -> Finding {
+    let value = |result: &RunResult, name: &str| result.metrics.get(name).copied();
+    let arrives = |result: &&RunResult| {
+        value(result, "reached") == Some(1.0)
+            && value(result, "contact_speed_m_s").is_some_and(|fastest| fastest <= CONTACT_M_S)
+    };
+    let arrived = results.iter().filter(arrives).count();
+    Finding::new(
+        setup.scenario.name.clone(),
+        format!(
+            "{} reach the goal, no contact above {CONTACT_M_S} m/s",
+            percent(POLICY)
+        ),
+        share_of(arrived, results.len()),
+        arrived as f64 >= POLICY * results.len() as f64,
+    )
 }
 
 /// Limits of the file, and no touch in modes that have no obstacles to look for.

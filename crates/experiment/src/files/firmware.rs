@@ -1,10 +1,11 @@
 //! A program image from its file, and the wiring that it is for.
 
 use super::bounded::read_at_most;
-use super::{FileError, Library, RobotFile, ScenarioFile};
+use super::{FileError, Library, PolicyFile, RobotFile, ScenarioFile};
 use rumbo_control::mode::ModeId;
 use rumbo_control::rig::Rigs;
 use rumbo_emulator::image::{Image, ImageError};
+use rumbo_sim::NETWORK_AT;
 use rumbo_sim::mega::firmware::{Firmware, Language, Opening, opening};
 use rumbo_sim::mega::pins::link_usart;
 use rumbo_sim::wiring::Wiring;
@@ -69,6 +70,26 @@ pub fn wired(
         opening.language,
         (&wiring, pins),
     )?)
+}
+
+/// Puts a policy beside a program, if there is one.
+///
+/// # Errors
+/// The program is not ours, or lies where the policy belongs.
+pub fn beside(firmware: Firmware, policy: Option<&PolicyFile>) -> Result<Firmware, FileError> {
+    let Some(policy) = policy else {
+        return Ok(firmware);
+    };
+    let wrong = |why: &str| {
+        let (name, policy) = (firmware.name(), &policy.name);
+        FileError::Setting(format!("firmware {name}: takes no policy {policy}: {why}"))
+    };
+    if firmware.language() != Language::Frames {
+        return Err(wrong("it is not Rumbo's own; leave the policy out"));
+    }
+    let placed = firmware.image().clone().with(NETWORK_AT, &policy.bytes);
+    let image = placed.map_err(|error| wrong(&error.to_string()))?;
+    Ok(firmware.with_image(image))
 }
 
 /// Reads an image.

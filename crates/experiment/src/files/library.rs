@@ -1,9 +1,9 @@
-//! Finds robots, worlds and scenarios: built into the program by name, on disk by path.
+//! Finds robots, worlds, scenarios and policies: built into the program by name, on disk by path.
 
 use super::bounded;
 use super::error::FileError;
 use super::near::near_or_all;
-use super::{RobotFile, ScenarioFile, WorldFile};
+use super::{PolicyFile, RobotFile, ScenarioFile, WorldFile};
 use rust_embed::RustEmbed;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,6 +20,10 @@ struct Worlds;
 #[folder = "../../scenarios"]
 struct Scenarios;
 
+#[derive(RustEmbed)]
+#[folder = "../../policies"]
+struct Policies;
+
 /// The kinds of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
@@ -29,6 +33,8 @@ pub enum Kind {
     World,
     /// `scenarios/*.toml`
     Scenario,
+    /// `policies/*.toml`
+    Policy,
 }
 
 impl Kind {
@@ -39,6 +45,17 @@ impl Kind {
             Self::Robot => "robot",
             Self::World => "world",
             Self::Scenario => "scenario",
+            Self::Policy => "policy",
+        }
+    }
+
+    /// The folder of the built-in files.
+    fn folder(self) -> &'static str {
+        match self {
+            Self::Robot => "robots",
+            Self::World => "worlds",
+            Self::Scenario => "scenarios",
+            Self::Policy => "policies",
         }
     }
 
@@ -48,6 +65,7 @@ impl Kind {
             Self::Robot => Robots::iter().collect(),
             Self::World => Worlds::iter().collect(),
             Self::Scenario => Scenarios::iter().collect(),
+            Self::Policy => Policies::iter().collect(),
         };
         let mut names: Vec<String> = files
             .iter()
@@ -63,6 +81,7 @@ impl Kind {
             Self::Robot => Robots::get(&file),
             Self::World => Worlds::get(&file),
             Self::Scenario => Scenarios::get(&file),
+            Self::Policy => Policies::get(&file),
         }?;
         String::from_utf8(embedded.data.into_owned()).ok()
     }
@@ -147,6 +166,15 @@ impl Library {
         })
     }
 
+    /// A policy.
+    ///
+    /// # Errors
+    /// As for [`Library::robot`].
+    pub fn policy(&self, name_or_path: &str) -> Result<PolicyFile, FileError> {
+        let found = self.find(Kind::Policy, name_or_path)?;
+        PolicyFile::parse(&found.name, &found.file, &found.text)
+    }
+
     /// The first of our robots that is so.
     pub fn robot_with(&self, is_so: impl Fn(&RobotFile) -> bool) -> Option<String> {
         let mut names = self.list(Kind::Robot).into_iter();
@@ -193,7 +221,7 @@ impl Library {
                 near,
             }
         })?;
-        let file = format!("{}s/{name_or_path}.toml", kind.word());
+        let file = format!("{}/{name_or_path}.toml", kind.folder());
         Ok(Found {
             name: name_or_path.to_owned(),
             file,

@@ -59,6 +59,8 @@ pub struct ScenarioFile {
     pub rig: String,
     /// Name of the world, or path of its file.
     pub world: String,
+    /// Name of the policy of mode 9, or path of its file.
+    pub policy: Option<String>,
     /// The mode selected before the first command.
     pub mode: ModeId,
     /// How long it lasts, in s.
@@ -191,6 +193,7 @@ impl ScenarioFile {
             world: root
                 .required_text("world", "name of a world, e.g. \"open\"")
                 .value,
+            policy: root.text("policy").map(|policy| policy.value),
             mode: mode.unwrap_or_default(),
             duration_s,
             start: read_start(&root.table("start")),

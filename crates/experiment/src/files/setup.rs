@@ -5,7 +5,9 @@ use super::kept::Calibrations;
 use super::near::{near, near_or_all};
 use super::read::Allowed;
 use super::start::{pose, stand_apart, stands_free};
-use super::{Library, RobotFile, ScenarioFile, Spread, Start, WorldFile, firmware, parameters};
+use super::{
+    Library, PolicyFile, RobotFile, ScenarioFile, Spread, Start, WorldFile, firmware, parameters,
+};
 use crate::random_world::{Journey, Site, Size};
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
@@ -59,6 +61,8 @@ pub struct Overrides {
     pub rig: Option<String>,
     /// Another world.
     pub world: Option<String>,
+    /// Another policy for mode 9.
+    pub policy: Option<String>,
     /// Parameters by name: those of the control core, and the dotted keys of the plant such as `battery.open_circuit_v`.
     pub parameters: Vec<(String, f64)>,
     /// The program that drives the robot.
@@ -84,6 +88,8 @@ pub struct Setup {
     pub rig: Rig,
     /// Its world.
     pub world: WorldFile,
+    /// What drives its mode 9.
+    pub policy: Option<PolicyFile>,
     /// The native program that drives the robot.
     pub program: NativeProgram,
     /// An image on an emulated Mega that replaces it.
@@ -144,6 +150,11 @@ impl Library {
             Some(world) => self.world(world)?,
             None => beside.world(&scenario.world)?,
         };
+        let policy = match (&overrides.policy, &scenario.policy) {
+            (Some(policy), _) => Some(self.policy(policy)?),
+            (None, Some(policy)) => Some(beside.policy(policy)?),
+            (None, None) => None,
+        };
         scenario.robot.clone_from(&robot.name);
         scenario.world.clone_from(&world.name);
         if let Some(rig) = &overrides.rig {
@@ -175,7 +186,10 @@ impl Library {
                 near: near_or_all(&scenario.rig, robot.rigs.keys().map(String::as_str)),
             })?;
         let wiring = overrides.wiring.as_deref();
-        let load = |path: &PathBuf| firmware::load(path, wiring, &robot, &scenario).map(Arc::new);
+        let load = |path: &PathBuf| {
+            let firmware = firmware::load(path, wiring, &robot, &scenario)?;
+            firmware::beside(firmware, policy.as_ref()).map(Arc::new)
+        };
         let firmware = overrides.firmware.as_ref().map(load).transpose()?;
         let mut texts = overrides.texts.clone();
         texts.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
@@ -184,6 +198,7 @@ impl Library {
             robot,
             rig,
             world,
+            policy,
             program: overrides.program,
             firmware,
             texts,
@@ -313,6 +328,7 @@ impl Setup {
             (None, NativeProgram::Rumbo) => Program::Rumbo {
                 parameters: setup.control_parameters()?,
                 divider: setup.divider(),
+                network: setup.network(),
             },
             (None, NativeProgram::Baseline) => Program::Baseline {
                 mode: scenario.mode,
@@ -332,6 +348,12 @@ impl Setup {
             seed,
             day: self.number,
         })
+    }
+
+    /// The network of its policy; empty without one.
+    fn network(&self) -> Arc<[u8]> {
+        let policy = self.policy.as_ref();
+        policy.map_or_else(Arc::default, |policy| policy.bytes.clone())
     }
 
     /// Our own control program is too large for the robot's board.

@@ -2,7 +2,9 @@
 
 use rumbo_control::mode::Movement;
 use rumbo_control::params::ParamId;
-use rumbo_experiment::files::{Kind, Library, Overrides, RobotFile, ScenarioFile, WorldFile};
+use rumbo_experiment::files::{
+    Kind, Library, Overrides, PolicyFile, RobotFile, ScenarioFile, WorldFile,
+};
 use rumbo_wire::message::{Command, Level};
 
 #[test]
@@ -630,12 +632,13 @@ fn unknown_names_list_the_near_ones() {
 proptest::proptest! {
     #[test]
     fn a_damaged_file_gets_an_answer_and_never_a_panic(at in 0_usize..600, cut in 0_usize..20, put in "[ -~\n]{0,6}") {
-        for kind in [Kind::Robot, Kind::World, Kind::Scenario] {
+        for kind in [Kind::Robot, Kind::World, Kind::Scenario, Kind::Policy] {
             let library = Library::new();
             let text = match kind {
                 Kind::Robot => library.robot("memoria").unwrap().text,
                 Kind::World => library.world("room").unwrap().text,
                 Kind::Scenario => library.scenario("manual-deadzone-left-forward").unwrap().text,
+                Kind::Policy => library.policy("goal").unwrap().text,
             };
             let (from, to) = (at % text.len(), (at % text.len() + cut).min(text.len()));
             let damaged = format!("{}{put}{}", &text[..from], &text[to..]);
@@ -643,6 +646,7 @@ proptest::proptest! {
                 Kind::Robot => RobotFile::parse("x", "x.toml", &damaged).err(),
                 Kind::World => WorldFile::parse("x", "x.toml", &damaged).err(),
                 Kind::Scenario => ScenarioFile::parse("x", "x.toml", &damaged).err(),
+                Kind::Policy => PolicyFile::parse("x", "x.toml", &damaged).err(),
             };
             for line in complaint.iter().flat_map(|error| error.to_string().lines().map(String::from).collect::<Vec<_>>()) {
                 proptest::prop_assert!(line.starts_with("x.toml:"), "{line}");

@@ -6,7 +6,7 @@ use rumbo_control::mode::{Level, ModeId, Movement};
 use rumbo_control::params::ParamId;
 use rumbo_control::{Micros, Wheels};
 use rumbo_wire::{
-    COMMAND_LIFE_MS, Command, EventKind, Frame, Kind, Recalled, Refusal, RobotTime, ToRobot,
+    COMMAND_LIFE_MS, Command, EventKind, Frame, Kind, Recalled, Refusal, RobotTime, ToRobot, crc16,
 };
 use support::{Bench, SESSION};
 
@@ -360,4 +360,34 @@ fn the_status_after_hello_carries_the_time_since_the_start() {
     let at = bench.status().at;
     assert_eq!(at.start, 0);
     assert!((750..=850).contains(&at.ms), "{at:?}");
+}
+
+/// A network of one layer whose outputs are zero.
+fn network() -> Vec<u8> {
+    let mut bytes = b"RPN\x01\x26\x00\x01\x01\x03".to_vec();
+    bytes.resize(36, 0);
+    let crc = bytes.iter().fold(0xFFFF, |crc, byte| crc16(crc, *byte));
+    bytes.extend(crc.to_le_bytes());
+    bytes
+}
+
+#[test]
+fn mode_9_starts_only_with_a_whole_network() {
+    let starts = |network: &[u8]| {
+        let mut bench = Bench::new();
+        bench
+            .robot
+            .learn(|at| network.get(usize::from(at)).copied().unwrap_or(0xFF));
+        bench.ticks(50);
+        bench.command(Command::Mode(ModeId::Policy)).unwrap();
+        bench.command(Command::Arm)
+    };
+    let whole = network();
+    assert_eq!(starts(&whole), Ok(0.0));
+    assert_eq!(starts(&[]), Err(Refusal::NoPolicy), "erased flash");
+    for at in 0..whole.len() {
+        let mut damaged = whole.clone();
+        damaged[at] ^= 0x10;
+        assert_eq!(starts(&damaged), Err(Refusal::NoPolicy), "byte {at}");
+    }
 }

@@ -65,6 +65,12 @@ impl Firmware {
         })
     }
 
+    /// The same with another image, such as one with more in its flash.
+    #[must_use]
+    pub fn with_image(self, image: Image) -> Self {
+        Self { image, ..self }
+    }
+
     /// The file's name.
     pub fn name(&self) -> &str {
         &self.name

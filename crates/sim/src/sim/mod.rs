@@ -117,8 +117,9 @@ impl Sim {
             Program::Rumbo {
                 parameters,
                 divider,
+                network,
             } => {
-                let mut native = Native::new(Memory(memory), &parameters)?;
+                let mut native = Native::new(Memory(memory), network, &parameters)?;
                 native.divider = divider;
                 Controller::Rumbo(Box::new(native))
             }

@@ -12,6 +12,7 @@ use rumbo_control::{Fault, Inputs, OUTPUT_DELAY_US, Outputs, ServoAngle, TICK_US
 use rumbo_plant::plant::Event;
 use rumbo_robot::{Cell, Config, Loops, Robot, START_AT};
 use rumbo_wire::{Command, Refusal, ResetCause, Telemetry};
+use std::sync::Arc;
 
 /// The converter's reference, the chip's supply [V].
 const CONVERTER_V: f64 = 5.0;
@@ -51,6 +52,8 @@ pub(super) struct Native {
     converted: Option<(u8, u16)>,
     /// Its EEPROM.
     pub(super) memory: Memory,
+    /// The network of mode 9.
+    network: Arc<[u8]>,
     pub(super) next_tick_us: u64,
     /// Outputs and when they take effect.
     pub(super) pending: Option<(u64, Outputs)>,
@@ -72,9 +75,11 @@ pub struct Latched {
 }
 
 impl Native {
-    /// A robot with what its EEPROM holds, then these parameters, later ones in place of earlier ones.
+    /// A robot with what its EEPROM holds, then these parameters, later ones in place of earlier ones; beside its program
+    /// lies this network.
     pub(super) fn new<'a>(
         mut memory: Memory,
+        network: Arc<[u8]>,
         parameters: impl IntoIterator<Item = &'a (ParamId, f32)>,
     ) -> Result<Self, SimError> {
         // As the firmware counts its starts.
@@ -89,6 +94,7 @@ impl Native {
             start,
         });
         robot.recall(|address| memory.read(address));
+        robot.learn(|at| byte(&network, at));
         for (id, value) in parameters {
             set_param(&mut robot, *id, *value)?;
         }
@@ -100,6 +106,7 @@ impl Native {
             divider: None,
             converted: None,
             memory,
+            network,
             next_tick_us: 0,
             pending: None,
             recorded: None,
@@ -160,6 +167,11 @@ impl Native {
         let last = self.converted.replace((input, counts))?;
         (last.0 == input).then(|| self.robot.battery_v(last.1))
     }
+}
+
+/// A byte beside the program, erased where there is nothing.
+fn byte(network: &[u8], at: u16) -> u8 {
+    network.get(usize::from(at)).copied().unwrap_or(0xFF)
 }
 
 fn set_param(robot: &mut Robot, id: ParamId, value: f32) -> Result<(), SimError> {
@@ -253,10 +265,11 @@ impl Sim {
             recorded.push(Latched { received, inputs });
         }
         if native.is_unlinked {
-            native.robot.decide();
+            native.robot.think();
         } else {
             native.robot.report();
         }
+        native.robot.decide(|at| byte(&native.network, at));
         // A byte takes 3.4 ms: the one before is written.
         if let Some(cell) = native.robot.store() {
             native.memory.write(cell);

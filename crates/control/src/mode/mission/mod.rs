@@ -41,7 +41,8 @@ use obstacle::Way;
 use place::Place;
 use plan::Plan;
 use proof::Proof;
-use watch::{Watch, Worth};
+pub(super) use watch::Watch;
+use watch::Worth;
 
 /// Way around an obstacle without an echo of the sonar towards it, after which that may be silent for ever [m].
 const UNSEEN_M: f32 = 0.25;

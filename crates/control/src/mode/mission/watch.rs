@@ -61,7 +61,7 @@ const SILENT_M: f32 = 1.3;
 
 /// The verdict on a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Worth {
+pub(in crate::mode) enum Worth {
     /// The first along its beam.
     First,
     /// It repeats the one before.
@@ -170,12 +170,12 @@ impl SonarState {
 
 /// Memory of the watch, by `SonarId` number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Watch {
+pub(in crate::mode) struct Watch {
     sonars: [SonarState; 3],
     /// What the reading of this tick shows to approach.
-    pub approach: Option<Approach>,
+    pub(super) approach: Option<Approach>,
     /// Faces that the front sonar must detect.
-    pub landmarks: Landmarks,
+    pub(super) landmarks: Landmarks,
     /// Directions without an echo since the last call of `ask`; none after an echo.
     unanswered: u8,
     /// The front sonar's way since the last look aside [m].
@@ -207,7 +207,7 @@ impl Default for Watch {
 
 impl Watch {
     /// Ingests a reading and judges it. Unless `driving`, the robot waits, and silence does no harm.
-    pub(super) fn ingest(
+    pub(in crate::mode) fn ingest(
         &mut self,
         estimate: &Estimate,
         reading: &Reading,
@@ -286,7 +286,7 @@ impl Watch {
     ///
     /// # Errors
     /// The fault of a sonar.
-    pub(super) fn step(
+    pub(in crate::mode) fn step(
         &mut self,
         estimate: &Estimate,
         stale_s: f32,

@@ -11,6 +11,7 @@ mod lane;
 mod mode_6;
 mod mode_7;
 mod mode_8;
+mod mode_9;
 mod odometry;
 mod sonars;
 mod states;

@@ -1,0 +1,159 @@
+//! Mode 9: a goal, by a policy that was learned in simulation.
+//!
+//! observation -> network ([`crate::policy`]) -> wheel speeds and servo, every 0.1 s
+//!
+//! The network works for the ticks of a decision, so what it makes of an observation drives from the next one on; where
+//! it is learned it must drive as late. It knows nothing of safety: the sonars are watched as in mode 8, the wheels as in
+//! every mode, and the robot stops at the goal by its odometry. docs/theory/policy.md.
+
+use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::mission::Watch;
+use super::{Action, ActiveMode, Description, MetricGroup, Mode, Plot, waypoints};
+use crate::estimate::Estimate;
+use crate::math::sqrt;
+use crate::params::{ParamId, Params};
+use crate::policy::{DECISION_TICKS, Decision, ONE, OUTPUTS, Observation, Shape};
+use crate::rig::{Rig, Rigs};
+use crate::types::{Drive, Fault, ServoAngle, Wheels};
+use core::f32::consts::FRAC_PI_2;
+
+/// Description of mode 9.
+pub const DESCRIPTION: Description = Description {
+    number: 9,
+    name: "policy",
+    about: "reach a goal by a learned network",
+    states: STATES,
+    idle: Some(Phase::Wait as u8),
+    reference: Some(waypoints::REFERENCE),
+    heading: false,
+    takes: None,
+    rigs: Rigs::of(&[Rig::Final]),
+    parameters: &[SPEED_LOOPS, FEEDFORWARD, WHEEL_RAMPS],
+    plots: &[Plot::Position, Plot::Wheels, Plot::Distance],
+    metrics: &[MetricGroup::Journey],
+};
+
+/// The wheel speed of an output of 1 [rad/s].
+pub const WHEEL_RAD_S: f32 = 12.0;
+/// The servo's angle of an output of 1 [rad]; a little less than its end, which it must not pass.
+pub const SERVO_RAD: f32 = FRAC_PI_2 - 1e-4;
+/// Nearer than this the goal is reached, by odometry [m].
+const ARRIVED_M: f32 = 0.08;
+
+states! {
+    /// States of mode 9.
+    enum Phase {
+        /// Wheels released.
+        #[default]
+        Wait = "wait for goal" { Seek: "a goal arrives" }
+        /// Drives as the network says.
+        Seek = "seek" { Done: "at the goal" }
+        /// Wheels released; the event *reached*, once.
+        Done = "done" { Seek: "the robot is not at the goal any more" }
+    }
+}
+
+/// Where to go [m].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Goal(pub(super) Option<(f32, f32)>);
+
+/// Configuration of mode 9.
+#[derive(Clone, Copy, Debug)]
+pub struct Policy<'a> {
+    goal: &'a Goal,
+    /// An answer of a sonar may be as old [s].
+    stale_s: f32,
+}
+
+/// State of mode 9.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct State {
+    phase: Phase,
+    /// Ticks of the decision that is worked on.
+    ticks: u8,
+    decision: Decision,
+    /// The last one.
+    outputs: [i8; OUTPUTS],
+    watch: Watch,
+}
+
+/// Outputs of a network as shares of -1..=1.
+pub fn shares(outputs: [i8; OUTPUTS]) -> [f32; OUTPUTS] {
+    outputs.map(|output| f32::from(output) * (1.0 / ONE as f32))
+}
+
+impl<'a> Mode<'a> for Policy<'a> {
+    type Setpoint = Goal;
+    type State = State;
+
+    fn first() -> Goal {
+        Goal::default()
+    }
+
+    fn new(params: &Params, goal: &'a Goal) -> Self {
+        Self {
+            goal,
+            stale_s: params.get(ParamId::StaleRange),
+        }
+    }
+
+    fn reference(goal: &Goal, _: &State) -> Wheels<f32> {
+        let (left, right) = goal.0.unwrap_or_default();
+        Wheels { left, right }
+    }
+
+    fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
+        if let Some(reading) = &estimate.reading {
+            state.watch.ingest(estimate, reading, true);
+        }
+        state.watch.step(estimate, self.stale_s, false)?;
+        let mut action = Action::default();
+        state.phase = match self.goal.0 {
+            None => Phase::Wait,
+            Some((x_m, y_m)) => {
+                let (x_m, y_m) = (x_m - estimate.pose.x_m, y_m - estimate.pose.y_m);
+                match sqrt(x_m * x_m + y_m * y_m) < ARRIVED_M {
+                    true => Phase::Done,
+                    false => Phase::Seek,
+                }
+            }
+        };
+        action.state = state.phase as u8;
+        action.reached = state.phase == Phase::Done;
+        if state.phase == Phase::Seek {
+            let [left, right, servo] = shares(state.outputs);
+            let wheels = Wheels { left, right }.map(|share| share * WHEEL_RAD_S);
+            if wheels != Wheels::both(0.0) {
+                action.drive = Drive::WheelSpeed(wheels);
+            }
+            action.look.servo = ServoAngle(servo * SERVO_RAD);
+        }
+        Ok(action)
+    }
+}
+
+impl ActiveMode {
+    /// Works on a decision of mode 9 after its tick, with the network whose bytes `read` gives; `observe` is what the robot
+    /// knows, with the goal there.
+    pub fn decide(
+        &mut self,
+        shape: &Shape,
+        read: impl Fn(u16) -> u8,
+        observe: impl FnOnce(&(f32, f32)) -> Observation,
+    ) {
+        let Self::Policy(Goal(Some(goal_m)), state) = self else {
+            return;
+        };
+        match state.ticks {
+            0 => {
+                state.outputs = state.decision.outputs(shape).unwrap_or_default();
+                state.decision = Decision::begin(shape, read, &observe(goal_m));
+            }
+            _ => state.decision.work(shape, read),
+        }
+        state.ticks = (state.ticks + 1) % DECISION_TICKS;
+    }
+}
+
+#[cfg(test)]
+mod tests;
