@@ -5,7 +5,7 @@
 //! through rings. Nothing in the loop waits for anything but the next tick.
 #![no_std]
 #![no_main]
-#![feature(abi_avr_interrupt)]
+#![feature(abi_avr_interrupt, asm_experimental_arch)]
 #![deny(unsafe_op_in_unsafe_fn)]
 
 mod hal;
@@ -15,7 +15,9 @@ mod hal;
 )]
 mod pins;
 
-use hal::{adc, clock, eeprom, encoder::Encoders, link, outputs, power, record, sonar::Listener};
+use hal::{
+    adc, clock, eeprom, encoder::Encoders, link, network, outputs, power, record, sonar::Listener,
+};
 use rumbo_control::{Inputs, TICK_US};
 use rumbo_robot::{Cell, Config, Robot, START_AT};
 
@@ -36,6 +38,7 @@ fn main() -> ! {
         start,
     });
     robot.recall(eeprom::read);
+    robot.learn(network::read);
     // It is there before the first byte of this start has left.
     eeprom::write(Cell {
         address: START_AT,
@@ -77,6 +80,7 @@ fn run(robot: &mut Robot) -> ! {
             listener.asked(sonar);
         }
         robot.report();
+        robot.decide(network::read);
         if eeprom::is_ready()
             && let Some(cell) = robot.store()
         {

@@ -8,8 +8,11 @@ use rumbo_emulator::devices::ports::Pin;
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
 use rumbo_emulator::model::ATMEGA2560;
+use rumbo_experiment::files::Library;
 use rumbo_robot::latch::Stamp;
+use rumbo_robot::{NETWORK_AT, Robot};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Where variables start in the data space.
 const SRAM_START: usize = ATMEGA2560.sram_start as usize;
@@ -41,6 +44,27 @@ pub(crate) fn image_path() -> Option<PathBuf> {
 pub(crate) fn image() -> Option<Image> {
     let bytes = std::fs::read(image_path()?).unwrap();
     Some(Image::parse(&bytes).unwrap())
+}
+
+/// The same with the network of a policy beside it.
+pub(crate) fn image_with_network() -> Option<Image> {
+    Some(image()?.with(NETWORK_AT, &network()).unwrap())
+}
+
+/// The network of the built-in policy.
+pub(crate) fn network() -> Arc<[u8]> {
+    Library::new().policy("goal").unwrap().bytes
+}
+
+/// Gives a native robot this network, before its first tick.
+pub(crate) fn learn(robot: &mut Robot, network: &[u8]) {
+    robot.learn(|at| network.get(usize::from(at)).copied().unwrap_or(0xFF));
+}
+
+/// A tick of a native robot behind its outputs.
+pub(crate) fn report(robot: &mut Robot, network: &[u8]) {
+    robot.report();
+    robot.decide(|at| network.get(usize::from(at)).copied().unwrap_or(0xFF));
 }
 
 /// Its file, debugging information included.

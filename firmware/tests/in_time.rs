@@ -73,6 +73,7 @@ fn no_tick_of_a_run_is_late_or_longer_than_its_period() {
         ("mode8-lane", 1),
         ("mode8-obstacles", 1),
         ("mode8-obstacles", 19),
+        ("mode9-random", 1),
     ]);
 }
 
@@ -97,7 +98,7 @@ fn nor_one_of_any_mode() {
         "mode8-goals",
         "mode8-lane",
     ];
-    let often = ["mode8-obstacles", "mode8-random"];
+    let often = ["mode8-obstacles", "mode8-random", "mode9-random"];
     let seeds = |name| (1..=20).map(move |seed| (name, seed));
     are_in_time(
         once.map(|name| (name, 1))

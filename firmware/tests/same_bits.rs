@@ -1,7 +1,7 @@
 //! The image and the native robot agree on equal inputs: every output, every byte on the link, and every field of their
 //! state.
 
-use crate::board::{Board, elf, image, outputs_record};
+use crate::board::{Board, elf, image_with_network, learn, network, outputs_record, report};
 use crate::tape::Tape;
 use crate::world::World;
 use rumbo_control::mode::ModeId;
@@ -22,7 +22,7 @@ const IN_TIME: u64 = 48_000;
 const MOST: u64 = 45_000;
 
 /// Experiments whose inputs are recorded, and of which robots; the one of mode 2 turns on the spot.
-const RECORDED: [(&str, u64); 15] = [
+const RECORDED: [(&str, u64); 16] = [
     ("manual-arc-left-speed", 1),
     ("manual-straight", 1),
     ("mode1-final", 1),
@@ -38,6 +38,7 @@ const RECORDED: [(&str, u64); 15] = [
     ("mode8-goals", 1),
     ("mode8-lane", 1),
     ("mode8-obstacles", 1),
+    ("mode9-random", 1),
 ];
 /// A sonar in doubt, beside a wall.
 const NOISE: TimedWireFault = TimedWireFault {
@@ -127,10 +128,12 @@ fn visited(mut given: Given) -> BTreeSet<(u8, u8)> {
         reset: ResetCause::PowerOn,
         start: 0,
     });
+    let network = network();
+    learn(&mut robot, &network);
     let (mut outputs, mut visited) = (Outputs::default(), BTreeSet::new());
     for tick in 1..=given.ticks() {
         outputs = robot.tick(&given.inputs(tick, &outputs));
-        robot.report();
+        report(&mut robot, &network);
         let state = robot.mode_state();
         visited.extend(state.map(|(mode, state)| (mode as u8, state)));
         given
@@ -144,7 +147,7 @@ fn visited(mut given: Given) -> BTreeSet<(u8, u8)> {
 
 /// Runs both; prints the cycles of the ticks by mode.
 fn compare(what: &str, mut world: Given) {
-    let (Some(elf), Some(image)) = (elf(), image()) else {
+    let (Some(elf), Some(image)) = (elf(), image_with_network()) else {
         return;
     };
     let mut board = Board::new(&elf, &image);
@@ -153,6 +156,8 @@ fn compare(what: &str, mut world: Given) {
         reset: ResetCause::PowerOn,
         start: 0,
     });
+    let network = network();
+    learn(&mut robot, &network);
     let (mut outputs, mut transmitted) = (Outputs::default(), Vec::new());
     let [mut native, mut chip] = [String::new(), String::new()];
     const NUMBERS: usize = ModeId::ALL[ModeId::ALL.len() - 1] as usize + 1;
@@ -162,7 +167,7 @@ fn compare(what: &str, mut world: Given) {
     for tick in 1..=count {
         let inputs = world.inputs(tick, &outputs);
         outputs = robot.tick(&inputs);
-        robot.report();
+        report(&mut robot, &network);
         let bytes = world.bytes(tick);
         board.arrive(&bytes);
         let (left, cycles) = board.tick(&inputs);

@@ -301,7 +301,7 @@ impl World {
                 }
             }
             ModeId::Mission if self.random.chance(2) => self.command(Command::Lane),
-            ModeId::Mission => {
+            ModeId::Mission | ModeId::Policy => {
                 let (x_m, y_m) = (
                     self.random.between(-2.0, 3.0),
                     self.random.between(-2.0, 2.0),
@@ -326,7 +326,7 @@ impl World {
         let line = match (self.mode, self.random.below(6)) {
             (_, 0) => format!("REF {rpm} {cm}"),
             (_, 1) => format!("PID {} {one:.2} 0.5 0", if other > 0.5 { "A" } else { "B" }),
-            (ModeId::Mission, _) => format!("GOAL {one:.2} {other:.2}"),
+            (ModeId::Mission | ModeId::Policy, _) => format!("GOAL {one:.2} {other:.2}"),
             (ModeId::WheelSpeed, 2) => format!("REF A {rpm:.1}"),
             (ModeId::WheelSpeed, 3) => format!("REF B {rpm:.1}"),
             (ModeId::WheelSpeed | ModeId::StraightLine | ModeId::Manual, _) => {

@@ -13,6 +13,7 @@
 //! | USART 2 | the link, two rings ([`link`]) |
 //! | converter | the battery's voltage, where a divider is wired ([`adc`]) |
 //! | EEPROM | saved parameters ([`eeprom`]) |
+//! | flash from 160 KB on | the network of mode 9 ([`network`]) |
 //! | watchdog, sleep | [`power`] |
 //!
 //! [`record`] exposes the loop's inputs and outputs to tests.
@@ -23,6 +24,7 @@ pub mod eeprom;
 pub mod encoder;
 pub mod link;
 pub mod motors;
+pub mod network;
 pub mod outputs;
 pub mod power;
 pub mod record;

@@ -1,12 +1,13 @@
 //! `cargo xtask firmware`: the image for the Mega, whole, with its sizes.
 //!
 //! cargo builds `firmware/` with a Rust for the AVR ([`toolchain`]). Then the image is checked for forbidden content
-//! ([`image`], [`stack_arguments`]), its debugging information is corrected ([`debugging`]) and its hash is written
+//! ([`image`], [`stack_arguments`], [`indirect`]), its debugging information is corrected ([`debugging`]) and its hash is written
 //! into it. The product is `target/firmware/rumbo.elf` and `rumbo.hex`. More flash or SRAM than the robot file allows
 //! is an error ([`sizes`]).
 
 mod debugging;
 mod image;
+mod indirect;
 mod sizes;
 mod stack_arguments;
 pub(crate) mod toolchain;
@@ -66,6 +67,7 @@ fn check(project: &Project, linked: &Path) -> Result<Sizes, String> {
             .arg(linked),
     )?;
     stack_arguments::check(&disassembly)?;
+    indirect::check(&disassembly)?;
     let bytes = read(linked)?;
     let wrong = |error: object::read::Error| format!("{}: {error}", linked.display());
     let file = object::File::parse(&*bytes).map_err(wrong)?;
