@@ -6,8 +6,9 @@ use crate::output;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_emulator::image::Image;
 use rumbo_emulator::model::ATMEGA2560;
-use rumbo_experiment::files::firmware;
+use rumbo_experiment::files::{Library, firmware};
 use rumbo_flash::Programmer;
+use rumbo_sim::NETWORK_AT;
 use rumbo_station::port;
 use std::fmt::Display;
 use std::path::PathBuf;
@@ -28,6 +29,14 @@ pub(crate) fn flash(args: &FlashArgs) -> Result<(), Failure> {
     let (name, image) = image(args)?;
     let wrong = |error: &dyn Display| Failure::Input(format!("firmware {name}: {error}"));
     let image = image.on(&ATMEGA2560).map_err(|error| wrong(&error))?;
+    let image = match &args.policy {
+        Some(policy) => {
+            let policy = Library::new().policy(policy)?;
+            let placed = image.with(NETWORK_AT, &policy.bytes);
+            placed.map_err(|error| wrong(&error))?
+        }
+        None => image,
+    };
     let mut programmer = Programmer::new(image.flash()).map_err(|error| wrong(&error))?;
     output::line(&format!(
         "writing {name} ({} bytes) to {port}",

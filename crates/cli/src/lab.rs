@@ -54,6 +54,7 @@ fn simulated(args: &mut LabArgs) -> Result<SimulatedRobot, Failure> {
     };
     let overrides = Overrides {
         robot: args.setting.robot.clone(),
+        policy: args.setting.policy.clone(),
         ..args.image.overrides()
     };
     let mut robot = SimulatedRobot::new(overrides, choice)?;
@@ -103,6 +104,7 @@ fn served_fleet(
     args.image.compile(kind, Some(&args.scenario))?;
     let overrides = Overrides {
         robot: args.setting.robot.clone(),
+        policy: args.setting.policy.clone(),
         ..args.image.overrides()
     };
     let choice = Choice {

@@ -12,6 +12,7 @@ mod connect;
 mod csv_rows;
 mod experiments;
 mod export;
+mod export_policy;
 mod failure;
 mod figures;
 mod flash;
@@ -94,6 +95,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Ros(mut args)) => ros::ros(&mut args),
         Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Export(args)) => export::export(&args),
+        Some(Command::ExportPolicy(args)) => export_policy::export_policy(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Rerun(args)) => rerun::rerun(&args),
         Some(Command::Identify(args)) => identify::identify(&args),

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use rumbo_experiment::files::{
     Kind as File, Library, NativeProgram, Overrides, Port, Setup, TimedText,
 };
-use rumbo_lab::manifest::{OF_FLEET, hash};
+use rumbo_lab::manifest::{OF_FLEET, OF_POLICY, hash};
 use rumbo_log::Manifest;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -103,6 +103,14 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         library = library.holding(File::Robot, name, text);
         robots += 1;
     }
+    let of_policy = manifest.files.iter();
+    let of_policy =
+        of_policy.filter_map(|(file, text)| Some((file.strip_prefix(OF_POLICY)?, text)));
+    let mut policies = Vec::new();
+    for (name, text) in of_policy {
+        library = library.holding(File::Policy, name, text);
+        policies.push(name.to_owned());
+    }
     let (program, firmware) = match manifest.program.as_str() {
         "rumbo" => (NativeProgram::Rumbo, None),
         // `original` in logs of 0.2.0 and before.
@@ -123,6 +131,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         robot: (robots < 2).then(|| robot.clone()),
         rig: manifest.rig.clone(),
         world: Some(world.clone()),
+        policy: policies.pop(),
         parameters: manifest.parameters.clone(),
         program,
         firmware,

@@ -21,6 +21,9 @@ pub(crate) struct SettingArgs {
     /// Sensor layout (rig): which sonars there are, and where [default: the scenario's]
     #[arg(long, value_name = "NAME")]
     pub(crate) rig: Option<String>,
+    /// Policy that drives mode 9: name or path of a file of `rumbo export-policy` [default: the scenario's]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) policy: Option<String>,
 }
 
 impl SettingArgs {
@@ -35,6 +38,7 @@ impl SettingArgs {
             robot: self.robot.clone(),
             rig: self.rig.clone(),
             world: self.world.clone(),
+            policy: self.policy.clone(),
             parameters: parameters.params.clone(),
             program: match program {
                 ProgramName::Rumbo => NativeProgram::Rumbo,

@@ -97,4 +97,7 @@ pub(crate) struct FlashArgs {
     /// Firmware to write, Intel HEX or ELF [default: the one that `cargo xtask firmware` built, target/firmware/rumbo.hex, or that of this release]
     #[arg(long, value_name = "FILE")]
     pub(crate) image: Option<PathBuf>,
+    /// Policy for mode 9 beside it: name or path of a file of `rumbo export-policy`; without it one that is there stays
+    #[arg(long, value_name = "NAME")]
+    pub(crate) policy: Option<String>,
 }

@@ -84,6 +84,8 @@ pub(crate) enum Command {
     Replay(ReplayArgs),
     /// Write a log as CSV, SVG or PNG
     Export(ExportArgs),
+    /// Make a policy of a learned network: integers that the robot evaluates in mode 9
+    ExportPolicy(ExportPolicyArgs),
     /// Run a recorded simulation again and compare it bit for bit
     Rerun(RerunArgs),
     /// Remove old logs of sessions and runs
@@ -97,6 +99,31 @@ pub(crate) enum Command {
     /// Write the manual pages, for packages
     #[command(hide = true)]
     Manual(ManualArgs),
+}
+
+/// Options of `rumbo export-policy`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo export-policy goal.json --out goal.toml
+  rumbo run mode9-random --policy goal.toml       drive by it
+  rumbo flash /dev/ttyACM0 --policy goal.toml     put it on the robot
+
+The network is JSON: inputs, each {\"of\": column, \"centre\": number, \"scale\": number}, and layers, each {\"weights\": [[...]], \"biases\": [...]}, a list
+of weights for each neuron; neurons are clipped to -1..1, the last layer is left wheel, right wheel, servo. examples/python/ppo.py writes one, docs/python.md
+says more. Weights become 8-bit integers.")]
+pub(crate) struct ExportPolicyArgs {
+    /// The network, JSON
+    #[arg(value_name = "NETWORK.json")]
+    pub(crate) network: PathBuf,
+    /// The policy to write [default: the same name with .toml, in the current folder]
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) out: Option<PathBuf>,
+    /// One line that says what it does
+    #[arg(long, value_name = "TEXT", default_value = "A learned policy")]
+    pub(crate) title: String,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
 }
 
 /// Options of `rumbo new`.
