@@ -16,6 +16,7 @@ from . import _rumbo
 from ._fleet import Fleet
 from ._identify import Identification, Identified, identify
 from ._log import Log, read_log
+from ._policy import Policy
 from ._rumbo import Snapshot
 from ._run import Run, Runs, run
 from ._setup import Source
@@ -45,6 +46,7 @@ __all__ = [
     "Identified",
     "Interrupted",
     "Log",
+    "Policy",
     "Run",
     "Runs",
     "Sim",
@@ -64,13 +66,13 @@ __all__ = [
 ]
 
 
-def names(kind: Literal["robot", "world", "scenario", "parameter"]) -> list[str]:
-    """Names of the built-in robots, worlds or scenarios, or of all parameters."""
+def names(kind: Literal["robot", "world", "scenario", "policy", "parameter"]) -> list[str]:
+    """Names of the built-in robots, worlds, scenarios or policies, or of all parameters."""
     return _rumbo.names(kind)
 
 
-def load(kind: Literal["robot", "world", "scenario"], name_or_path: str) -> dict[str, Any]:
-    """The content of a robot, world or scenario file, checked, to be changed and given to `run`, `Sim` or `Batch`.
+def load(kind: Literal["robot", "world", "scenario", "policy"], name_or_path: str) -> dict[str, Any]:
+    """The content of a robot, world, scenario or policy file, checked, to be changed and given to `run` and others.
 
     Raises:
         ValueError: An unknown name, with the near ones, or whatever is wrong with the file.

@@ -15,6 +15,7 @@ __all__ = [
     "VERSION",
     "Batch",
     "Fleet",
+    "Policy",
     "Setup",
     "Snapshot",
     "differences",
@@ -44,6 +45,7 @@ class Setup:
         held: Sequence[tuple[str, str, str]],
         robot: str | None,
         world: str | None,
+        policy: str | None,
         rig: str | None,
         parameters: Sequence[tuple[str, float]],
         program: str,
@@ -94,6 +96,13 @@ class Fleet:
     def begin(self, ticks: int) -> None: ...
     def obstacles(self) -> list[list[list[float]]]: ...
     def fault(self, index: int) -> str | None: ...
+
+@final
+class Policy:
+    def __new__(cls, name: str, held: Sequence[tuple[str, str, str]]) -> Policy: ...
+    @property
+    def title(self) -> str: ...
+    def decide(self, observations: NDArray[np.float32], outputs: NDArray[np.int8]) -> None: ...
 
 def names(kind: str) -> list[str]: ...
 def load(kind: str, name_or_path: str) -> str: ...

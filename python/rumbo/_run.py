@@ -95,6 +95,7 @@ def run(
     parameters: Mapping[str, float] | None = None,
     robot: Source | None = None,
     world: Source | None = None,
+    policy: Source | None = None,
     rig: str | None = None,
     program: Program = "rumbo",
     firmware: str | os.PathLike[str] | None = None,
@@ -107,11 +108,11 @@ def run(
 
     Args:
         scenario: A name (`rumbo.names("scenario")`), a path, or the content of a scenario file as a dictionary, whose
-            ``robot`` and ``world`` may be dictionaries.
+            ``robot``, ``world`` and ``policy`` may be dictionaries.
         seeds: One seed, or any number of them: ``range(1, 101)``. 0 to 2**64 - 1.
         parameters: By name (`rumbo.names("parameter")`): those of the control core, such as ``front_kp``, and of the
             plant, such as ``battery.open_circuit_v``, which then holds for every robot drawn.
-        robot, world: In place of the scenario's: names, paths or dictionaries.
+        robot, world, policy: In place of the scenario's: names, paths or dictionaries.
         rig: Another sensor layout of the robot.
         program: ``"rumbo"``, or ``"baseline"`` for the report's program.
         firmware: An image for the emulated Mega in place of the program: path of an ELF or HEX file.
@@ -130,6 +131,7 @@ def run(
         scenario,
         robot=robot,
         world=world,
+        policy=policy,
         rig=rig,
         parameters=parameters,
         program=program,

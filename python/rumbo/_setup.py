@@ -84,6 +84,7 @@ def make_setup(
     *,
     robot: Source | None = None,
     world: Source | None = None,
+    policy: Source | None = None,
     rig: str | None = None,
     parameters: Mapping[str, float] | None = None,
     program: Program = "rumbo",
@@ -93,9 +94,9 @@ def make_setup(
     """The setup of these; errors as for `rumbo.run`."""
     held = _Held()
     if isinstance(scenario, Mapping):
-        # Its robot and world may be dictionaries, too.
+        # Its robot, world and policy may be dictionaries, too.
         scenario = dict(scenario)
-        for kind in ("robot", "world"):
+        for kind in ("robot", "world", "policy"):
             if isinstance(scenario.get(kind), Mapping):
                 scenario[kind] = held.name(kind, scenario[kind])
     name = held.name("scenario", scenario)
@@ -103,6 +104,7 @@ def make_setup(
         name,
         robot=None if robot is None else held.name("robot", robot),
         world=None if world is None else held.name("world", world),
+        policy=None if policy is None else held.name("policy", policy),
         rig=rig,
         parameters=[(key, _number(key, value)) for key, value in (parameters or {}).items()],
         program=program,

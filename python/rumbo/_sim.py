@@ -35,7 +35,7 @@ class Batch:
     same in every batch and on any number of threads.
 
     Args:
-        scenario, robot, world, rig, parameters, program, firmware, randomize: As for `rumbo.run`.
+        scenario, robot, world, policy, rig, parameters, program, firmware, randomize: As for `rumbo.run`.
         seeds: A robot for each.
         driver: Who commands the robots.
         threads: One on each core by default.
@@ -54,6 +54,7 @@ class Batch:
         driver: Driver = "scenario",
         robot: Source | None = None,
         world: Source | None = None,
+        policy: Source | None = None,
         rig: str | None = None,
         parameters: Mapping[str, float] | None = None,
         program: Program = "rumbo",
@@ -66,6 +67,7 @@ class Batch:
             scenario,
             robot=robot,
             world=world,
+            policy=policy,
             rig=rig,
             parameters=parameters,
             program=program,
@@ -234,6 +236,7 @@ class Sim:
         driver: Driver = "scenario",
         robot: Source | None = None,
         world: Source | None = None,
+        policy: Source | None = None,
         rig: str | None = None,
         parameters: Mapping[str, float] | None = None,
         program: Program = "rumbo",
@@ -246,6 +249,7 @@ class Sim:
             driver=driver,
             robot=robot,
             world=world,
+            policy=policy,
             rig=rig,
             parameters=parameters,
             program=program,

@@ -9,6 +9,7 @@ mod fleet;
 mod guard;
 mod identify;
 mod log;
+mod policy;
 mod run;
 mod setup;
 mod study;
@@ -24,6 +25,8 @@ mod _rumbo {
     use super::identify::identify;
     #[pymodule_export]
     use super::log::read_log;
+    #[pymodule_export]
+    use super::policy::Policy;
     #[pymodule_export]
     use super::run::run;
     #[pymodule_export]

@@ -25,13 +25,14 @@ pub(crate) struct Setup {
 impl Setup {
     /// `held` are files given as text, as for [`library`].
     #[new]
-    #[pyo3(signature = (scenario, *, held, robot, world, rig, parameters, program, firmware, randomize))]
+    #[pyo3(signature = (scenario, *, held, robot, world, policy, rig, parameters, program, firmware, randomize))]
     #[allow(clippy::too_many_arguments, reason = "keywords of one Python call")]
     fn new(
         scenario: &str,
         held: Vec<(String, String, String)>,
         robot: Option<String>,
         world: Option<String>,
+        policy: Option<String>,
         rig: Option<String>,
         parameters: Vec<(String, f64)>,
         program: &str,
@@ -52,6 +53,7 @@ impl Setup {
             robot,
             rig,
             world,
+            policy,
             parameters,
             program,
             firmware,
@@ -82,21 +84,31 @@ impl Setup {
             scenario,
             robot,
             world,
+            policy,
             ..
         } = &self.files;
-        let held = [
+        let mut held = vec![
             (Kind::Scenario, &scenario.name, &scenario.text),
             (Kind::Robot, &robot.name, &robot.text),
             (Kind::World, &world.name, &world.text),
         ];
+        held.extend(
+            policy
+                .as_ref()
+                .map(|file| (Kind::Policy, &file.name, &file.text)),
+        );
         let arguments = PyDict::new(py);
         arguments.set_item("scenario", &scenario.name)?;
         arguments.set_item(
             "held",
-            held.map(|(kind, name, text)| (kind.word(), name, text)),
+            held.iter()
+                .map(|(kind, name, text)| (kind.word(), name, text))
+                .collect::<Vec<_>>(),
         )?;
         arguments.set_item("robot", &robot.name)?;
         arguments.set_item("world", &world.name)?;
+        let policy = policy.as_ref().map(|file| &file.name);
+        arguments.set_item("policy", policy)?;
         arguments.set_item("rig", &self.overrides.rig)?;
         arguments.set_item("parameters", &self.overrides.parameters)?;
         arguments.set_item("program", word(self.overrides.program))?;
@@ -161,6 +173,7 @@ pub(crate) fn load(kind: &str, name_or_path: &str) -> PyResult<String> {
         Kind::Robot => library.robot(name_or_path).map(|file| file.text),
         Kind::World => library.world(name_or_path).map(|file| file.text),
         Kind::Scenario => library.scenario(name_or_path).map(|file| file.text),
+        Kind::Policy => library.policy(name_or_path).map(|file| file.text),
     }
     .map_err(|error| exception(&error))?;
     let content: toml::Table =
@@ -169,11 +182,11 @@ pub(crate) fn load(kind: &str, name_or_path: &str) -> PyResult<String> {
 }
 
 fn find_kind(kind: &str) -> PyResult<Kind> {
-    let known = [Kind::Robot, Kind::World, Kind::Scenario];
+    let known = [Kind::Robot, Kind::World, Kind::Scenario, Kind::Policy];
     let found = known.into_iter().find(|known| known.word() == kind);
     found.ok_or_else(|| {
         PyValueError::new_err(format!(
-            "kind = {kind:?}: must be \"robot\", \"world\", \"scenario\" or \"parameter\""
+            "kind = {kind:?}: must be \"robot\", \"world\", \"scenario\", \"policy\" or \"parameter\""
         ))
     })
 }
