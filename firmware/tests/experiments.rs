@@ -3,8 +3,10 @@
 //! One seed of each here; `cargo xtask campaign --only medians` runs twenty and compares the metrics.
 
 use crate::board::image_path;
+use rumbo_experiment::files::firmware::beside;
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup};
 use rumbo_experiment::run::{RunResult, run_all};
+use std::sync::Arc;
 
 /// The robot of each run. Which way it takes around boxes may depend on a few cycles, and now and then the longer one
 /// misses a limit (docs/firmware.md says how often): for those scenarios a seed with an unambiguous way.
@@ -49,7 +51,9 @@ fn what_passes_natively_passes(setups: Vec<Setup>) -> Vec<(String, String)> {
         .filter_map(|(setup, result)| result.pass.then_some(setup))
         .collect();
     for setup in &mut passed {
-        setup.firmware = firmware.clone();
+        let image = firmware.as_deref().unwrap().clone();
+        let with_policy = beside(image, setup.policy.as_ref()).unwrap();
+        setup.firmware = Some(Arc::new(with_policy));
     }
     let failed: Vec<_> = all(&passed)
         .into_iter()

@@ -167,12 +167,12 @@ impl Shape {
     /// # Errors
     /// They are no network.
     pub fn read(read: impl Fn(u16) -> u8) -> Result<Self, NetworkError> {
-        let mut at = 0;
-        for byte in MAGIC {
-            if read(at) != byte {
-                return Err(NetworkError::NotOne);
-            }
-            at += 1;
+        if MAGIC
+            .into_iter()
+            .zip(0..)
+            .any(|(byte, at)| read(at) != byte)
+        {
+            return Err(NetworkError::NotOne);
         }
         let (inputs, layers) = (read(6), read(7));
         let mut neurons = [0; MOST_LAYERS];

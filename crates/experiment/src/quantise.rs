@@ -162,6 +162,3 @@ fn neuron(what: &str, weights: &[f64], bias: f64, values: usize) -> Result<Neuro
             .collect(),
     })
 }
-
-#[cfg(test)]
-mod tests;

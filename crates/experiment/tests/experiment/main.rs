@@ -14,3 +14,4 @@ mod files;
 mod fleet;
 mod golden;
 mod moving;
+mod quantise;

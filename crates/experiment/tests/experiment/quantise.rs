@@ -1,5 +1,8 @@
-use super::*;
-use rumbo_control::policy::{Observation, decide};
+//! Networks in floats, made into the integers of a policy file.
+
+use rumbo_control::policy::{OBSERVED, Observation, decide};
+use rumbo_experiment::files::PolicyFile;
+use rumbo_experiment::quantise::{FloatInput, FloatLayer, Floats, quantise};
 
 /// A network of two layers with weights that differ.
 fn floats() -> Floats {
@@ -104,17 +107,17 @@ fn what_cannot_be_quantised_is_refused_with_its_place() {
         ),
         (
             "neuron 1 of layer 1 has 3 values: must be 2",
-            change(&|it| drop(it.inputs.pop())),
+            change(&|it| it.inputs.truncate(2)),
         ),
         (
             "neuron 2 of layer 1 has 2 values: must be 3",
-            change(&|it| drop(it.layers[0].weights[1].pop())),
+            change(&|it| it.layers[0].weights[1].truncate(2)),
         ),
         (
             "biases of layer 1 has 7 values: must be 8",
-            change(&|it| drop(it.layers[0].biases.pop())),
+            change(&|it| it.layers[0].biases.truncate(7)),
         ),
-        ("policy: is no network", change(&|it| drop(it.layers.pop()))),
+        ("policy: is no network", change(&|it| it.layers.truncate(1))),
         ("policy: is no network", change(&|it| it.layers.clear())),
     ] {
         assert!(why.contains(expected), "{why}");
@@ -132,7 +135,10 @@ fn a_mistake_in_a_policy_file_is_named_with_its_line() {
             .to_string()
     };
     for (why, part) in [
-        (wrong("goal_ahead_m", "goal"), "x.toml:4: [input] of = goal"),
+        (
+            wrong("goal_ahead_m", "goal"),
+            "x.toml:4: input[1].of = goal: must be a column",
+        ),
         (
             wrong("scale = 4.0", "scale = 0.0"),
             "scale = 0.0: must be within",
