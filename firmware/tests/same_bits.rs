@@ -46,8 +46,13 @@ const NOISE: TimedWireFault = TimedWireFault {
     wire: Wire::Echo(SonarId::Left),
     fault: WireFault::Noisy(200.0),
 };
-/// Mode 4 has the states of mode 3, which measures first; mode 8 leaves *initialise* in the tick in which it enters it.
-const NEVER_SEEN: [(ModeId, usize); 2] = [(ModeId::WallFollow, 0), (ModeId::Mission, 2)];
+/// Mode 4 has the states of mode 3, which measures first; mode 8 leaves *initialise* in the tick in which it enters it; the
+/// run of mode 9 has its goal before it starts.
+const NEVER_SEEN: [(ModeId, usize); 3] = [
+    (ModeId::WallFollow, 0),
+    (ModeId::Mission, 2),
+    (ModeId::Policy, 0),
+];
 /// Ticks of a run in text.
 const TICKS_IN_TEXT: u32 = 12_000;
 
