@@ -315,7 +315,7 @@ pub(crate) fn rows<'a, T: numpy::Element>(
     Ok(array.as_slice_mut()?)
 }
 
-fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize) -> PyResult<()> {
+pub(crate) fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize) -> PyResult<()> {
     if shape == [rows, columns] {
         return Ok(());
     }

@@ -58,7 +58,7 @@ impl fmt::Display for QuantiseError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Column(name) => {
-                let near = near_or_all(name, OBSERVED.into_iter()).join(", ");
+                let near = near_or_all(name, OBSERVED).join(", ");
                 write!(
                     f,
                     "`{name}` is no column of the observation; did you mean {near}?"

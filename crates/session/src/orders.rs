@@ -545,7 +545,7 @@ mod tests {
             (r#"{"type":"fly"}"#, "unknown variant `fly`"),
             (r#"{"type":"f\nly"}"#, "unknown variant `f\u{fffd}ly`"),
             (r#"{"type":"stop","now":true}"#, "unknown field `now`"),
-            (r#"{"type":"mode","mode":9}"#, "no mode 9"),
+            (r#"{"type":"mode","mode":11}"#, "no mode 11"),
             (r#"{"type":"mode","mode":-1}"#, "invalid value"),
             (r#"{"type":"reference","value":"NaN"}"#, "invalid type"),
             (r#"{"type":"reference","value":1e300}"#, "too large"),

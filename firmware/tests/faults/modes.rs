@@ -55,10 +55,15 @@ enum End {
 fn documented(scenario: &str, wire: Wire, fault: WireFault) -> End {
     let stuck = matches!(fault, WireFault::Low | WireFault::High);
     match (scenario, wire) {
-        // In the middle of a turn the wheels are asked for less.
-        (_, Wire::Encoder(Side::Left)) if stuck => End::Released(2.0, &[Fault::LeftEncoderSilent]),
+        // In the middle of a turn the wheels are asked for less. A line that jumps as it fails makes an edge: right after
+        // another one that is implausible.
+        (_, Wire::Encoder(Side::Left)) if stuck => {
+            let causes = &[Fault::LeftEncoderSilent, Fault::LeftEncoderImplausible];
+            End::Released(2.0, causes)
+        }
         (_, Wire::Encoder(Side::Right)) if stuck => {
-            End::Released(2.0, &[Fault::RightEncoderSilent])
+            let causes = &[Fault::RightEncoderSilent, Fault::RightEncoderImplausible];
+            End::Released(2.0, causes)
         }
         // While it stands or turns slowly, no edges are missed. How long that is between the boxes depends on its path.
         (_, Wire::Encoder(side)) => {

@@ -121,7 +121,7 @@ fn read_input(table: Table<'_, '_>) -> Input {
     let of = table.required_text("of", "a column of the observation, e.g. \"goal_ahead_m\"");
     let column = OBSERVED.iter().position(|name| *name == of.value);
     if column.is_none() {
-        let near = near_or_all(&of.value, OBSERVED.into_iter()).join(", ");
+        let near = near_or_all(&of.value, OBSERVED).join(", ");
         let remedy = format!("must be a column of the observation, such as {near}");
         table.complain("of", of.line, &of.value, &remedy);
     }

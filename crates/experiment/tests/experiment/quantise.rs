@@ -149,7 +149,10 @@ fn a_mistake_in_a_policy_file_is_named_with_its_line() {
             wrong("neurons = [", "neurons = [1, "),
             "neurons[1] = 1: must be [shift, bias, weights...]",
         ),
-        (wrong("[[layer]]", "[[layers]]"), "is no network"),
+        (
+            wrong("[[layer]]", "[[layers]]"),
+            "unknown key; did you mean `layer`?",
+        ),
     ] {
         assert!(why.contains(part), "{why}");
     }

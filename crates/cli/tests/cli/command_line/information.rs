@@ -45,7 +45,7 @@ fn list_names_what_there_is() {
     let json: serde_json::Value =
         serde_json::from_str(&stdout(&rumbo(&["list", "modes", "--json"]))).unwrap();
     let modes = json["modes"].as_array().unwrap();
-    assert_eq!(modes.len(), 10);
+    assert_eq!(modes.len(), 11);
     for mode in modes {
         assert!(!mode["help"].as_str().unwrap().is_empty(), "{mode}");
         assert!(!mode["states"].as_array().unwrap().is_empty(), "{mode}");
