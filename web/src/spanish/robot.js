@@ -39,7 +39,7 @@ export const ROBOT = {
   'sweep left': 'barrer a la izquierda', 'decide': 'decidir', 'avoidance turn': 'giro de evasión', 'advance seeking the obstacle': 'avanzar buscando el obstáculo',
   'advance along it': 'avanzar a su lado', 'advance a safe distance': 'avanzar distancia de seguridad', 'unreachable': 'inalcanzable', 'straight on': 'recto', 'prove the front sonar': 'comprobar el sonar delantero', 'give way to what moves': 'ceder el paso a lo que se mueve', 'reached': 'alcanzado',
   // Why a state leads to another.
-  'at the goal': 'en el destino', 'the robot is not at the goal any more': 'el robot ya no está en el destino',
+  'at the goal': 'en el destino',
   'a velocity comes': 'llega una velocidad', 'none for half a second': 'ninguna en medio segundo',
   '12.5 cm on': '12,5 cm más', 'a goal arrives': 'llega un destino', 'a movement by duty': 'un movimiento por PWM',
   'a movement by speed': 'un movimiento por velocidad', 'a setpoint that is not zero': 'una referencia que no es cero',

@@ -32,7 +32,10 @@ impl ActiveMode {
                 *task = Task::Goal { x_m, y_m };
                 state.renew();
             }
-            Self::Policy(goal, _) => *goal = policy::Goal(Some((x_m, y_m))),
+            Self::Policy(goal, state) => {
+                *goal = policy::Goal(Some((x_m, y_m)));
+                state.renew();
+            }
             Self::Waypoints(..) => {
                 self.begin_route(false, false)?;
                 self.add_waypoint(Waypoint {

@@ -4,7 +4,8 @@
 //!
 //! The network works for the ticks of a decision, so what it makes of an observation drives from the next one on; where
 //! it is learned it must drive as late. It knows nothing of safety: the sonars are watched as in mode 8, the wheels as in
-//! every mode, and the robot stops at the goal by its odometry. docs/theory/policy.md.
+//! every mode, and the robot stops at the goal by its odometry, and stays there until
+//! another one is given. docs/theory/policy.md.
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::mission::Watch;
@@ -49,7 +50,7 @@ states! {
         /// Drives as the network says.
         Seek = "seek" { Done: "at the goal" }
         /// Wheels released; the event *reached*, once.
-        Done = "done" { Seek: "the robot is not at the goal any more" }
+        Done = "done" { Seek: "a goal arrives" }
     }
 }
 
@@ -75,6 +76,17 @@ pub struct State {
     /// The last one.
     outputs: [i8; OUTPUTS],
     watch: Watch,
+}
+
+impl State {
+    /// A goal arrives: it is decided anew. The watch over the sonars goes on.
+    pub(super) fn renew(&mut self) {
+        let watch = self.watch;
+        *self = Self {
+            watch,
+            ..Self::default()
+        };
+    }
 }
 
 /// Outputs of a network as shares of -1..=1.
@@ -112,7 +124,8 @@ impl<'a> Mode<'a> for Policy<'a> {
             None => Phase::Wait,
             Some((x_m, y_m)) => {
                 let (x_m, y_m) = (x_m - estimate.pose.x_m, y_m - estimate.pose.y_m);
-                match sqrt(x_m * x_m + y_m * y_m) < ARRIVED_M {
+                // One that is pushed off its goal stays: nobody expects it to drive.
+                match state.phase == Phase::Done || sqrt(x_m * x_m + y_m * y_m) < ARRIVED_M {
                     true => Phase::Done,
                     false => Phase::Seek,
                 }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::mode::ModeId;
 use crate::rig::View;
-use crate::types::{AgedRange, Range, Reading, SonarId};
+use crate::types::{AgedRange, Pose, Range, Reading, SonarId};
 
 /// A network of one layer that drives straight on by its biases, and its bytes.
 fn network() -> (Shape, impl Fn(u16) -> u8) {
@@ -81,6 +81,16 @@ fn at_the_goal_the_wheels_are_released_until_another_is_given() {
     let mut mode = ActiveMode::new(ModeId::Policy);
     mode.set_goal(0.05, 0.05).unwrap();
     let action = driven(&mut mode, 30);
+    assert_eq!((action.drive, action.reached), (Drive::Release, true));
+    // Somebody pushes it.
+    let pushed = Estimate {
+        pose: Pose {
+            x_m: 0.5,
+            ..Pose::default()
+        },
+        ..estimate(0)
+    };
+    let action = mode.step(&Params::default(), &pushed).unwrap();
     assert_eq!((action.drive, action.reached), (Drive::Release, true));
     mode.set_goal(1.0, 0.0).unwrap();
     let action = driven(&mut mode, 30);
