@@ -19,12 +19,22 @@ after(() => dashboard?.close());
 
 const step = () => page.locator('#calibration-step');
 
+/** Begins a calibration; on a busy machine so fast a robot is at times late to answer, and it is refused. @param {import('playwright-core').Locator} begun what shows that it began */
+async function begin(begun) {
+  const refused = step().getByText('it was refused: ');
+  for (;;) {
+    await step().getByRole('button', { name: 'Begin the calibration' }).click();
+    await begun.or(refused).waitFor();
+    if (!await refused.isVisible()) return;
+    await step().getByRole('button', { name: 'Begin again' }).click();
+  }
+}
+
 test('where there is no wall, or the wrong rig, the calibration reports it', async () => {
   await page.locator('#calibrate').click();
   // It ends at once, mostly between two states that the page gets.
   for (let times = 0; times < 8; times += 1) {
-    await step().getByRole('button', { name: 'Begin the calibration' }).click();
-    await step().getByText('The calibration came to no end: a calibration needs a sonar ahead and one on each side').waitFor();
+    await begin(step().getByText('The calibration came to no end: a calibration needs a sonar ahead and one on each side'));
     await step().getByRole('button', { name: 'Begin again' }).click();
   }
 });
@@ -33,7 +43,7 @@ test('STOP ends a calibration, and meanwhile nothing else drives', async () => {
   await step().getByRole('button', { name: 'Put the simulated robot there' }).click();
   await page.locator('#events li', { hasText: 'reset: calibration' }).waitFor();
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.rig === 'final');
-  await step().getByRole('button', { name: 'Begin the calibration' }).click();
+  await begin(step().locator('progress'));
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.armed);
   await page.locator('#on').click();
   await page.locator('#events li', { hasText: 'refused, the robot calibrates itself; STOP ends that' }).waitFor();
@@ -45,10 +55,8 @@ test('STOP ends a calibration, and meanwhile nothing else drives', async () => {
 test('the simulated robot calibrates itself: what was found is shown, and its parameters are set', async () => {
   await step().getByRole('button', { name: 'Begin again' }).click();
   await step().getByRole('button', { name: 'Put the simulated robot there' }).click();
-  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().t_s < 20);
   await page.waitForFunction(() => /** @type {HTMLInputElement} */ (document.querySelector('#parameter-kv')).value !== '');
-  await step().getByRole('button', { name: 'Begin the calibration' }).click();
-  await step().locator('progress').waitFor();
+  await begin(step().locator('progress'));
   await step().getByText('Done. The parameters are set').waitFor();
   const text = await step().innerText();
   assert.match(text, /radius, right over left\s+(0\.9[89]|1\.0[01])/);

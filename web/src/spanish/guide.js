@@ -57,7 +57,7 @@ export const GUIDE = {
   'dead zone, left backward, duty': 'zona muerta, izquierda atrás', 'dead zone, right backward, duty': 'zona muerta, derecha atrás',
   'ks_left_forward': 'ks_left_forward', 'ks_left_backward': 'ks_left_backward', 'ks_right_forward': 'ks_right_forward', 'ks_right_backward': 'ks_right_backward', 'kv': 'kv',
   'calibration: the robot drives by itself': 'calibración: el robot se mueve por sí mismo', 'calibration: refused, {}': 'calibración: rechazada, {}', 'calibration: given up, {}': 'calibración: abandonada, {}',
-  'calibration: done in {} s, the parameters are set': 'calibración: hecha en {} s, los parámetros están puestos', 'it was stopped': 'se detuvo',
+  'calibration: done in {} s, the parameters are set': 'calibración: hecha en {} s, los parámetros están puestos', 'it was stopped': 'se detuvo', 'it was refused: {}': 'se rechazó: {}',
   'calibration: refused, this program has none': 'calibración: rechazada, este programa no la tiene',
   'one is running already': 'ya hay una en marcha', 'no robot answers': 'ningún robot responde', 'this robot has other parameters': 'este robot tiene otros parámetros', 'the robot is armed: switch OFF first': 'el robot está armado: primero OFF',
   'refused, the robot calibrates itself; STOP ends that': 'rechazado, el robot se está calibrando; PARAR lo detiene',

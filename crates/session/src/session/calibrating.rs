@@ -27,14 +27,20 @@ impl Session {
 
     /// A calibration starts, or why not. It gets the received bytes, and drives the robot by its own.
     pub fn calibration_begun(&mut self, begun: Result<Box<dyn Guest>, CalibrationError>, now: Now) {
+        let at_s = now.target_us as f64 / 1e6;
         let guest = match begun {
             Ok(guest) => guest,
             Err(why) => {
-                return self.note(Level::Warning, format!("calibration: refused, {why}"), now);
+                self.note(Level::Warning, format!("calibration: refused, {why}"), now);
+                if self.calibrating.is_none() {
+                    let why = format!("it was refused: {why}");
+                    self.calibration = Some(CalibrationState::Failed { why, at_s });
+                }
+                return;
             }
         };
         self.calibrating = Some((guest, now.target_us));
-        let since_s = now.target_us as f64 / 1e6;
+        let since_s = at_s;
         self.calibration = Some(CalibrationState::Running { since_s });
         let text = "calibration: the robot drives by itself";
         self.note(Level::Info, text.into(), now);

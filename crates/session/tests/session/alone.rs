@@ -5,7 +5,7 @@ use crate::support;
 use proptest::prelude::*;
 use rumbo_control::Velocity;
 use rumbo_control::mode::ModeId;
-use rumbo_log::{Entry, Findings, Log, LogWriter, Manifest, Row, Source};
+use rumbo_log::{CalibrationState, Entry, Findings, Log, LogWriter, Manifest, Row, Source};
 use rumbo_session::{
     About, Ask, Board, CalibrationError, Cursor, Event, Going, Guest, LinkNews, Now, Order,
     SLICE_US, Session, Sight, Target,
@@ -355,6 +355,26 @@ fn a_guest_gets_the_bytes_received_and_its_own_are_sent_until_it_ends() {
         sent.extend(session.take_bytes());
     }
     assert_eq!(sent, [1, 2, 3]);
+}
+
+#[test]
+fn a_calibration_that_is_refused_is_shown_with_the_reason() {
+    let mut bench = Bench::new();
+    bench.pass(2_000);
+    bench.order(ON);
+    bench.pass(2_000);
+    assert!(bench.order(Order::Calibrate).is_none());
+    bench.pass(1_000);
+    let mut board = Board::default();
+    for event in &bench.events {
+        board.take(event, 0.0);
+    }
+    let state = board.news(&mut Cursor::default()).state.unwrap();
+    let Some(CalibrationState::Failed { why, at_s }) = &state.calibration else {
+        panic!("{:?}", state.calibration);
+    };
+    assert_eq!(why, "it was refused: the robot is armed: switch OFF first");
+    assert!((*at_s - 4.0).abs() < 0.1, "{at_s}");
 }
 
 #[test]
