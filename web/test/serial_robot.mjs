@@ -158,7 +158,9 @@ export class SerialRobot {
       request.on('data', (/** @type {Buffer} */ signals) => this.#end.signal(JSON.parse(signals.toString())));
       request.on('end', () => response.writeHead(204).end());
     } else if (what === 'close') {
+      // Not with the answer's own close event: the robot writes on before it comes.
       this.#readers.forEach((reader) => reader.end());
+      this.#readers.clear();
       response.writeHead(204).end();
     } else {
       response.writeHead(503).end();
