@@ -4,14 +4,14 @@
 //!
 //! The network works for the ticks of a decision, so what it makes of an observation drives from the next one on; where
 //! it is learned it must drive as late. It knows nothing of safety: the sonars are watched as in mode 8, the wheels as in
-//! every mode, and the robot stops at the goal by its odometry, and stays there until
-//! another one is given. docs/theory/policy.md.
+//! every mode, and the robot stops at the goal by its odometry, where it stays until another one is given.
+//! docs/theory/policy.md.
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::mission::Watch;
 use super::{Action, ActiveMode, Description, MetricGroup, Mode, Plot, waypoints};
 use crate::estimate::Estimate;
-use crate::math::sqrt;
+use crate::math::{clamp, sqrt};
 use crate::params::{ParamId, Params};
 use crate::policy::{DECISION_TICKS, Decision, ONE, OUTPUTS, Observation, Shape};
 use crate::rig::{Rig, Rigs};
@@ -38,8 +38,14 @@ pub const DESCRIPTION: Description = Description {
 pub const WHEEL_RAD_S: f32 = 12.0;
 /// The servo's angle of an output of 1 [rad]; a little less than its end, which it must not pass.
 pub const SERVO_RAD: f32 = FRAC_PI_2 - 1e-4;
-/// Nearer than this the goal is reached, by odometry [m].
+/// Nearer than this the goal is reached, by odometry [m]; where it is learned an episode ends here.
 const ARRIVED_M: f32 = 0.08;
+/// Within that the robot goes on while it gets nearer, ever slower, for so many ticks at most.
+const ARRIVING_TICKS: u8 = 100;
+/// The slowest then, as a share of what the network says.
+const SLOWEST: f32 = 0.25;
+/// What the way left may grow meanwhile: more than the odometry's steps [m].
+const FARTHER_M: f32 = 0.003;
 
 states! {
     /// States of mode 9.
@@ -76,9 +82,24 @@ pub struct State {
     /// The last one.
     outputs: [i8; OUTPUTS],
     watch: Watch,
+    /// Ticks since the goal was reached, and how near it was since [m].
+    arriving: (u8, f32),
 }
 
 impl State {
+    /// Whether the robot stays where it is: at the goal, and not getting nearer any more. The way left is in metres.
+    fn is_done(&mut self, left_m: f32) -> bool {
+        let (ticks, nearest_m) = &mut self.arriving;
+        if left_m >= ARRIVED_M && *ticks == 0 {
+            return false;
+        }
+        if *ticks == 0 || left_m < *nearest_m {
+            *nearest_m = left_m;
+        }
+        *ticks += 1;
+        *ticks > ARRIVING_TICKS || left_m > *nearest_m + FARTHER_M
+    }
+
     /// A goal arrives: it is decided anew. The watch over the sonars goes on.
     pub(super) fn renew(&mut self) {
         let watch = self.watch;
@@ -120,12 +141,15 @@ impl<'a> Mode<'a> for Policy<'a> {
         }
         state.watch.step(estimate, self.stale_s, false)?;
         let mut action = Action::default();
+        let mut slower = 1.0;
         state.phase = match self.goal.0 {
             None => Phase::Wait,
             Some((x_m, y_m)) => {
                 let (x_m, y_m) = (x_m - estimate.pose.x_m, y_m - estimate.pose.y_m);
+                let left_m = sqrt(x_m * x_m + y_m * y_m);
+                slower = clamp(left_m / ARRIVED_M, SLOWEST, 1.0);
                 // One that is pushed off its goal stays: nobody expects it to drive.
-                match state.phase == Phase::Done || sqrt(x_m * x_m + y_m * y_m) < ARRIVED_M {
+                match state.phase == Phase::Done || state.is_done(left_m) {
                     true => Phase::Done,
                     false => Phase::Seek,
                 }
@@ -135,7 +159,7 @@ impl<'a> Mode<'a> for Policy<'a> {
         action.reached = state.phase == Phase::Done;
         if state.phase == Phase::Seek {
             let [left, right, servo] = shares(state.outputs);
-            let wheels = Wheels { left, right }.map(|share| share * WHEEL_RAD_S);
+            let wheels = Wheels { left, right }.map(|share| share * slower * WHEEL_RAD_S);
             if wheels != Wheels::both(0.0) {
                 action.drive = Drive::WheelSpeed(wheels);
             }

@@ -79,8 +79,16 @@ fn what_the_network_decides_drives_from_the_next_decision_on() {
 #[test]
 fn at_the_goal_the_wheels_are_released_until_another_is_given() {
     let mut mode = ActiveMode::new(ModeId::Policy);
-    mode.set_goal(0.05, 0.05).unwrap();
+    mode.set_goal(0.04, 0.0).unwrap();
     let action = driven(&mut mode, 30);
+    let half = Wheels {
+        left: 30.0,
+        right: 15.0,
+    };
+    let half = half.map(|share: f32| share * (1.0 / 127.0) * WHEEL_RAD_S);
+    assert_eq!(action.drive, Drive::WheelSpeed(half), "half the way");
+    // It does not get nearer.
+    let action = driven(&mut mode, 80);
     assert_eq!((action.drive, action.reached), (Drive::Release, true));
     // Somebody pushes it.
     let pushed = Estimate {
@@ -102,6 +110,26 @@ fn at_the_goal_the_wheels_are_released_until_another_is_given() {
             right: 0.0
         }
     );
+}
+
+#[test]
+fn the_robot_stops_where_the_way_left_grows_again() {
+    let mut mode = ActiveMode::new(ModeId::Policy);
+    mode.set_goal(1.0, 0.0).unwrap();
+    let reached = |x_m: f32, mode: &mut ActiveMode| {
+        let at = Estimate {
+            pose: Pose {
+                x_m,
+                ..Pose::default()
+            },
+            ..estimate(0)
+        };
+        mode.step(&Params::default(), &at).unwrap().reached
+    };
+    for x_m in [0.9, 0.93, 0.96, 0.99, 1.0, 1.002] {
+        assert!(!reached(x_m, &mut mode), "{x_m}");
+    }
+    assert!(reached(1.004, &mut mode));
 }
 
 #[test]
