@@ -26,6 +26,7 @@ pub(crate) fn list(args: &ListArgs) -> Result<(), Failure> {
             Topic::Worlds,
             Topic::Rigs,
             Topic::Robots,
+            Topic::Policies,
             Topic::Parameters,
         ],
     };
@@ -67,7 +68,13 @@ fn overview(all: &Map<String, Value>) -> Result<(), Failure> {
     let groups = entries(Topic::Scenarios).chunk_by(|one, other| one["group"] == other["group"]);
     let group = |group: &[Value]| vec![text(&group[0], "group"), names(group)];
     output::table(&groups.map(group).collect::<Vec<_>>())?;
-    let others = [Topic::Worlds, Topic::Rigs, Topic::Robots, Topic::Parameters];
+    let others = [
+        Topic::Worlds,
+        Topic::Rigs,
+        Topic::Robots,
+        Topic::Policies,
+        Topic::Parameters,
+    ];
     let other = |topic| vec![name(topic).to_owned(), names(entries(topic))];
     output::table(&others.map(other))?;
     output::line(
@@ -104,6 +111,7 @@ fn name(topic: Topic) -> &'static str {
         Topic::Scenarios => "scenarios",
         Topic::Worlds => "worlds",
         Topic::Robots => "robots",
+        Topic::Policies => "policies",
         Topic::Rigs => "rigs",
         Topic::Modes => "modes",
         Topic::Movements => "movements",
@@ -141,6 +149,12 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
                 let file = library.robot(&name).map_err(wrong)?;
                 let rigs: Vec<_> = file.rigs.keys().collect();
                 entries.push(json!({ "name": name, "title": file.title, "rigs": rigs }));
+            }
+        }
+        Topic::Policies => {
+            for name in library.list(Kind::Policy) {
+                let file = library.policy(&name).map_err(wrong)?;
+                entries.push(json!({ "name": name, "title": file.title }));
             }
         }
         Topic::Modes => {

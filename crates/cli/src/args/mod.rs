@@ -204,6 +204,8 @@ pub(crate) enum Topic {
     Worlds,
     /// Robots and their rigs
     Robots,
+    /// Learned networks for mode `policy`
+    Policies,
     /// Where the sonars of a robot can sit
     Rigs,
     /// What the robot can do: states, reference and its range

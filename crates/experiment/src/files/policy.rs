@@ -101,7 +101,7 @@ impl PolicyFile {
         let shape = network.shape();
         if shape.is_none() {
             root.complain_here(&format!(
-                "is no network: must have 1 to {MOST_VALUES} [[input]] and 1 to {MOST_LAYERS} [[layer]] of as many neurons, the last one 3"
+                "is no network: must have 1 to {MOST_VALUES} inputs and 1 to {MOST_LAYERS} layers of as many neurons, the last one 3"
             ));
         }
         root.finish();
