@@ -5,25 +5,11 @@ use crate::setup::Setup;
 use crate::study::refuse;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rumbo_experiment::compare::{Variant, run_variants};
-use rumbo_experiment::files::{FileError, Setup as Files};
-use rumbo_experiment::run::check_metrics;
-use rumbo_experiment::tune::{Found, Objective, Over, Search, Tuned, tuned};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::Sender;
-
-/// What is done, apart from how.
-struct Task<'a> {
-    setup: &'a Files,
-    over: &'a [Tuned],
-    objective: &'a Objective,
-    seed: u64,
-    budget: usize,
-    held_out: u32,
-}
+use rumbo_experiment::tune::{Objective, Over, Plan, Request};
+use std::sync::atomic::Ordering;
 
 /// Searches, and drives the robots that the search has not seen with the present values and the found ones: a
-/// dictionary. `progress` is called with the share of the budget that is used.
+/// dictionary. `progress` is called with the share of all runs that is done.
 #[pyfunction]
 #[pyo3(signature = (setup, over, *, aims, seed, runs, held_out, threads, progress))]
 #[allow(clippy::too_many_arguments, reason = "keywords of one Python call")]
@@ -44,81 +30,35 @@ pub(crate) fn tune<'py>(
         .map(|one| one.parse())
         .collect::<Result<_, _>>()
         .map_err(|error| exception(&error))?;
-    over.iter()
-        .try_for_each(|one| one.check(&setup.own))
-        .map_err(|error| exception(&error))?;
     let objective: Objective = match aims {
         Some(aims) => aims.parse().map_err(refuse)?,
         None => Objective::default(),
     };
-    let setup = &setup.files;
-    let over = tuned(setup, &over).map_err(|error| exception(&error))?;
-    let task = Task {
-        setup,
-        over: &over,
-        objective: &objective,
+    let request = Request {
+        over,
+        objective,
         seed,
-        budget: runs.map_or_else(|| Search::default_budget(setup), |runs| runs as usize),
+        runs,
         held_out,
     };
+    let plan = Plan::new(setup.files.clone(), &setup.own, request);
+    let plan = plan.map_err(|error| exception(&error))?;
     let done = watched(py, &pool, progress.as_ref(), |shares, stop| {
-        task.run(shares, stop)
+        let tell = |share| {
+            // An error: nobody listens any more, and `stop` is set.
+            let _ = shares.send(share);
+        };
+        plan.run(&tell, &|| !stop.load(Ordering::Relaxed))
     })?;
-    let (found, variants) = done.map_err(|error| exception(&error))?;
-    let passed = |variant: &Variant| {
-        let runs = variant.passes.iter().zip(&variant.metrics);
-        let passed = runs.filter(|(pass, run)| **pass && objective.admits(run));
-        passed.count()
-    };
-    let values = over.iter().zip(&found.values);
+    let outcome = done.map_err(|error| exception(&error))?;
+    let values = plan.over().iter().zip(&outcome.found.values);
     let values = values.map(|(one, value)| (one.id.name(), one.start, *value));
     let parts = PyDict::new(py);
     parts.set_item("values", values.collect::<Vec<_>>())?;
-    parts.set_item("runs", found.runs)?;
-    parts.set_item("passed", variants.iter().map(passed).collect::<Vec<_>>())?;
-    parts.set_item("seeds", task.seeds())?;
-    let metrics: Vec<_> = variants.into_iter().map(|one| one.metrics).collect();
-    parts.set_item("metrics", metrics)?;
+    parts.set_item("runs", outcome.found.runs)?;
+    parts.set_item("passed", outcome.passes)?;
+    parts.set_item("seeds", plan.seeds())?;
+    let metrics = outcome.runs.map(|one| one.metrics);
+    parts.set_item("metrics", metrics.to_vec())?;
     Ok(parts)
-}
-
-impl Task<'_> {
-    /// Robots that the search does not see.
-    fn seeds(&self) -> Vec<u64> {
-        let first = self.seed.wrapping_add(Search::SEEDS);
-        let seeds = 0..u64::from(self.held_out);
-        seeds.map(|index| first.wrapping_add(index)).collect()
-    }
-
-    /// Until `stop` is set; then what it returns is of no use.
-    fn run(
-        &self,
-        shares: &Sender<f64>,
-        stop: &AtomicBool,
-    ) -> Result<(Found, Vec<Variant>), FileError> {
-        let goes_on = || !stop.load(Ordering::Relaxed);
-        check_metrics(self.objective.names(), self.setup, self.seed)?;
-        let search = Search {
-            setup: self.setup,
-            over: self.over,
-            objective: self.objective,
-            seed: self.seed,
-            budget: self.budget,
-        };
-        let found = search.run(|share| {
-            // Nobody listens any more: `stop` is set.
-            let _ = shares.send(share);
-            goes_on()
-        })?;
-        let variants = [
-            ("now".to_owned(), self.setup.clone()),
-            ("tuned".to_owned(), search.setup_of(&found.values)?),
-        ];
-        let seeds = self.seeds();
-        let variants = run_variants(&variants, &seeds, || match goes_on() {
-            true => Ok(()),
-            false => Err(FileError::Setting("interrupted".to_owned())),
-        })?;
-        Ok((found, variants))
-    }
 }

@@ -108,7 +108,7 @@ fn campaign(scenario: &str, gains: &[&str], aims: &str, starts: usize) -> Result
             budget: Search::default_budget(&start),
         };
         let begun = Instant::now();
-        let found = search.run(|_| true)?;
+        let found = search.run(|_| (), &|| true)?;
         let took = begun.elapsed();
         let held_out = 1 + Search::SEEDS..1 + Search::SEEDS + HELD_OUT;
         let pass = passes(&search.setup_of(&found.values)?, held_out)?;

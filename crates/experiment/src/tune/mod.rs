@@ -11,9 +11,11 @@
 
 mod objective;
 mod over;
+mod plan;
 
 pub use objective::{Objective, ObjectiveError};
-pub use over::Over;
+pub use over::{Over, Tunable, tunable};
+pub use plan::{Outcome, Plan, Request};
 
 use crate::files::parameters::exact;
 use crate::files::{FileError, Setup};
@@ -74,6 +76,10 @@ pub enum TuneError {
     Form(String),
     /// Fewer runs than a search needs.
     Budget(usize),
+    /// A scenario without limits, and no aim.
+    NoAim(String),
+    /// It was ended before it was done.
+    Ended,
 }
 
 impl fmt::Display for TuneError {
@@ -98,11 +104,22 @@ impl fmt::Display for TuneError {
                 "{name}: is searched in a range; write {name} or {name}=FROM:TO"
             ),
             Self::Budget(least) => write!(f, "a search needs at least {least} runs"),
+            Self::NoAim(scenario) => write!(
+                f,
+                "scenario {scenario} has no limits; give an aim, such as `settling_s`"
+            ),
+            Self::Ended => f.write_str("the search was ended"),
         }
     }
 }
 
 impl std::error::Error for TuneError {}
+
+impl From<TuneError> for FileError {
+    fn from(error: TuneError) -> Self {
+        Self::Setting(error.to_string())
+    }
+}
 
 fn limits(id: ParamId) -> [f64; 2] {
     let limits = id.limits();
@@ -132,25 +149,30 @@ pub fn is_tuned(text: &str) -> bool {
     text.lines().any(|line| line.starts_with(MARK))
 }
 
-/// The parameters to tune, with their starts and ranges.
-///
-/// # Errors
-/// [`TuneError`], as text, or a setup whose values do not fit together.
-pub fn tuned(setup: &Setup, over: &[Over]) -> Result<Vec<Tuned>, FileError> {
-    let refuse = |error: TuneError| FileError::Setting(error.to_string());
+/// The parameters of a setup as they are.
+fn present(setup: &Setup) -> Result<Params, FileError> {
     let mut now = Params::default();
     for (id, value) in setup.control_parameters()? {
         // Checked when it was read.
         let _ = now.set(id, value);
     }
+    Ok(now)
+}
+
+/// The parameters to tune, with their starts and ranges.
+///
+/// # Errors
+/// [`TuneError`], as text, or a setup whose values do not fit together.
+pub fn tuned(setup: &Setup, over: &[Over]) -> Result<Vec<Tuned>, FileError> {
+    let now = present(setup)?;
     let mut all: Vec<Tuned> = Vec::new();
     for one in over {
         let id = one.id();
         if all.iter().any(|other| other.id == id) {
-            return Err(refuse(TuneError::Twice(id.name().to_owned())));
+            return Err(TuneError::Twice(id.name().to_owned()).into());
         }
         if id.kind() != ParamKind::Number {
-            return Err(refuse(TuneError::NoNumber(id)));
+            return Err(TuneError::NoNumber(id).into());
         }
         let start = f64::from(now.get(id));
         let limits = limits(id);
@@ -162,7 +184,7 @@ pub fn tuned(setup: &Setup, over: &[Over]) -> Result<Vec<Tuned>, FileError> {
                     count: None,
                     log,
                 } => ([from, to], log || (from > 0.0 && to / from > 4.0)),
-                _ => return Err(refuse(TuneError::Form(id.name().to_owned()))),
+                _ => return Err(TuneError::Form(id.name().to_owned()).into()),
             },
             // A gain of zero has no scale.
             Over::Name(_) if start <= 0.0 => (limits, false),
@@ -175,7 +197,7 @@ pub fn tuned(setup: &Setup, over: &[Over]) -> Result<Vec<Tuned>, FileError> {
             }
         };
         if range[0] < limits[0] || range[1] > limits[1] {
-            return Err(refuse(TuneError::Range(id)));
+            return Err(TuneError::Range(id).into());
         }
         all.push(Tuned {
             id,
@@ -249,21 +271,24 @@ impl Search<'_> {
         ((DRIVING_S / setup.scenario.duration_s) as usize).max(Self::LEAST)
     }
 
-    /// Searches; `progress` gets the share of the budget that is used, and says whether to go on.
+    /// Searches; `progress` gets the share of the budget that is used. `goes_on` is asked before each run.
     ///
     /// # Errors
-    /// A budget that is too small, or the first error of a run.
-    pub fn run(&self, progress: impl Fn(f64) -> bool) -> Result<Found, FileError> {
+    /// A budget that is too small, the first error of a run, or [`TuneError::Ended`] once `goes_on` denies.
+    pub fn run(
+        &self,
+        progress: impl Fn(f64),
+        goes_on: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Found, FileError> {
         if self.budget < Self::LEAST {
-            return Err(FileError::Setting(
-                TuneError::Budget(Self::LEAST).to_string(),
-            ));
+            return Err(TuneError::Budget(Self::LEAST).into());
         }
         let units = self.units()?;
         let evaluator = Evaluator {
             search: self,
             units: &units,
             runs: AtomicUsize::new(0),
+            goes_on,
         };
         let share = || evaluator.share();
         let dimension = self.over.len();
@@ -292,7 +317,8 @@ impl Search<'_> {
         for (number, (_, from)) in looked.iter().take(2).enumerate() {
             let until = 0.5 * (number + 1) as f64 * (1.0 - self.last_share());
             let found = self.descend(&evaluator, from, number, &|| {
-                share() < until && progress(share())
+                progress(share());
+                share() < until && goes_on()
             })?;
             finalists.extend(found);
         }
@@ -410,6 +436,7 @@ struct Evaluator<'a> {
     search: &'a Search<'a>,
     units: &'a [f64],
     runs: AtomicUsize,
+    goes_on: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl Evaluator<'_> {
@@ -423,7 +450,17 @@ impl Evaluator<'_> {
         let Search { setup, seed, .. } = self.search;
         (first..first + seeds)
             .into_par_iter()
-            .try_for_each(|index| prepare(setup, seed.wrapping_add(index as u64)).map(|_| ()))
+            .try_for_each(|index| {
+                self.goes_on()?;
+                prepare(setup, seed.wrapping_add(index as u64)).map(|_| ())
+            })
+    }
+
+    fn goes_on(&self) -> Result<(), FileError> {
+        match (self.goes_on)() {
+            true => Ok(()),
+            false => Err(TuneError::Ended.into()),
+        }
     }
 
     /// The cost at a place over so many seeds from one on.
@@ -433,6 +470,7 @@ impl Evaluator<'_> {
         let values: Vec<f64> = values.map(|(one, place)| one.at(*place)).collect();
         let setup = search.setup_of(&values)?;
         let costs = (first..first + seeds).into_par_iter().map(|index| {
+            self.goes_on()?;
             let result = run(&setup, search.seed.wrapping_add(index as u64))?;
             let objective = search.objective;
             Ok(objective.cost(&setup.scenario, self.units, &result.metrics, result.pass))

@@ -1,8 +1,10 @@
-//! What to search over: `front_kp`, or within a range `front_kp=1:20`.
+//! What to search over: `front_kp`, or within a range `front_kp=1:20`; and what there is to choose from.
 
-use crate::files::{FileError, ScenarioFile, unknown};
+use super::present;
+use crate::files::parameters::exact;
+use crate::files::{FileError, ScenarioFile, Setup, unknown};
 use crate::sweep::Axis;
-use rumbo_control::params::ParamId;
+use rumbo_control::params::{ParamId, ParamKind};
 
 /// What to search over: names, or axes `NAME=FROM:TO`.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,4 +57,35 @@ impl Over {
             false => Ok(()),
         }
     }
+}
+
+/// Parameters of one subject that can be tuned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tunable {
+    /// The subject.
+    pub title: &'static str,
+    /// The parameters, with their present values.
+    pub parameters: Vec<(ParamId, f64)>,
+}
+
+/// The parameters to choose from in a setup, those that matter most first: the numbers that its mode uses, without those
+/// that its scenario sets itself. `own` is the scenario as its file has it.
+///
+/// # Errors
+/// A setup whose values do not fit together.
+pub fn tunable(setup: &Setup, own: &ScenarioFile) -> Result<Vec<Tunable>, FileError> {
+    let now = present(setup)?;
+    let groups = setup.scenario.mode.description().parameters.iter();
+    let groups = groups.map(|group| {
+        let numbers = group.parameters.iter();
+        let numbers = numbers
+            .filter(|id| id.kind() == ParamKind::Number && Over::Name(**id).check(own).is_ok());
+        Tunable {
+            title: group.title,
+            parameters: numbers.map(|id| (*id, exact(now.get(*id)))).collect(),
+        }
+    });
+    Ok(groups
+        .filter(|group| !group.parameters.is_empty())
+        .collect())
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::files::{Library, Overrides};
+use crate::files::{Kind, Library, Overrides};
 
 fn setup(scenario: &str, parameters: &[(&str, f64)]) -> Setup {
     let parameters = parameters
@@ -66,8 +66,8 @@ fn from_a_fifth_of_its_gain_a_robot_keeps_its_limits_once_more_on_robots_not_see
         seed,
         budget: 3_000,
     };
-    let found = search(1).run(|_| true).unwrap();
-    assert_eq!(found, search(1).run(|_| true).unwrap());
+    let found = search(1).run(|_| (), &|| true).unwrap();
+    assert_eq!(found, search(1).run(|_| (), &|| true).unwrap());
     assert!(found.runs < 4_000, "{}", found.runs);
     let tuned = search(1).setup_of(&found.values).unwrap();
     let passes = |setup: &Setup| {
@@ -84,4 +84,54 @@ fn a_robot_file_keeps_all_else() {
     let tuned = rewrite(text, &values, "on 2026-01-01.").unwrap();
     assert!(tuned.contains("kv = 0.02 # as measured") && tuned.contains("front_kp = 7.5"));
     assert!(is_tuned(&tuned) && !is_tuned(text));
+}
+
+#[test]
+fn what_can_be_tuned_are_the_numbers_of_the_mode_that_the_scenario_leaves_open() {
+    let library = Library::new();
+    for name in library.list(Kind::Scenario) {
+        let own = library.scenario(&name).unwrap();
+        if own.limits.is_empty() || !own.fleet.is_empty() {
+            continue;
+        }
+        let setup = library.setup(&name, &Overrides::default()).unwrap();
+        let groups = tunable(&setup, &own).unwrap();
+        let all = groups.iter().flat_map(|group| &group.parameters);
+        let all: Vec<Over> = all.map(|(id, _)| Over::Name(*id)).collect();
+        tuned(&setup, &all).unwrap();
+        assert!(all.iter().all(|over| over.check(&own).is_ok()), "{name}");
+    }
+    let setup = setup("mode1", &[("front_kp", 0.7)]);
+    let own = library.scenario("mode1").unwrap();
+    let groups = tunable(&setup, &own).unwrap();
+    let front_kp = ParamId::from_name("front_kp").unwrap();
+    assert!(
+        groups[0].parameters.contains(&(front_kp, 0.7)),
+        "{groups:?}"
+    );
+}
+
+#[test]
+fn a_search_ends_when_it_is_told_to_and_without_limits_needs_an_aim() {
+    let own = Library::new().scenario("mode1").unwrap();
+    let plan = |setup: Setup, aims: Objective| {
+        let request = Request {
+            over: over(&["front_kp"]),
+            objective: aims,
+            seed: 1,
+            runs: None,
+            held_out: 2,
+        };
+        Plan::new(setup, &own, request)
+    };
+    let whole = plan(setup("mode1", &[]), Objective::default()).unwrap();
+    let asked = AtomicUsize::new(0);
+    let ended = whole.run(&|_| (), &|| asked.fetch_add(1, Ordering::Relaxed) < 100);
+    assert_eq!(ended.unwrap_err(), FileError::from(TuneError::Ended));
+    assert!(asked.load(Ordering::Relaxed) < 200, "{asked:?}");
+    let mut open = setup("mode1", &[]);
+    open.scenario.limits.clear();
+    let refused = plan(open.clone(), Objective::default()).unwrap_err();
+    assert!(refused.to_string().contains("give an aim"), "{refused}");
+    assert!(plan(open, "settling_s".parse().unwrap()).is_ok());
 }
