@@ -31,6 +31,7 @@ pub(crate) fn serve(args: &ConnectArgs) -> Result<Lab, Failure> {
         speed: 1.0,
         recording: logs::recording(args.session.out.as_deref()),
         echo: Some(output::aside),
+        tuner: None,
         #[cfg(feature = "foxglove")]
         bridge: crate::lab::bridge(args.session.bridge)?,
     };

@@ -80,6 +80,7 @@ fn config(args: &LabArgs, echo: Option<Print>) -> Result<LabConfig, Failure> {
         speed: args.speed,
         recording: logs::recording(args.session.out.as_deref()),
         echo,
+        tuner: None,
         #[cfg(feature = "foxglove")]
         bridge: bridge(args.session.bridge)?,
     })

@@ -26,6 +26,7 @@ mod serve;
 mod session;
 mod socket;
 mod subscribers;
+mod tuning;
 mod web;
 
 pub use rumbo_session::Extras;
@@ -41,3 +42,4 @@ pub use recorder::{Recording, now_utc};
 pub use serve::{
     DEFAULT_PORT, Lab, LabConfig, Named, ServeAt, serve, serve_fleet, serve_log, serve_with,
 };
+pub use tuning::{NotTuned, Tuner};

@@ -14,6 +14,7 @@ use crate::replay;
 use crate::session::{Orders, Running, Seat};
 use crate::socket::Hub;
 use crate::subscribers::Subscribers;
+use crate::tuning::{Tuner, Tuning};
 use crate::web;
 use rumbo_log::Log;
 use rumbo_session::{Extras, Ghost, Replay, Target, TargetError};
@@ -64,6 +65,8 @@ pub struct LabConfig {
     pub recording: Option<Recording>,
     /// Prints warnings and faults as well.
     pub echo: Option<Print>,
+    /// What searches for parameters, for the page in control.
+    pub tuner: Option<Box<dyn Tuner>>,
     /// A bridge to viewers of Foxglove's protocol.
     #[cfg(feature = "foxglove")]
     pub bridge: Option<crate::bridge::Bridge>,
@@ -76,6 +79,7 @@ impl Default for LabConfig {
             speed: 1.0,
             recording: None,
             echo: None,
+            tuner: None,
             #[cfg(feature = "foxglove")]
             bridge: None,
         }
@@ -190,14 +194,18 @@ pub fn serve_fleet(
         speed,
         recording,
         echo,
+        tuner,
         ..
     } = config;
     let recordings =
         recording.map(|recording| Arc::new(Recordings::new(recording.folder, serve_replay)));
-    let shown = recordings.clone();
+    let beside = Beside {
+        recordings: recordings.clone(),
+        tuning: tuner.map(|tuner| Arc::new(Tuning::new(tuner))),
+    };
     let (names, targets): (Vec<_>, Vec<_>) = robots.into_iter().unzip();
     let speakers = names.clone();
-    start(at, shown, names, move |chairs| {
+    start(at, beside, names, move |chairs| {
         let echo = echo.and_then(Echo::start);
         #[cfg(feature = "foxglove")]
         let mut bridge = config.bridge;
@@ -235,7 +243,8 @@ pub fn serve_log(
     log: Log,
     ghost: Option<Box<dyn Ghost>>,
 ) -> Result<Lab, ServeError> {
-    start(at, None, vec![String::new()], move |mut chairs| {
+    let beside = Beside::default();
+    start(at, beside, vec![String::new()], move |mut chairs| {
         if let Some((board, orders)) = chairs.pop() {
             replay::run(Replay::new(name, log, speed, ghost), &board, &orders);
         }
@@ -252,18 +261,25 @@ pub(crate) fn serve_replay(name: String, log: Log) -> Result<(String, Box<dyn Se
 /// What a robot's session writes to, and where its orders come from.
 type Chair = (Arc<Board>, Orders);
 
+/// What pages may use beside the session.
+#[derive(Default)]
+struct Beside {
+    recordings: Option<Arc<Recordings>>,
+    tuning: Option<Arc<Tuning>>,
+}
+
 /// Serves boards that `session` writes, one for each of these robots, in a thread of its own, until there are no more
 /// orders.
 fn start(
     at: ServeAt,
-    recordings: Option<Arc<Recordings>>,
+    beside: Beside,
     names: Vec<String>,
     session: impl FnOnce(Vec<Chair>) -> Result<(), TargetError> + Send + 'static,
 ) -> Result<Lab, ServeError> {
     guard::check_listen(at.address)?;
     let listener = bind(at)?;
     let at = SocketAddr::new(at.address, at.port);
-    start_on(listener, recordings, names, session).map_err(|error| ServeError::Io(at, error))
+    start_on(listener, beside, names, session).map_err(|error| ServeError::Io(at, error))
 }
 
 pub(crate) fn bind(at: ServeAt) -> Result<TcpListener, ServeError> {
@@ -276,7 +292,7 @@ pub(crate) fn bind(at: ServeAt) -> Result<TcpListener, ServeError> {
 
 fn start_on(
     listener: TcpListener,
-    recordings: Option<Arc<Recordings>>,
+    beside: Beside,
     names: Vec<String>,
     session: impl FnOnce(Vec<Chair>) -> Result<(), TargetError> + Send + 'static,
 ) -> io::Result<Lab> {
@@ -298,7 +314,8 @@ fn start_on(
             robot,
             robots: Arc::clone(&robots),
             local,
-            recordings: recordings.clone(),
+            recordings: beside.recordings.clone(),
+            tuning: beside.tuning.clone(),
         });
     }
     let robots = std::iter::zip(names, hubs.iter().cloned()).collect();

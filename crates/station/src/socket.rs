@@ -11,6 +11,7 @@ use crate::guard::Role;
 use crate::lease::{Lease, Place};
 use crate::order_sender::{OrderSender, TOO_MANY};
 use crate::recordings::Recordings;
+use crate::tuning::Tuning;
 use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use futures_util::stream::SplitSink;
@@ -31,11 +32,11 @@ const REFUSALS_WAITING: usize = 8;
 /// News within this time are sent together: a page draws at most 60 times a second.
 const GATHER: Duration = Duration::from_millis(15);
 /// A page that reads nothing for this long is closed; it reconnects by itself and gets the recent past.
-const SEND_TIMEOUT: Duration = Duration::from_secs(5);
+pub(crate) const SEND_TIMEOUT: Duration = Duration::from_secs(5);
 /// Interval of the pings, which browsers answer by themselves.
-const PING: Duration = Duration::from_secs(5);
+pub(crate) const PING: Duration = Duration::from_secs(5);
 /// A page that sends nothing for this long, not even a pong, is gone: its computer sleeps, or the network is cut.
-const SILENCE: Duration = Duration::from_secs(15);
+pub(crate) const SILENCE: Duration = Duration::from_secs(15);
 
 /// State shared by all connections.
 #[derive(Clone, Debug)]
@@ -49,6 +50,7 @@ pub(crate) struct Hub {
     /// Only this computer reaches the pages: they may hand in programs, and see and delete recordings.
     pub(crate) local: bool,
     pub(crate) recordings: Option<Arc<Recordings>>,
+    pub(crate) tuning: Option<Arc<Tuning>>,
 }
 
 impl Hub {
@@ -254,6 +256,7 @@ mod tests {
             robots: Arc::default(),
             local: true,
             recordings: None,
+            tuning: None,
         }
     }
 

@@ -1,9 +1,10 @@
 //! The web server: the dashboard's files and its WebSocket, behind the [`Guard`].
 
 mod recordings;
+mod tuning;
 
 use crate::assets;
-use crate::guard::{Denied, Guard};
+use crate::guard::{Denied, Guard, Role};
 use crate::socket::{self, Hub};
 use axum::Router;
 use axum::body::Body;
@@ -12,6 +13,7 @@ use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, he
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
+use rumbo_session::PageId;
 use std::sync::Arc;
 
 /// Sent with every answer.
@@ -45,6 +47,8 @@ const SECURITY_HEADERS: [(HeaderName, HeaderValue); 7] = [
 
 /// The WebSocket's protocol, as the page asks for it: this name, and its key as if it were another one.
 const PROTOCOL: &str = "rumbo";
+/// What a page without control may not do.
+const NOT_DRIVING: &str = "another page has control; take it first";
 
 /// Those of all robots, at least one.
 #[derive(Clone)]
@@ -68,6 +72,8 @@ pub(crate) fn router(guard: Arc<Guard>, hubs: Vec<Hub>) -> Router {
             get(recordings::content).delete(recordings::delete),
         )
         .route("/recordings/{name}/replay", post(recordings::replay))
+        .route("/tune", get(tuning::offers))
+        .route("/tune/search", get(tuning::search))
         .fallback(file)
         .with_state(Hubs(hubs.into()))
         .layer(middleware::from_fn_with_state(Arc::clone(&guard), admit))
@@ -109,6 +115,38 @@ fn bearer(headers: &HeaderMap) -> &str {
     shown.unwrap_or_default()
 }
 
+/// What the key of a WebSocket that our page opens allows.
+fn role_of_socket(guard: &Guard, headers: &HeaderMap) -> Result<Role, Denied> {
+    guard.check_origin(headers)?;
+    let protocols = headers.get_all(header::SEC_WEBSOCKET_PROTOCOL).iter();
+    protocols
+        .filter_map(|value| value.to_str().ok())
+        .flat_map(|value| value.split(','))
+        .find_map(|key| guard.role_of(key.trim()).ok())
+        .ok_or(Denied::Key)
+}
+
+/// A value in the query of an address.
+fn queried<'a>(uri: &'a Uri, name: &str) -> Option<&'a str> {
+    let mut parts = uri.query()?.split('&');
+    parts.find_map(|part| part.strip_prefix(name)?.strip_prefix('='))
+}
+
+/// The robot that the address names, or the first one.
+fn named(hubs: &[Hub], uri: &Uri) -> Hub {
+    let named = queried(uri, "robot").and_then(|name| {
+        hubs.iter()
+            .find(|hub| hub.robots.get(hub.robot).is_some_and(|own| own == name))
+    });
+    named.unwrap_or(&hubs[0]).clone()
+}
+
+/// Whether the page that asks, which gives its number, has control, or nobody has.
+fn drives(hub: &Hub, uri: &Uri) -> bool {
+    let page = queried(uri, "page").and_then(|page| page.parse::<PageId>().ok());
+    page.is_some_and(|page| hub.lease.drives(page))
+}
+
 /// A page of the robot that the address names, or of the first one.
 async fn upgrade(
     State(Hubs(hubs)): State<Hubs>,
@@ -117,19 +155,8 @@ async fn upgrade(
     headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Result<Response, Denied> {
-    guard.check_origin(&headers)?;
-    let named = uri.query().and_then(|query| query.strip_prefix("robot="));
-    let named = named.and_then(|name| {
-        hubs.iter()
-            .find(|hub| hub.robots.get(hub.robot).is_some_and(|own| own == name))
-    });
-    let hub = named.unwrap_or(&hubs[0]).clone();
-    let protocols = headers.get_all(header::SEC_WEBSOCKET_PROTOCOL).iter();
-    let role = protocols
-        .filter_map(|value| value.to_str().ok())
-        .flat_map(|value| value.split(','))
-        .find_map(|key| guard.role_of(key.trim()).ok())
-        .ok_or(Denied::Key)?;
+    let role = role_of_socket(&guard, &headers)?;
+    let hub = named(&hubs, &uri);
     Ok(upgrade
         .protocols([PROTOCOL])
         .max_message_size(hub.longest_message())

@@ -1,13 +1,12 @@
 //! Requests for recordings: on this computer only, with the key of a page that may drive.
 
-use super::bearer;
+use super::{NOT_DRIVING, bearer, drives};
 use crate::guard::{Denied, Guard, Role};
 use crate::recordings::{RecordingError, Recordings};
 use crate::socket::Hub;
 use axum::extract::{Extension, Path, State};
 use axum::http::{HeaderMap, StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
-use rumbo_session::PageId;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -40,10 +39,7 @@ impl IntoResponse for Refused {
                 "recordings are shown only where no other computer reaches the page".into(),
             ),
             Self::None => (StatusCode::NOT_FOUND, "nothing is recorded here".into()),
-            Self::NotDriving => (
-                StatusCode::FORBIDDEN,
-                "another page has control; take it first".into(),
-            ),
+            Self::NotDriving => (StatusCode::FORBIDDEN, NOT_DRIVING.into()),
             Self::Recording(error @ RecordingError::Unknown) => {
                 (StatusCode::NOT_FOUND, error.to_string())
             }
@@ -97,10 +93,7 @@ pub(super) async fn delete(
 ) -> Result<(), Refused> {
     guard.check_origin(&headers)?;
     admitted(&hub, &guard, &headers)?;
-    // The page that asks gives its number.
-    let page = uri.query().and_then(|query| query.strip_prefix("page="));
-    let page = page.and_then(|page| page.parse::<PageId>().ok());
-    if !page.is_some_and(|page| hub.lease.drives(page)) {
+    if !drives(&hub, &uri) {
         return Err(Refused::NotDriving);
     }
     with(&hub, move |recordings| recordings.delete(&name)).await

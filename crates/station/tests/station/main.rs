@@ -16,4 +16,5 @@ mod port;
 mod security;
 #[path = "../support/mod.rs"]
 mod support;
+mod tuning;
 mod unplugged;

@@ -86,7 +86,13 @@ pub(crate) async fn connect(lab: &Lab, key: &str, origin: Option<&str>) -> Resul
     connect_at("/ws", lab, key, origin).await
 }
 
-async fn connect_at(at: &str, lab: &Lab, key: &str, origin: Option<&str>) -> Result<Page, Error> {
+#[allow(dead_code, reason = "not every test has an address of its own")]
+pub(crate) async fn connect_at(
+    at: &str,
+    lab: &Lab,
+    key: &str,
+    origin: Option<&str>,
+) -> Result<Page, Error> {
     let address = format!("ws://{}{at}", host(lab));
     let mut request = address.into_client_request().unwrap();
     let protocols = HeaderValue::from_str(&format!("rumbo, {key}")).unwrap();
