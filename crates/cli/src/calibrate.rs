@@ -177,9 +177,18 @@ pub(crate) fn rewrite_robot(
     } else {
         setup.robot.text.clone()
     };
+    place::write(path, rewritten(&file, &text, rewrite)?)
+}
+
+/// The text of a robot file, which messages call `file`, with other parameters; `rewrite` gets it and the date.
+pub(crate) fn rewritten(
+    file: &str,
+    text: &str,
+    rewrite: impl FnOnce(&str, &str) -> Result<String, RewriteError>,
+) -> Result<String, Failure> {
     let today = time::OffsetDateTime::now_utc().date().to_string();
-    let text =
-        rewrite(&text, &today).map_err(|error| wrong(format!("is no robot file ({error})")))?;
-    RobotFile::parse("", &file, &text)?;
-    place::write(path, text)
+    let text = rewrite(text, &today)
+        .map_err(|error| Failure::Input(format!("{file}: is no robot file ({error})")))?;
+    RobotFile::parse("", file, &text)?;
+    Ok(text)
 }

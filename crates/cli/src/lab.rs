@@ -6,6 +6,7 @@ use crate::calibrate;
 use crate::failure::Failure;
 use crate::logs;
 use crate::output;
+use crate::tune;
 use crate::workshop::{self, Workshop};
 use rumbo_experiment::files::{Kind, Library, Overrides, ScenarioFile};
 use rumbo_lab::{OwnProgram, SimulatedRobot};
@@ -80,7 +81,10 @@ fn config(args: &LabArgs, echo: Option<Print>) -> Result<LabConfig, Failure> {
         speed: args.speed,
         recording: logs::recording(args.session.out.as_deref()),
         echo,
-        tuner: None,
+        tuner: Some(tune::in_dashboard(
+            args.setting.robot.as_deref(),
+            &args.scenario,
+        )),
         #[cfg(feature = "foxglove")]
         bridge: bridge(args.session.bridge)?,
     })

@@ -1,5 +1,9 @@
 //! `rumbo tune`: values of control parameters for an aim, checked on robots that the search has not seen.
 
+mod dashboard;
+
+pub(crate) use dashboard::in_dashboard;
+
 use crate::args::TuneArgs;
 use crate::calibrate::{check_robot, rewrite_robot};
 use crate::compare::variants::{differences_as_json, print_differences};

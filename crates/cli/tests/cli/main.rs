@@ -20,3 +20,4 @@ mod studies;
 #[path = "../support/mod.rs"]
 mod support;
 mod text_robot;
+mod tuning;

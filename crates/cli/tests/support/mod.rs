@@ -89,7 +89,11 @@ impl Drop for Running {
 }
 
 /// A page on the dashboard whose address was printed.
-pub(crate) struct Page(WebSocket<TcpStream>);
+pub(crate) struct Page {
+    socket: WebSocket<TcpStream>,
+    host: String,
+    key: String,
+}
 
 impl Page {
     pub(crate) fn open(address: &str) -> Self {
@@ -104,18 +108,31 @@ impl Page {
         let mut answer = String::new();
         stream.read_to_string(&mut answer).unwrap();
         let (_, key) = answer.split_once("\r\n\r\n").unwrap();
-        let uri = format!("ws://{host}/ws").parse().unwrap();
+        Self::at(host, "/ws", key)
+    }
+
+    fn at(host: &str, path: &str, key: &str) -> Self {
+        let uri = format!("ws://{host}{path}").parse().unwrap();
         let request = tungstenite::ClientRequestBuilder::new(uri)
             .with_header("Origin", format!("http://{host}"))
             .with_sub_protocol("rumbo")
             .with_sub_protocol(key);
         let stream = TcpStream::connect(host).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
-        Self(tungstenite::client(request, stream).unwrap().0)
+        Self {
+            socket: tungstenite::client(request, stream).unwrap().0,
+            host: host.to_owned(),
+            key: key.to_owned(),
+        }
+    }
+
+    /// Another WebSocket of this page, at this path.
+    pub(crate) fn beside(&self, path: &str) -> Self {
+        Self::at(&self.host, path, &self.key)
     }
 
     pub(crate) fn send(&mut self, order: &Value) {
-        self.0.send(Message::text(order.to_string())).unwrap();
+        self.socket.send(Message::text(order.to_string())).unwrap();
     }
 
     /// Reads on until `wanted` finds what it looks for.
@@ -127,7 +144,7 @@ impl Page {
         let until = Instant::now() + PATIENCE;
         let mut events = Vec::new();
         while Instant::now() < until {
-            let Message::Text(text) = self.0.read().unwrap() else {
+            let Message::Text(text) = self.socket.read().unwrap() else {
                 continue;
             };
             let message: Value = serde_json::from_str(&text).unwrap();
