@@ -42,6 +42,7 @@ import { Store } from './store.js';
 import { Tabs } from './tabs.js';
 import { LANGUAGES, language, speak, t, translatePage, untranslated } from './text.js';
 import { Tour } from './tour.js';
+import { TuneDialog } from './tune_dialog.js';
 import { WorkerLink, isSite } from './worker_link.js';
 import { WorldEditor } from './world_editor.js';
 
@@ -180,6 +181,7 @@ const recordings = new Recordings(() => plots.modes, askLab, showRecording);
 const calibration = new CalibrationDialog(send);
 new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
 new ReportDialog();
+const tune = new TuneDialog(send);
 const robotPort = new RobotPort(askLab);
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
 makeEnlargeable();
@@ -227,6 +229,7 @@ function receive(message) {
       stateLine.modes = message.modes;
       machine.modes = message.modes;
       parameters.setModes(message.modes);
+      tune.modes = message.modes;
       document.body.classList.toggle('several', (message.robots ?? []).length > 0);
       follows = message.robot > 0;
       offerRobots(message.robots ?? [], message.robot);
@@ -242,6 +245,7 @@ function receive(message) {
       header.setScene(follows ? null : simulated);
       map.setScene(message.scene);
       editor.setScene(simulated);
+      tune.setScene(simulated);
       panel.setScene(message.scene);
       stateLine.setScene(simulated);
       setBody();
@@ -282,6 +286,7 @@ function receive(message) {
     case 'parameters':
       parameters.show(message.parameters);
       calibration.setParameters(message.parameters);
+      tune.setParameters(message.parameters);
       table = message.parameters;
       setBody();
       break;
@@ -314,6 +319,7 @@ function receive(message) {
     case 'control':
       seat.show(message);
       recordings.page = message.page;
+      tune.setControl(message);
       break;
     case 'error':
       break;

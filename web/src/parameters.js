@@ -178,4 +178,4 @@ function rows(title, lines, hidden = false) {
 }
 
 /** A unit as people write it. @param {string} unit */
-const unitWords = (unit) => unit.replace(/([a-z])2\b/g, '$1²');
+export const unitWords = (unit) => unit.replace(/([a-z])2\b/g, '$1²');

@@ -68,7 +68,7 @@ test('messages of the robot: faults, refusals, why it started, events, modes, st
 const NO_SENTENCE = ['rig', 'in world', 'with rig', 'this program has none', '{}: {}', '{}-{}-{}T{}:{}:{}Z', 'reset: {}{}{}, seed {}', 'a new route, {}', 'allowed is {}', 'parameter {}', 'once', 'again and again'];
 
 test('messages of session and station', () => {
-  const texts = ['session/src/words', 'session/src/anomaly', 'session/src/error', 'session/src/observer', 'session/src/session', 'session/src/session/calibrating', 'session/src/session/commanding', 'session/src/observer/describe', 'station/src/session', 'station/src/recordings', 'station/src/web/recordings', 'session/src/replay', 'log/src/bound', 'browser/src/lab', 'browser/src/following'].flatMap((name) => {
+  const texts = ['session/src/words', 'session/src/anomaly', 'session/src/error', 'session/src/observer', 'session/src/session', 'session/src/session/calibrating', 'session/src/session/commanding', 'session/src/observer/describe', 'station/src/session', 'station/src/tuning', 'station/src/web/tuning', 'cli/src/tune/dashboard', 'station/src/recordings', 'station/src/web/recordings', 'session/src/replay', 'log/src/bound', 'browser/src/lab', 'browser/src/following'].flatMap((name) => {
     const source = (read(`../../crates/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '');
     return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => (found[1] ?? '').replace(/\{[^}]*\}/g, '{}'));
   }).map((text) => text.replace('allowed is {} to {} {}', 'allowed is {} to {}').replace(/^allowed is \{\} to \{\} (?:cm|rpm)$/, 'allowed is {} to {}'));
@@ -80,6 +80,13 @@ test('messages about a file that is no recording, after its name', () => {
   const texts = [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => (found[1] ?? '').replace(/\{[^}]*\}/g, '{}')).filter((text) => / /.test(text) && hasWords(text));
   assert.ok(texts.length > 5, String(texts.length));
   allSpanish(texts.map((text) => (text.startsWith('{}: ') ? text : `{}: ${text}`)));
+});
+
+test('why nothing is tuned', () => {
+  const displays = ['tune/mod', 'tune/objective'].flatMap((name) => [...read(`../../crates/experiment/src/${name}.rs`).matchAll(/^impl fmt::Display [^]*?^}/gm)].map(([part]) => part));
+  const texts = [...displays, read('../../crates/experiment/src/tune/over.rs').match(/"[^"]+ sets it itself[^"]*"/)?.[0] ?? ''].flatMap((part) => [...part.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped(found[1] ?? '').replace(/\{[^}]*\}/g, '{}')));
+  assert.ok(texts.length > 9, String(texts.length));
+  allSpanish(texts);
 });
 
 test('titles and groups of the built-in scenarios', () => {

@@ -32,6 +32,19 @@ export const PAGE = {
   'Report': 'Memoria', 'Every experiment of the course, run and written up as one page': 'Todos los experimentos del curso, ejecutados y redactados en una página', 'Experiments': 'Experimentos', 'all': 'todos', 'Cancel': 'Cancelar',
   'Runs the experiments of the course, faster than real time, and writes them up with their figures as one page, in the language of this one. On a computer `rumbo experiments` writes the same page, byte for byte.':
     'Ejecuta los experimentos del curso, más rápido que en tiempo real, y los redacta con sus figuras en una sola página, en español. En un ordenador `rumbo experiments` escribe la misma página, byte a byte.',
+  'Tune': 'Sintonizar', 'Let a search find values of parameters, on many simulated robots': 'Deja que una búsqueda encuentre valores de los parámetros, con muchos robots simulados',
+  'Searches for values of parameters on many simulated robots that differ as real ones do, then drives 100 others with the values before and after.':
+    'Busca valores de los parámetros con muchos robots simulados, distintos entre sí como los reales, y luego conduce otros 100 con los valores de antes y los de después.',
+  'The robot of this page goes on meanwhile.': 'Entretanto, el robot de esta página sigue.',
+  'It takes more than a page has: Rumbo on a computer does it.': 'Hace falta más de lo que tiene una página: lo hace Rumbo en un ordenador.',
+  'limits: {}': 'límites: {}', 'aims': 'objetivos',
+  'Metrics to make small, and limits, with commas between them. Without any, all limits of the scenario are kept with as much room as possible.': 'Métricas que reducir, y límites, separados por comas. Sin ninguno se mantienen todos los límites del escenario, con el mayor margen posible.',
+  'runs': 'ejecuciones', 'Start|tune': 'Buscar', 'at most {} left': 'quedan {} como mucho',
+  'on {} robots that the search has not seen: {} passed, {} pass': 'con {} robots que la búsqueda no ha visto: antes cumplían {}, ahora cumplen {}',
+  'no run differs': 'ninguna ejecución cambia', 'mean difference': 'diferencia media', '95 % interval': 'intervalo del 95 %', 'effect': 'efecto', 'better in': 'mejor en',
+  '{} to {}|interval': 'de {} a {}', 'after': 'después', 'never, before and after': 'nunca, antes y después',
+  'Set on the robot': 'Fijar en el robot', 'Save as robot file': 'Guardar como archivo de robot', 'no robot file: more of the unseen robots fail than before': 'sin archivo de robot: de los robots no vistos fallan más que antes',
+  '{} runs of the search. Lines whose interval holds no zero are sure; the others may be chance.': '{} ejecuciones de búsqueda. Son seguras las líneas cuyo intervalo no contiene el cero; las demás pueden ser azar.',
   'Make the report': 'Redactar la memoria', 'Open the report': 'Abrir la memoria', 'choose an experiment': 'elige un experimento',
   'The report is not here: {}. Without a network it can be made where it has been made before.': 'La memoria no está aquí: {}. Sin red se puede redactar donde ya se haya redactado antes.',
   'Rumbo writes the report on this computer: every experiment of the course, run faster than real time, with its figures, as one page.': 'Rumbo escribe la memoria en este ordenador: todos los experimentos del curso, ejecutados más rápido que en tiempo real, con sus figuras, en una sola página.',
@@ -140,7 +153,7 @@ export const PAGE = {
   'Compare': 'Comparar', 'compare': 'comparar', 'recording': 'grabación', 'duration': 'duración', 'size': 'tamaño', 'actions': 'acciones', 'find': 'buscar', '{} of {} recordings': '{} de {} grabaciones', 'no recordings': 'no hay grabaciones',
   'Choose two recordings to compare': 'Elige dos grabaciones para compararlas', 'a real robot': 'un robot real', 'not readable': 'ilegible', 'Compare {}': 'Comparar {}', 'Open|replay': 'Abrir',
   'Show it as a replay, in a page of its own': 'La muestra en una página aparte', 'being recorded': 'grabándose', 'Delete this recording': 'Borra esta grabación', 'Delete for good': 'Borrar para siempre', 'Keep': 'Conservar',
-  'signal': 'señal', 'metric': 'medida', 'parameter that differs': 'parámetro distinto', 'never': 'nunca', 'the two have no signal in common': 'las dos no tienen ninguna señal en común',
+  'signal': 'señal', 'metric': 'métrica', 'parameter that differs': 'parámetro distinto', 'never': 'nunca', 'the two have no signal in common': 'las dos no tienen ninguna señal en común',
   // Replay.
   'whole log': 'toda', 'Follow': 'Seguir', 'ghost l.': 'fantasma izq.', 'ghost r.': 'fantasma der.', 'ghost front': 'fantasma frontal', 'ghost range, left sonar': 'distancia del fantasma, sonar izquierdo', 'ghost range, right sonar': 'distancia del fantasma, sonar derecho',
   'ghost range, front sonar': 'distancia del fantasma, sonar frontal', 'ghost speed, left wheel': 'velocidad del fantasma, rueda izquierda', 'ghost speed, right wheel': 'velocidad del fantasma, rueda derecha',

@@ -242,6 +242,22 @@ export const ROBOT = {
   'not used: both copies are damaged or of another version; the defaults are in force: set the parameters and save':
     'sin usar: las dos copias están dañadas o son de otra versión; rigen los de fábrica: fija los parámetros y guarda',
   'save the parameters on the robot': 'guardar los parámetros en el robot',
+  // Why nothing is tuned.
+  'another page\'s search is running; it can be cancelled there': 'está en marcha la búsqueda de otra página; se puede cancelar en ella',
+  'ended after an hour; ask for fewer runs': 'terminada al cabo de una hora; pide menos ejecuciones',
+  'parameters are tuned in the lab of a simulated robot': 'los parámetros se sintonizan en el laboratorio de un robot simulado',
+  'the connection to the station was lost, and the search with it': 'se perdió la conexión con la estación, y con ella la búsqueda',
+  'choose a parameter': 'elige un parámetro', 'at most {} parameters are searched from a page': 'desde una página se buscan {} parámetros como mucho',
+  'a search from a page has at most {} runs': 'una búsqueda desde una página tiene {} ejecuciones como mucho', 'the aims are longer than {} characters': 'los objetivos tienen más de {} caracteres',
+  '{} is given twice; give it once': '{} está dos veces; basta una', '{}: is a switch or a choice; compare its values with `rumbo compare`': '{}: es un interruptor o una elección; compara sus valores con `rumbo compare`',
+  '{}: its range must lie within {}..{} {}': '{}: su rango ha de estar dentro de {}..{} {}', '{}: is searched in a range; write {} or {}=FROM:TO': '{}: se busca en un rango; escribe {} o {}=DESDE:HASTA',
+  'a search needs at least {} runs': 'una búsqueda necesita al menos {} ejecuciones', 'the search was ended': 'se ha terminado la búsqueda',
+  'scenario {} has no limits; give an aim, such as `settling_s`': 'el escenario {} no tiene límites; da un objetivo, como `settling_s`',
+  '{}: scenario {} sets it itself, whatever a robot file says; take it out of the scenario': '{}: lo fija el propio escenario {}, diga lo que diga el archivo del robot; quítalo del escenario',
+  '`{}`: write metrics and limits with commas between them, e.g. "settling_s, overshoot_m < 0.01"': '`{}`: escribe métricas y límites separados por comas, p. ej. "settling_s, overshoot_m < 0.01"',
+  '`{}`: its limit is not a number': '`{}`: su límite no es un número',
+  'unknown {} `{}`; {}': 'no hay {} `{}`; {}', 'did you mean {}?': '¿quizá {}?', 'did you mean {} or {}?': '¿quizá {} o {}?', 'known are {}': 'hay {}', 'none is like it': 'ninguno se le parece',
+  'parameter of the control core': 'parámetro del programa de control',
   // Commands, and how they ended.
   'sent: {}': 'enviado: {}',
   '{}: acknowledged': '{}: confirmado', '{}: refused, {}': '{}: rechazado, {}', '{}: given up, STOP or OFF came after it': '{}: abandonado, después vino PARAR u OFF',
