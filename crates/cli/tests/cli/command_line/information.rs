@@ -27,7 +27,10 @@ fn list_names_what_there_is() {
         "more than a screen:\n{all}"
     );
     let policies = stdout(&rumbo(&["list", "policies"]));
-    assert!(policies.contains("\n  goal  Goals among boxes"), "{policies}");
+    assert!(
+        policies.contains("\n  goal  Goals among boxes"),
+        "{policies}"
+    );
     let scenarios = stdout(&rumbo(&["list", "scenarios"]));
     let (_, movements) = scenarios.split_once("\nMovements\n").unwrap();
     assert!(movements.contains("manual-turn-left"), "{scenarios}");

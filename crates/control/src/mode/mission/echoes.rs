@@ -89,7 +89,7 @@ pub(super) struct Beam {
     /// Its origin.
     pub apex: Place,
     /// Sine and cosine of its axis, as [`fractions`].
-    pub facing: (i32, i32),
+    pub facing: (i16, i16),
     /// Its axis, in 256ths of a turn.
     pub axis: i8,
 }

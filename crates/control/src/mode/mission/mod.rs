@@ -384,7 +384,8 @@ impl<'a> Mode<'a> for Mission<'a> {
     fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
         if let Some(reading) = &estimate.reading {
             state.ingest(estimate, reading);
-        } else {
+        } else if !state.plan.is_busy() {
+            // The search takes longer than the plan's other ticks.
             state.echoes.settle();
         }
         let stale_s = self.params.get(ParamId::StaleRange);

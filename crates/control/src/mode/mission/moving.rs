@@ -95,6 +95,8 @@ pub(super) struct Track {
     age_s: f32,
     /// 0: nothing is followed.
     looks: u8,
+    /// It may approach: more looks say whether.
+    pub(super) may_approach: bool,
 }
 
 /// The robot's motion from one look of a sonar to the next, and what its beam has turned.
@@ -149,18 +151,9 @@ impl Approach {
 }
 
 impl Track {
-    /// It may approach: more looks say whether.
-    pub(super) fn may_approach(&self) -> bool {
-        self.looks > 1 && self.share() > LOOK_AGAIN
-    }
-
-    /// How much nearer it has come by itself, over what noise does.
-    fn share(&self) -> f32 {
-        self.own_m / (NOISE_M + NOISE_CUBED * self.last_m * self.last_m * self.last_m)
-    }
-
     /// Ingests a look; says whether something approaches.
     pub(super) fn ingest(&mut self, reading: &Reading, since: &Since) -> Option<Approach> {
+        self.may_approach = false;
         let range_m = match reading.range {
             Range::Valid(range_m) if range_m < JUDGED_M => range_m,
             _ => {
@@ -185,7 +178,8 @@ impl Track {
         self.last_m = range_m;
         self.own_m += step_m;
         self.age_s += since.age_s;
-        let share = self.share();
+        // How much nearer it has come by itself, over what noise does.
+        let share = self.own_m / (NOISE_M + NOISE_CUBED * range_m * range_m * range_m);
         if self.looks == 0 || other || share < -1.0 || self.age_s > LONG_S {
             self.first_m = range_m;
             (self.own_m, self.largest_m, self.age_s) = (0.0, 0.0, 0.0);
@@ -193,6 +187,7 @@ impl Track {
             return None;
         }
         self.looks = self.looks.saturating_add(1);
+        self.may_approach = share > LOOK_AGAIN;
         self.largest_m = max(self.largest_m, step_m);
         let approaches = self.looks >= LOOKS
             && share > CERTAIN

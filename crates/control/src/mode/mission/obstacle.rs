@@ -156,22 +156,17 @@ impl Echoes {
     /// The point nearest to a place, of those of an obstacle or of all, and its distance [m].
     pub(super) fn nearest(&self, x_m: f32, y_m: f32, of: Option<&Search>) -> Option<(usize, f32)> {
         let from = Place::new(x_m, y_m);
-        // By the cheap kind of distance first: products are for the few that may be nearer than its nearest.
+        // By the cheap kind of distance first: products are for the few that may be nearer than the nearest so far.
         let mut most_mm = u16::MAX;
-        for (number, point) in self.points().iter().enumerate() {
-            if let Some(place) = point.place()
-                && of.is_none_or(|search| search.has(number))
-            {
-                most_mm = core::cmp::min(most_mm, place.about_mm(from));
-            }
-        }
-        most_mm = most_mm.saturating_add(most_mm >> 3).saturating_add(1);
         let mut best: Option<(usize, u32)> = None;
         for (number, point) in self.points().iter().enumerate() {
             let Some(place) = point.place() else { continue };
-            if place.about_mm(from) > most_mm || of.is_some_and(|search| !search.has(number)) {
+            let about_mm = place.about_mm(from);
+            if about_mm > most_mm || of.is_some_and(|search| !search.has(number)) {
                 continue;
             }
+            let mostly_mm = about_mm.saturating_add(about_mm >> 3).saturating_add(1);
+            most_mm = core::cmp::min(most_mm, mostly_mm);
             let square = place.square_mm2(from);
             if best.is_none_or(|(_, least)| square < least) {
                 best = Some((number, square));

@@ -27,6 +27,8 @@ const TIGHT_RAD: f32 = 0.35;
 pub(super) struct Plan {
     search: Search,
     busy: bool,
+    /// The obstacle is found; what stands beside its end is looked for next.
+    complete: bool,
     /// The obstacle of the last round.
     pub obstacle: Option<Obstacle>,
     /// The direction that passes it on the side that was asked for [rad].
@@ -38,6 +40,11 @@ pub(super) struct Plan {
 }
 
 impl Plan {
+    /// It searches an obstacle.
+    pub(super) fn is_busy(&self) -> bool {
+        self.busy
+    }
+
     /// One tick; says whether a round has ended. `way` leads to the goal, `around` is the side on which the obstacle is
     /// passed.
     pub(super) fn step(
@@ -68,6 +75,11 @@ impl Plan {
         };
         self.past_rad = wrap_angle(obstacle.left.pass_rad);
         if let Some(side) = around {
+            // In a tick of its own: it asks the whole memory once more.
+            self.complete = !self.complete;
+            if self.complete {
+                return false;
+            }
             let (past_rad, joined) = self.past(echoes, pose, side, &obstacle);
             if joined {
                 return false;
@@ -76,6 +88,7 @@ impl Plan {
         }
         self.obstacle = Some(obstacle);
         self.busy = false;
+        self.complete = false;
         true
     }
 

@@ -252,13 +252,13 @@ impl Watch {
     /// What the front sonar sees where it looks may approach.
     pub(super) fn looks_again(&self) -> bool {
         let [_, _, front] = &self.sonars;
-        front.track.may_approach()
+        front.track.may_approach
     }
 
     /// What a sonar at the side sees may approach.
     pub(super) fn nears_aside(&self) -> bool {
         let [left, right, _] = &self.sonars;
-        left.track.may_approach() || right.track.may_approach()
+        left.track.may_approach || right.track.may_approach
     }
 
     /// The servo angle that tests the front sonar [rad]; none while it works, or where nothing must answer.
