@@ -137,7 +137,7 @@ impl<'a> Mode<'a> for Policy<'a> {
 
     fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
         if let Some(reading) = &estimate.reading {
-            state.watch.ingest(estimate, reading, true);
+            state.watch.hear(estimate, reading);
         }
         state.watch.step(estimate, self.stale_s, false)?;
         let mut action = Action::default();

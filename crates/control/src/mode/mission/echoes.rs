@@ -92,6 +92,10 @@ pub(super) struct Beam {
     pub facing: (i16, i16),
     /// Its axis, in 256ths of a turn.
     pub axis: i8,
+    /// Its origin [m].
+    from_m: (f32, f32),
+    /// Sine and cosine of its axis.
+    sin_cos: (f32, f32),
 }
 
 impl Beam {
@@ -104,6 +108,8 @@ impl Beam {
             apex: Place::new(x_m, y_m),
             facing: fractions((sin, cos)),
             axis: direction(axis_rad),
+            from_m: (x_m, y_m),
+            sin_cos: (sin, cos),
         };
         let at = match reading.range {
             Range::Valid(range_m) => Some(Place::new(x_m + range_m * cos, y_m + range_m * sin)),
@@ -114,10 +120,13 @@ impl Beam {
 
     /// A beam from a position in a direction of the world.
     pub(super) fn along(apex: Place, axis_rad: f32) -> Self {
+        let sin_cos = sin_cos(axis_rad);
         Self {
             apex,
-            facing: fractions(sin_cos(axis_rad)),
+            facing: fractions(sin_cos),
             axis: direction(axis_rad),
+            from_m: apex.metres(),
+            sin_cos,
         }
     }
 }
@@ -218,18 +227,10 @@ impl Echoes {
         (point.belief > 0).then_some(point.at)
     }
 
-    /// Ingests a reading. Unless it is `sure`, points that it contradicts keep their belief.
-    pub(super) fn ingest(&mut self, robot: &Transform, reading: &Reading, sure: bool) {
-        let (pose, view) = (&robot.pose, &reading.view);
-        let (x_m, y_m) = robot.to_world(view.x_m, view.y_m);
-        let apex = Place::new(x_m, y_m);
-        let axis_rad = pose.heading_rad + view.axis_rad;
-        let (sin, cos) = sin_cos(axis_rad);
-        let beam = Beam {
-            apex,
-            facing: fractions((sin, cos)),
-            axis: direction(axis_rad),
-        };
+    /// Ingests a reading with its beam. Unless it is `sure`, points that it contradicts keep their belief.
+    pub(super) fn ingest(&mut self, robot: &Transform, reading: &Reading, beam: &Beam, sure: bool) {
+        let pose = &robot.pose;
+        let ((x_m, y_m), (sin, cos)) = (beam.from_m, beam.sin_cos);
         let [front_mm, side_mm] = HORIZON_MM;
         let (range_mm, echo) = match reading.range {
             Range::Valid(range_m) => (round(1_000.0 * range_m), true),
@@ -237,7 +238,7 @@ impl Echoes {
             Range::Faulty => return,
         };
         if sure {
-            self.clear(&beam, range_mm);
+            self.clear(beam, range_mm);
         }
         let horizon_mm = if reading.sonar == SonarId::Front {
             front_mm
@@ -248,7 +249,7 @@ impl Echoes {
             return;
         }
         let range_m = 1e-3 * crate::math::from_u32(range_mm.unsigned_abs());
-        let explained = self.explain(&beam, range_mm);
+        let explained = self.explain(beam, range_mm);
         if explained && range_mm > NEAR_MM {
             return;
         }
@@ -279,13 +280,12 @@ impl Echoes {
 
     /// The front sonar reported that nothing is in reach. That lowers no belief until the next echo: a sonar that is
     /// always silent contradicts nothing.
-    pub(super) fn silence(&mut self, robot: &Transform, reading: &Reading) {
+    pub(super) fn silence(&mut self, beam: &Beam) {
         if usize::from(self.silent) == SILENCES {
             self.silences.rotate_left(1);
             self.silent -= 1;
             self.confirmed = self.confirmed.saturating_sub(1);
         }
-        let (beam, _) = Beam::of(robot, reading);
         if let Some(next) = self.silences.get_mut(usize::from(self.silent)) {
             *next = Silence {
                 apex: beam.apex,
@@ -300,7 +300,7 @@ impl Echoes {
         self.confirmed = self.silent;
     }
 
-    /// Ingests one of the confirmed silences. To be called in ticks without a reading.
+    /// Ingests one of the confirmed silences. To be called once a tick.
     pub(super) fn settle(&mut self) {
         if self.confirmed == 0 {
             return;

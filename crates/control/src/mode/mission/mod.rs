@@ -33,7 +33,7 @@ use crate::params::{ParamId, Params};
 use crate::rig::{Rig, Rigs};
 use crate::types::{Drive, Fault, Pose, Range, Reading, ServoAngle, Side, SonarId, TICK_S, Wheels};
 use detour::following;
-use echoes::Echoes;
+use echoes::{Beam, Echoes};
 use gaze::Gaze;
 use goal::CAREFUL_M;
 use moving::Movement;
@@ -326,19 +326,21 @@ impl State {
         let driving =
             !matches!(self.phase, Phase::Wait | Phase::Unreachable) || self.lane.is_driving();
         let driving = driving && (self.proof.is_some() || !self.movement.is_passing());
-        let worth = self.watch.ingest(estimate, reading, driving);
+        let robot = estimate.transform();
+        let sight = Beam::of(&robot, reading);
+        let worth = self.watch.ingest(estimate, reading, &sight, driving);
         let front = reading.sonar == SonarId::Front;
         if front {
             self.gaze.count(reading, worth);
         }
-        let (robot, sure) = (estimate.transform(), worth == Worth::Sure);
+        let (beam, sure) = (&sight.0, worth == Worth::Sure);
         match reading.range {
-            Range::Clear if sure && front => self.echoes.silence(&robot, reading),
-            Range::Clear if sure => self.echoes.ingest(&robot, reading, sure),
+            Range::Clear if sure && front => self.echoes.silence(beam),
+            Range::Clear if sure => self.echoes.ingest(&robot, reading, beam, sure),
             Range::Valid(range_m) => {
                 // While the robot waits, what passes leaves no points behind, unless it is near.
                 if !self.movement.waits() || range_m < PASSING_M {
-                    self.echoes.ingest(&robot, reading, sure);
+                    self.echoes.ingest(&robot, reading, beam, sure);
                 }
                 if sure && front {
                     self.echoes.confirm_silences();
@@ -384,8 +386,7 @@ impl<'a> Mode<'a> for Mission<'a> {
     fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
         if let Some(reading) = &estimate.reading {
             state.ingest(estimate, reading);
-        } else if !state.plan.is_busy() {
-            // The search takes longer than the plan's other ticks.
+            // The ticks between are the plan's.
             state.echoes.settle();
         }
         let stale_s = self.params.get(ParamId::StaleRange);

@@ -40,11 +40,6 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// It searches an obstacle.
-    pub(super) fn is_busy(&self) -> bool {
-        self.busy
-    }
-
     /// One tick; says whether a round has ended. `way` leads to the goal, `around` is the side on which the obstacle is
     /// passed.
     pub(super) fn step(
@@ -153,6 +148,7 @@ fn seen_from(pose: &Pose, place: Place) -> (f32, f32) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::echoes::Beam;
     use super::*;
     use crate::rig::View;
     use crate::types::{Range, Reading, SonarId, Transform};
@@ -172,7 +168,9 @@ mod tests {
                 view: View::default(),
                 servo_rad: 0.0,
             };
-            echoes.ingest(&Transform::of(from), &reading, true);
+            let robot = Transform::of(from);
+            let (beam, _) = Beam::of(&robot, &reading);
+            echoes.ingest(&robot, &reading, &beam, true);
         }
         echoes
     }

@@ -9,6 +9,7 @@ use super::echoes::Beam;
 use super::gaze::SWEEP_RAD;
 use super::landmarks::Landmarks;
 use super::moving::{Approach, Since, Track};
+use super::place::Place;
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sin_cos};
 use crate::stuck::Stuck;
@@ -61,7 +62,7 @@ const SILENT_M: f32 = 1.3;
 
 /// The verdict on a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::mode) enum Worth {
+pub(super) enum Worth {
     /// The first along its beam.
     First,
     /// It repeats the one before.
@@ -206,11 +207,18 @@ impl Default for Watch {
 }
 
 impl Watch {
+    /// Ingests a reading of a robot that drives.
+    pub(in crate::mode) fn hear(&mut self, estimate: &Estimate, reading: &Reading) {
+        let sight = Beam::of(&estimate.transform(), reading);
+        self.ingest(estimate, reading, &sight, true);
+    }
+
     /// Ingests a reading and judges it. Unless `driving`, the robot waits, and silence does no harm.
-    pub(in crate::mode) fn ingest(
+    pub(super) fn ingest(
         &mut self,
         estimate: &Estimate,
         reading: &Reading,
+        (beam, at): &(Beam, Option<Place>),
         driving: bool,
     ) -> Worth {
         let Some(sonar) = self.sonars.get_mut(reading.sonar as usize) else {
@@ -226,15 +234,14 @@ impl Watch {
         if reading.sonar != SonarId::Front {
             return worth;
         }
-        let (beam, at) = Beam::of(&estimate.transform(), reading);
-        if let Some(at) = at {
+        if let Some(at) = *at {
             self.unanswered = 0;
             self.walls_silent = 0;
             self.blind_m = 0.0;
             self.silent_m = Some(0.0);
-            self.landmarks.answer(&beam, at);
+            self.landmarks.answer(beam, at);
         } else if driving {
-            self.landmarks.silence(&beam);
+            self.landmarks.silence(beam);
             self.unanswered = self.unanswered.saturating_add(u8::from(second));
             if abs(reading.servo_rad) >= LOOKS_ASIDE_RAD {
                 let [left_m, right_m] = walls_m(estimate, NEAR_M);

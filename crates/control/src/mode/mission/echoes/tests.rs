@@ -17,10 +17,20 @@ fn answer(range: Range, axis_rad: f32) -> Reading {
     }
 }
 
+fn ingest(echoes: &mut Echoes, robot: &Transform, reading: &Reading, sure: bool) {
+    let (beam, _) = Beam::of(robot, reading);
+    echoes.ingest(robot, reading, &beam, sure);
+}
+
 fn after(answers: &[(Range, f32)]) -> Echoes {
     let mut echoes = Echoes::default();
     for (range, axis_rad) in answers {
-        echoes.ingest(&Transform::default(), &answer(*range, *axis_rad), true);
+        ingest(
+            &mut echoes,
+            &Transform::default(),
+            &answer(*range, *axis_rad),
+            true,
+        );
     }
     echoes
 }
@@ -55,9 +65,15 @@ fn a_beam_that_reaches_farther_removes_points_detected_once() {
     let mut echoes = after(&[(Range::Valid(0.8), 0.0), (Range::Clear, -0.2)]);
     // Of -0.2, 0 and 0.2 rad the beam about -0.2 covers the first two.
     assert_eq!(count(&echoes), 1);
-    echoes.ingest(&Transform::default(), &answer(Range::Faulty, 0.2), true);
+    ingest(
+        &mut echoes,
+        &Transform::default(),
+        &answer(Range::Faulty, 0.2),
+        true,
+    );
     assert_eq!(count(&echoes), 1, "a faulty sonar says nothing");
-    echoes.ingest(
+    ingest(
+        &mut echoes,
         &Transform::default(),
         &answer(Range::Valid(0.82), 1.4),
         true,
@@ -75,7 +91,12 @@ fn silence_from_another_direction_says_nothing() {
     };
     let before = count(&echoes);
     for _ in 0..10 {
-        echoes.ingest(&Transform::of(beside), &answer(Range::Clear, 0.0), true);
+        ingest(
+            &mut echoes,
+            &Transform::of(beside),
+            &answer(Range::Clear, 0.0),
+            true,
+        );
     }
     assert_eq!(count(&echoes), before);
 }
@@ -97,7 +118,8 @@ fn a_full_memory_gives_up_the_farthest_point_and_keeps_its_size() {
             x_m: 0.1 * f32::from(step),
             ..Pose::default()
         };
-        echoes.ingest(
+        ingest(
+            &mut echoes,
             &Transform::of(pose),
             &answer(Range::Valid(0.15), 1.57),
             true,
@@ -128,12 +150,12 @@ fn a_silence_contradicts_nothing_before_the_next_echo() {
     let mut echoes = after(&[(Range::Valid(0.8), 0.0)]);
     let settle = |echoes: &mut Echoes| (0..2 * SILENCES).for_each(|_| echoes.settle());
     for _ in 0..2 * SILENCES {
-        echoes.silence(&robot, &answer(Range::Clear, 0.0));
+        echoes.silence(&Beam::of(&robot, &answer(Range::Clear, 0.0)).0);
         settle(&mut echoes);
     }
     assert_eq!(count(&echoes), 3);
     echoes.confirm_silences();
-    echoes.silence(&robot, &answer(Range::Clear, 0.4));
+    echoes.silence(&Beam::of(&robot, &answer(Range::Clear, 0.4)).0);
     settle(&mut echoes);
     assert_eq!(count(&echoes), 0, "the silences ahead are confirmed");
     let before = echoes;
@@ -153,7 +175,7 @@ fn a_turn_moves_no_point_of_the_wall_ahead_of_the_sonar_beside() {
             heading_rad: -0.05 * f32::from(step),
             ..Pose::default()
         };
-        echoes.ingest(&Transform::of(pose), &right, true);
+        ingest(&mut echoes, &Transform::of(pose), &right, true);
     }
     // The wall lies along y = -0.15 m; ahead of the sonar it is assumed at x = 0.1 m.
     let ahead = Place::new(0.1, -0.15);

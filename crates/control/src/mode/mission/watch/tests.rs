@@ -36,7 +36,7 @@ fn watched(
                 },
                 servo_rad: 0.0,
             };
-            watch.ingest(&estimate, &reading, true);
+            watch.hear(&estimate, &reading);
         }
         watch
             .step(&estimate, 0.5, false)
@@ -169,7 +169,7 @@ fn a_wall_beside_the_robot_that_leaves_two_looks_unanswered_is_to_be_proven() {
             view,
             servo_rad: SWEEP_RAD,
         };
-        (0..2).for_each(|_| _ = watch.ingest(&estimate, &reading, true));
+        (0..2).for_each(|_| watch.hear(&estimate, &reading));
     };
     let (wall, far) = (Range::Valid(0.2), Range::Clear);
     let mut watch = Watch::default();
