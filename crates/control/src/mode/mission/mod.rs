@@ -386,8 +386,10 @@ impl<'a> Mode<'a> for Mission<'a> {
     fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
         if let Some(reading) = &estimate.reading {
             state.ingest(estimate, reading);
-            // The ticks between are the plan's.
-            state.echoes.settle();
+            // The ticks between are the plan's, and an echo ahead takes longest.
+            if reading.sonar != SonarId::Front || reading.range == Range::Clear {
+                state.echoes.settle();
+            }
         }
         let stale_s = self.params.get(ParamId::StaleRange);
         let beside = following(state.phase) || state.near_m < CAREFUL_M;
