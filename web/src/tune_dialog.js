@@ -35,7 +35,7 @@ export class TuneDialog {
   #send;
   #dialog = dialog('tune-dialog', t('Tune'));
   #scenario = create('select', { id: 'tune-scenario', disabled: true });
-  #limits = create('p', { id: 'tune-limits', className: 'hint scroll', tabIndex: 0 });
+  #limits = create('p', { id: 'tune-limits', className: 'hint scroll' });
   #parameters = create('fieldset', { id: 'tune-parameters' });
   #aims = create('input', { type: 'text', id: 'tune-aims', placeholder: 'settling_s, overshoot_m < 0.01', maxLength: 500, autocomplete: 'off', spellcheck: false });
   #runs = create('input', { type: 'number', id: 'tune-runs', required: true, step: '1' });
@@ -165,6 +165,8 @@ export class TuneDialog {
     if (!offer) return;
     const limits = Object.entries(offer.limits).map(([name, { min, max }]) => [name, ...(min === null ? [] : [`≥ ${formatFloat(min)}`]), ...(max === null ? [] : [`≤ ${formatFloat(max)}`])].join(' '));
     setText(this.#limits, t('limits: {}', limits.join(', ')));
+    // It scrolls, so keys must reach it; only now has it words.
+    this.#limits.tabIndex = 0;
     this.#boxes.clear();
     this.#parameters.replaceChildren(create('legend', { textContent: t('Parameters') }), ...offer.groups.flatMap(({ title, parameters }, group) => [
       create('h3', { textContent: said(title) }),
