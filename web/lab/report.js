@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * Makes the report of `rumbo experiments`, in a worker of its own, so that the lab goes on; to end the worker is to cancel it.
- * The address has the language, `?es`. To the page go first the `{ experiments }`, each with its name and title; for
+ * Its name is the language. To the page go first the `{ experiments }`, each with its name and title; for
  * `{ only, seed }` numbers follow, the part that is done, and the `{ page }`, a file. `{ error }` is why it has ended.
  */
 import init, { experiments, report } from './rumbo_report.js';
@@ -11,7 +11,8 @@ import { wordsOf } from './serial_link.js';
 /** No names: all experiments. @typedef {{only: string[], seed: number}} Wanted */
 /** @typedef {number | {experiments: Experiment[]} | {page: Uint8Array<ArrayBuffer>} | {error: string}} News */
 
-const language = location.search.slice(1);
+// Not in the address: the service worker's answer has one without a query.
+const language = /** @type {any} */ (self).name;
 
 /** @param {News} news @param {Transferable[]} [transfer] */
 const post = (news, transfer = []) => self.postMessage(news, { transfer });

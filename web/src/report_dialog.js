@@ -69,7 +69,7 @@ export class ReportDialog {
   #start() {
     if (this.#worker) return;
     setText(this.#complaint, '');
-    const worker = new Worker(new URL(`../lab/report.js?${language}`, import.meta.url), { type: 'module' });
+    const worker = new Worker(new URL('../lab/report.js', import.meta.url), { type: 'module', name: language });
     worker.addEventListener('message', ({ data }) => this.#take(data));
     worker.addEventListener('error', (event) => this.#fail(event.message || 'its program could not be loaded'));
     this.#worker = worker;
