@@ -145,12 +145,12 @@ export class TuneDialog {
     const before = this.#scenario.value;
     this.#scenario.replaceChildren(...this.#offers.map(({ name, title }) => create('option', { value: name, textContent: `${name}: ${said(title).replaceAll('->', '→')}` })));
     // What was chosen stays until another scenario is loaded; the values may be others.
-    const anew = this.#loaded !== loaded;
+    const other = this.#loaded !== loaded;
     this.#loaded = loaded;
-    const wanted = (anew ? [loaded, before] : [before, loaded]).find((name) => this.#offers.some((offer) => offer.name === name));
+    const wanted = (other ? [loaded, before] : [before, loaded]).find((name) => this.#offers.some((offer) => offer.name === name));
     if (wanted) this.#scenario.value = wanted;
     this.#scenario.disabled = this.#start.disabled = this.#offers.length === 0;
-    this.#choose(anew ? null : this.#chosen());
+    this.#choose(other ? null : this.#chosen());
     return undefined;
   }
 

@@ -86,12 +86,13 @@ impl Tuning {
         let ended = Arc::new(AtomicBool::new(false));
         let (share_done, share) = watch::channel(0.0);
         let (done, found) = oneshot::channel();
-        let (tuner, told, begun) = (Arc::clone(&self.tuner), Arc::clone(&ended), Instant::now());
+        let (tuner, is_ended, begun) =
+            (Arc::clone(&self.tuner), Arc::clone(&ended), Instant::now());
         let work = move || {
             // Until the search has left its threads.
             let _place = place;
             let is_late = || begun.elapsed() > LONGEST;
-            let goes_on = || !told.load(Ordering::Relaxed) && !is_late();
+            let goes_on = || !is_ended.load(Ordering::Relaxed) && !is_late();
             let progress = |part| {
                 share_done.send_replace(part);
             };

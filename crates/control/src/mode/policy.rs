@@ -100,7 +100,7 @@ impl State {
         *ticks > ARRIVING_TICKS || left_m > *nearest_m + FARTHER_M
     }
 
-    /// A goal arrives: it is decided anew. The watch over the sonars goes on.
+    /// A goal arrives: decisions begin again. The watch over the sonars goes on.
     pub(super) fn renew(&mut self) {
         let watch = self.watch;
         *self = Self {

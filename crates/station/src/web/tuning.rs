@@ -128,12 +128,12 @@ async fn look(page: &mut WebSocket, tuning: &Tuning) -> Option<Result<Value, Not
         Err(why) => return Some(Err(why)),
     };
     let (mut news, mut pings) = (interval(NEWS), interval(PING));
-    let mut heard = Instant::now();
+    let mut last_frame = Instant::now();
     loop {
         tokio::select! {
             found = search.found() => return Some(found),
             message = page.recv() => match message {
-                Some(Ok(Message::Ping(_) | Message::Pong(_))) => heard = Instant::now(),
+                Some(Ok(Message::Ping(_) | Message::Pong(_))) => last_frame = Instant::now(),
                 _ => return None,
             },
             _ = news.tick() => {
@@ -141,7 +141,7 @@ async fn look(page: &mut WebSocket, tuning: &Tuning) -> Option<Result<Value, Not
                 put(page, Message::Text(text.into())).await?;
             }
             _ = pings.tick() => {
-                if heard.elapsed() > SILENCE {
+                if last_frame.elapsed() > SILENCE {
                     return None;
                 }
                 put(page, Message::Ping(Bytes::new())).await?;

@@ -62,7 +62,7 @@ impl Place {
 
     /// How far along a direction, and how far to the left of it, seen from `from` [mm]. The direction as [`fractions`].
     pub(super) fn seen(self, from: Place, &(sin, cos): &(i16, i16)) -> (i32, i32) {
-        /// Of 16 bits: the AVR has an instruction for those of 8, and four of them make it.
+        /// Of a coordinate and a fraction: with the sum of another one it fits into 32 bits.
         fn product(one: i16, other: i16) -> i32 {
             i32::from(one) * i32::from(other)
         }
