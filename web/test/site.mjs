@@ -88,3 +88,10 @@ export async function open(options = {}, link = '', path = '', robot = undefined
   await page.goto(server.url + path + (link && `#${link}`));
   return { page, context, complaints, abroad, url: server.url, unplug: server.close, close };
 }
+
+/** The link of the run, from the dialog *Share*: it opens once the worker has given the run. @param {import('playwright-core').Page} page */
+export async function share(page) {
+  await page.locator('#share').click();
+  await page.locator('#share-dialog').waitFor();
+  return new URL(await page.locator('#share-link').inputValue());
+}

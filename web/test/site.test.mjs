@@ -9,8 +9,8 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { eventually, folder, program } from './dashboard.mjs';
-import { open, skip } from './site.mjs';
+import { folder, program } from './dashboard.mjs';
+import { open, share, skip } from './site.mjs';
 
 const SKETCH = join(process.env['SKETCHES'] ?? '', 'memoria-mode5.elf');
 const FIRMWARE = process.env['FIRMWARE'] ?? '';
@@ -77,9 +77,6 @@ test('it drives to its goal, and STOP stops it on the way to the next', { skip }
   });
 });
 
-/** The link of the dialog *Share*, once the worker has given the run. @param {import('playwright-core').Page} page */
-const sharedBy = (page) => eventually(async () => new URL(await page.locator('#share-link').inputValue()));
-
 test('a link opens the same scenario, seed and parameters, and one for something else says so', { skip }, async () => {
   await page.locator('#seed').fill('7');
   await page.locator('#simulation button[type="submit"]').click();
@@ -89,8 +86,7 @@ test('a link opens the same scenario, seed and parameters, and one for something
   await cruise.fill('0.25');
   await cruise.press('Enter');
   await says('mission_cruise_m_s = 0.25: acknowledged');
-  await page.locator('#share').click();
-  const link = await sharedBy(page);
+  const link = await share(page);
   await page.keyboard.press('Escape');
   assert.ok(link.href.length < 2_048, link.href);
 
@@ -125,9 +121,8 @@ test('a run driven by hand is repeated by its link, to the last bit', { skip }, 
   await said('link_timeout_s = 0.35: acknowledged');
   await page.locator('#stop').click();
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.armed === false);
-  await page.locator('#share').click();
+  const whole = await share(page);
   await page.locator('#share-drive').waitFor();
-  const whole = await sharedBy(page);
   assert.match(whole.hash, /&drive=[^&]*arm[^&]*stop&until_s=[\d.]+&hash=[0-9a-f]{16}&/);
   assert.ok(!whole.hash.includes('&link_timeout_s='), whole.hash);
   assert.ok(whole.href.length < 2_048, whole.href);

@@ -7,7 +7,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { eventually } from './dashboard.mjs';
-import { open, skip } from './site.mjs';
+import { open, share, skip } from './site.mjs';
 
 const [CORNERS, SQUARE] = ['corners', 'square'].map((name) => new URL(`../../examples/fleet/${name}.toml`, import.meta.url).pathname);
 
@@ -72,8 +72,7 @@ test('another number of robots begins anew, and is in the link', { skip }, async
   await page.locator('#robots').press('Enter');
   await eventually(async () => assert.deepEqual(await page.locator('#robot option').allTextContents(), ['robot1', 'robot2']));
   assert.ok((await state()).t_s < 5);
-  await page.locator('#share').click();
-  const link = await eventually(async () => new URL(await page.locator('#share-link').inputValue()));
+  const link = await share(page);
   assert.match(link.hash, /scenario=mode6&.*robots=2/);
   await page.keyboard.press('Escape');
   await page.locator('#robots').fill('1');
@@ -95,8 +94,7 @@ test('a scenario of one\'s own is dropped with its world, and its link opens it'
   await drop(files);
   const names = ['south_west', 'south_east', 'north_east', 'north_west'];
   await eventually(async () => assert.deepEqual(await page.locator('#robot option').allTextContents(), names));
-  await page.locator('#share').click();
-  const link = await eventually(async () => new URL(await page.locator('#share-link').inputValue()));
+  const link = await share(page);
   await page.keyboard.press('Escape');
   const elsewhere = await open({}, link.hash.slice(1));
   await eventually(async () => assert.deepEqual(await elsewhere.page.locator('#robot option').allTextContents(), names));
