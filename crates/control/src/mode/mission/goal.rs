@@ -242,7 +242,8 @@ impl Mission<'_> {
             .line
             .step(&mut state.line, estimate, &state.segment, limit_m_s);
         state.heading_ref_rad = step.heading_ref_rad;
-        if step.done && estimate.standing() {
+        // To move the origin takes a third of a tick, which one with a reading does not have.
+        if step.done && estimate.standing() && estimate.reading.is_none() {
             state.phase = Phase::Wait;
             if self.moves_origin() {
                 let (pose, facing) = (&estimate.pose, estimate.facing);

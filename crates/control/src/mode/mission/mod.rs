@@ -384,12 +384,16 @@ impl<'a> Mode<'a> for Mission<'a> {
     }
 
     fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
-        if let Some(reading) = &estimate.reading {
-            state.ingest(estimate, reading);
-            // The ticks between are the plan's, and an echo ahead takes longest.
-            if reading.sonar != SonarId::Front || reading.range == Range::Clear {
-                state.echoes.settle();
+        let spare = match &estimate.reading {
+            Some(reading) => {
+                state.ingest(estimate, reading);
+                // An echo takes longest.
+                reading.range == Range::Clear
             }
+            None => !state.plan.is_busy(),
+        };
+        if spare {
+            state.echoes.settle();
         }
         let stale_s = self.params.get(ParamId::StaleRange);
         let beside = following(state.phase) || state.near_m < CAREFUL_M;
