@@ -114,6 +114,9 @@ function showRecording(file) {
   if (link instanceof WorkerLink) link.show(file).catch((error) => complain(`${file.name}: ${error}`));
 }
 
+/** When samples came last, and after how long without any the readings of sonars are drawn by themselves [ms]. */
+let sampled_ms = -Infinity;
+const QUIET_MS = 100;
 /** When the data drawn next was received; and times from there to the frame after, while a test measures. */
 const ages = { received_ms: 0, session_ms: 0, drawn: false, measured: /** @type {number[] | null} */ (null) };
 
@@ -305,13 +308,15 @@ function receive(message) {
       store.setRun(message.run);
       Object.assign(ages, { received_ms: message.heard[0], session_ms: message.heard[1], drawn: false });
       for (const row of message.rows) store.push(row);
+      sampled_ms = performance.now();
       if (store.haunted) document.body.classList.add('haunted');
       redraw();
       break;
     case 'readings':
       store.setRun(message.run);
       for (const group of message.groups) store.pushReadings(group);
-      redraw();
+      // Else they are drawn with the next samples: three sonars would double the frames.
+      if (performance.now() - sampled_ms > QUIET_MS) redraw();
       break;
     case 'world':
       editor.receive(message);

@@ -123,7 +123,7 @@ impl OfLab {
         if asked.over.is_empty() {
             return Err(refused("choose a parameter"));
         }
-        if asked.over.len() > MOST_PARAMETERS || asked.params.len() > MOST_PARAMETERS {
+        if asked.over.len() > MOST_PARAMETERS {
             return Err(refused(format!(
                 "at most {MOST_PARAMETERS} parameters are searched from a page"
             )));

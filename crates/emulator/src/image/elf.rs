@@ -111,8 +111,12 @@ fn read_symbols(image: &mut Image, file: &object::File) -> Result<(), ImageError
         if matches!(name, "_end" | "__heap_start") {
             image.data_end = in_data.filter(|end| *end >= image.model().sram_start);
         }
-        let code = symbol.kind() == SymbolKind::Text
-            || symbol.kind() == SymbolKind::Label && name.starts_with("__vector");
+        // A routine in assembly, as those of libgcc, has no type, but a size.
+        let code = match symbol.kind() {
+            SymbolKind::Text => true,
+            SymbolKind::Unknown => size > 0,
+            _ => false,
+        };
         match in_data {
             _ if name.is_empty() => {}
             Some(place) if symbol.kind() == SymbolKind::Data => image.variables.push(Symbol {

@@ -267,4 +267,10 @@ fn a_profile_of_a_compiled_program_names_its_functions() {
     let step = image.function_named("step").unwrap();
     assert_eq!(image.function(step.address + step.size - 1), Some("step"));
     assert_eq!(image.variable("left").unwrap().size, 18);
+    // Written in assembly, it has no type, but a size.
+    let copy = image.function_named("__do_copy_data").unwrap();
+    assert_eq!(
+        image.function(copy.address + copy.size - 1),
+        Some("__do_copy_data")
+    );
 }
