@@ -59,8 +59,10 @@ const CAREFUL_TICKS: u8 = 100;
 /// Speed where things move, and around an obstacle, which may be one of them [m/s].
 pub(super) const WARY_M_S: f32 = 0.2;
 pub(super) const BESIDE_M_S: f32 = 0.08;
-/// Beyond this off the heading something is beside the robot [rad].
+/// Beyond this off the heading something is beside the robot, and beyond this abeam: what a beam sees that looks farther
+/// ahead crosses the way out [rad].
 const ASIDE_RAD: f32 = 1.1;
+const ABEAM_RAD: f32 = 1.4;
 /// There it counts within this, if it would be here so soon [m, s].
 const ASIDE_M: f32 = 0.9;
 const SOON_S: f32 = 2.0;
@@ -294,8 +296,9 @@ impl Mission<'_> {
             return None;
         }
         // What comes from the side may run into a robot that stands: on, out of its way.
+        let abeam = abs(movement.last.off_rad) > ABEAM_RAD;
         let free = state.gap_m > FREE_M && movement.ahead_ticks == 0;
-        if fresh && aside && soon && free && movement.last.sure && state.phase == Phase::GoToGoal {
+        if fresh && abeam && soon && free && movement.last.sure && state.phase == Phase::GoToGoal {
             movement.out_m = OUT_M;
             state.gaze.turn_to(0.0);
             return Some(straight(OUT_M_S));
@@ -304,7 +307,8 @@ impl Mission<'_> {
             movement.wait_ticks = 0;
             return None;
         }
-        let blind = aside && state.detour.is_some();
+        // Around an obstacle another one may be behind.
+        let blind = aside && state.detour.is_some() && !movement.last.sure;
         let evades = fresh && range_m < EVADE_M && !blind && movement.back_m < MOST_BACK_M;
         Some(if evades {
             movement.back_m += rolled_m;
