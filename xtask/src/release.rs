@@ -72,11 +72,7 @@ pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
 
     let linked = linked(project)?;
     let version = env!("CARGO_PKG_VERSION");
-    let name = format!(
-        "rumbo-{version}-{}-{}",
-        std::env::consts::ARCH,
-        std::env::consts::OS
-    );
+    let name = stem(version, std::env::consts::ARCH, std::env::consts::OS);
     let dist = project.root.join("dist");
     clear(&dist)?;
     let prefix = dist.join(&name);
@@ -110,6 +106,11 @@ pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
     }
     checksums(project, &dist)?;
     Ok(dist)
+}
+
+/// The name of an archive without its ending, and of the folder in it.
+fn stem(version: &str, machine: &str, system: &str) -> String {
+    format!("rumbo-{version}-{machine}-{system}")
 }
 
 /// Everything below the prefix, `/usr` or `~/.local`.
@@ -400,6 +401,20 @@ mod tests {
             "MIT OR Apache-2.0"
         );
         assert_eq!(bill["components"][1]["purl"], Value::Null);
+    }
+
+    #[test]
+    fn cargo_binstall_looks_for_these_archives() {
+        let manifest = include_str!("../../crates/cli/Cargo.toml");
+        for system in ["linux", "macos", "windows"] {
+            let stem = stem("{ version }", "{ target-arch }", system);
+            for part in [
+                format!("/{stem}.tar.gz\""),
+                format!("\"{stem}/bin/{{ bin }}"),
+            ] {
+                assert!(manifest.contains(&part), "{part}");
+            }
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! The nodes of several robots share the participant, as the nodes of one process do in ROS 2.
 
-use super::farewell::Farewell;
+use super::farewell::{Farewell, multicast};
 use super::raw::{AsIs, Raw};
 use crate::bridge::{BridgeError, Reach};
 use crate::topics::Quality;
@@ -70,6 +70,8 @@ struct Graph {
     types: BTreeMap<String, String>,
     /// What is wrong with a topic and has not been said yet, by its name.
     troubles: BTreeMap<String, String>,
+    /// Why the others may not find these nodes, if it has not been said yet.
+    unheard: Option<String>,
     /// After the participant, which is in the listener.
     _farewell: Farewell,
 }
@@ -150,6 +152,9 @@ impl Domain {
             made: 0,
             types: BTreeMap::new(),
             troubles: BTreeMap::new(),
+            unheard: multicast(reach).err().map(|error| {
+                format!("no multicast here ({error}): other nodes do not find this one; is the network up?")
+            }),
             _farewell: Farewell {
                 participant: participant.guid(),
                 domain,
@@ -245,11 +250,12 @@ impl Domain {
         Ok(reader)
     }
 
-    /// What is wrong with one of these topics, once.
+    /// What is wrong with the network or one of these topics, once.
     pub(super) fn trouble(&self, topics: &[String]) -> Option<String> {
         let mut graph = self.graph();
         graph.hear();
-        topics.iter().find_map(|name| graph.troubles.remove(name))
+        let unheard = graph.unheard.take();
+        unheard.or_else(|| topics.iter().find_map(|name| graph.troubles.remove(name)))
     }
 }
 

@@ -43,6 +43,19 @@ pub(super) struct Farewell {
     pub(super) reach: Reach,
 }
 
+/// Whether announcements reach others, as far as this computer can tell.
+pub(super) fn multicast(reach: Reach) -> io::Result<()> {
+    let interface = match reach {
+        Reach::Computer => Ipv4Addr::LOCALHOST,
+        Reach::Networks => Ipv4Addr::UNSPECIFIED,
+    };
+    join_on(interface)
+}
+
+fn join_on(interface: Ipv4Addr) -> io::Result<()> {
+    UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?.join_multicast_v4(&GROUP, &interface)
+}
+
 impl Farewell {
     fn message(&self) -> Vec<u8> {
         let guid = self.participant.to_bytes();
@@ -93,6 +106,12 @@ impl Drop for Farewell {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn there_is_multicast_on_this_computer_and_none_on_an_interface_that_is_not_there() {
+        assert!(multicast(Reach::Computer).is_ok());
+        assert!(join_on(Ipv4Addr::new(203, 0, 113, 1)).is_err());
+    }
 
     #[test]
     fn the_last_sample_names_the_participant_beside_the_data() {
