@@ -32,7 +32,9 @@ pub(crate) fn browser(project: &Project) -> Result<(), Stop> {
     let site = crate::site::build(project)?;
     let hashes = project.program("hashes")?;
     let web = project.root.join("web");
-    let failures = project.target.join("tmp/browser-failures.txt");
+    let folder = project.target.join("tmp");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let failures = folder.join("browser-failures.txt");
     let tests = |at_once: usize, files: &[PathBuf]| {
         let mut test = project.command(&node);
         test.current_dir(&web)

@@ -4,6 +4,8 @@
 //! (`MessageReceiver::proc_Submsg_Data`), and keeps writers and readers until their lease is over, for 50 s. So the last
 //! sample of the participant's discovery (RTPS 2.5, 8.5.3) is made here: a DATA submessage without a payload. It is sent
 //! where RustDDS sends those before it, once that has ended.
+//!
+//! Beside it, since it is of the same group of addresses: whether the first of these samples can reach anybody.
 
 use crate::bridge::Reach;
 use rustdds::GUID;
