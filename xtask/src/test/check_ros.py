@@ -382,7 +382,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         check_replayed(peer, folder)
     done("a log")
-    rclpy.shutdown()
+    Peer.end()
 
 
 main()

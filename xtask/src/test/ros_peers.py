@@ -129,11 +129,22 @@ class CycloneAnswer(IdlStruct, typename="std_srvs::srv::dds_::Trigger_Response_"
 class Peer:
     """A node of rclpy, spinning in a thread."""
 
+    threads = []
+
     def __init__(self, name):
         self.node = rclpy.create_node(name)
         self.executor = rclpy.executors.SingleThreadedExecutor()
         self.executor.add_node(self.node)
-        threading.Thread(target=self._spin, daemon=True).start()
+        thread = threading.Thread(target=self._spin, daemon=True)
+        thread.start()
+        self.threads.append(thread)
+
+    @classmethod
+    def end(cls):
+        """Ends all of them. A thread that still spins when Python ends aborts the process: it is in C++ then."""
+        rclpy.shutdown()
+        for thread in cls.threads:
+            thread.join()
 
     def _spin(self):
         try:
