@@ -1,6 +1,6 @@
 //! The second lane of CI: steps run by another process of this program, and shown when the steps beside them have ended.
 
-use super::{BESIDE, Outcome};
+use super::{Lane, Outcome};
 use crate::project::Project;
 use std::fs::{self, File};
 use std::path::PathBuf;
@@ -13,25 +13,37 @@ type Row = (&'static str, Outcome, Duration);
 /// The running lane; it ends with this.
 pub(super) struct Beside {
     lane: Child,
+    steps: &'static [&'static str],
     output: PathBuf,
 }
 
 impl Beside {
     /// Starts the steps.
-    pub(super) fn start(project: &Project) -> Result<Self, String> {
+    pub(super) fn start(project: &Project, lane: &Lane) -> Result<Self, String> {
         let program = std::env::current_exe().map_err(|error| error.to_string())?;
         let folder = project.target.join("tmp");
         let output = folder.join("beside.txt");
         let wrong = |error: std::io::Error| format!("{}: {error}", output.display());
         fs::create_dir_all(&folder).map_err(wrong)?;
         let file = File::create(&output).map_err(wrong)?;
-        let mut lane = project.command(program);
+        let steps = lane.steps;
+        let mut lane = if lane.nice && cfg!(unix) {
+            let mut nice = project.command("nice");
+            nice.arg(program);
+            nice
+        } else {
+            project.command(program)
+        };
         lane.arg("test");
-        lane.args(BESIDE.iter().flat_map(|name| ["--only", name]));
+        lane.args(steps.iter().flat_map(|name| ["--only", name]));
         lane.stdin(Stdio::null());
         lane.stdout(file.try_clone().map_err(wrong)?).stderr(file);
         let lane = lane.spawn().map_err(|error| error.to_string())?;
-        Ok(Self { lane, output })
+        Ok(Self {
+            lane,
+            steps,
+            output,
+        })
     }
 
     /// Waits, shows what the steps printed, and gives how they ended.
@@ -42,7 +54,7 @@ impl Beside {
         // Its own summary is part of the whole one.
         let (steps, _) = text.rsplit_once("\nSummary\n").unwrap_or((&text, ""));
         println!("{steps}");
-        Ok(BESIDE.iter().map(|name| row(name, steps)).collect())
+        Ok(self.steps.iter().map(|name| row(name, steps)).collect())
     }
 }
 

@@ -124,6 +124,11 @@ const STEPS: [Step; 19] = [
         check: web::types,
     },
     Step {
+        name: "python",
+        what: "the Python package: wheel, tests, environments, types",
+        check: wheel::check,
+    },
+    Step {
         name: "browser",
         what: "the dashboard in a real browser",
         check: web::browser,
@@ -132,11 +137,6 @@ const STEPS: [Step; 19] = [
         name: "logs",
         what: "logs as other programs read them",
         check: logs::check,
-    },
-    Step {
-        name: "python",
-        what: "the Python package: wheel, tests, environments, types",
-        check: wheel::check,
     },
     Step {
         name: "readme",
@@ -150,10 +150,29 @@ const STEPS: [Step; 19] = [
     },
 ];
 
-/// With `CI=true` these run beside those from [`FIRST_BESIDE`] to the first of them. They build into folders of their
-/// own, and each has long phases of a single thread; no test of time is among either.
-const BESIDE: [&str; 4] = ["sketches", "firmware", "wasm", "fuzz"];
-const FIRST_BESIDE: &str = "clippy";
+/// Steps that run beside others with `CI=true`.
+struct Lane {
+    /// They begin with this step, and end before the first of them has its turn.
+    first: &'static str,
+    steps: &'static [&'static str],
+    /// They take what the others leave of the processor.
+    nice: bool,
+}
+
+/// They build into folders of their own. Those beside the compiler have long phases of a single thread, as it has; the
+/// nodes of ROS 2 mostly wait, but must not wait for long.
+const LANES: [Lane; 2] = [
+    Lane {
+        first: "clippy",
+        steps: &["sketches", "firmware", "wasm", "fuzz"],
+        nice: false,
+    },
+    Lane {
+        first: "ros",
+        steps: &["python"],
+        nice: true,
+    },
+];
 
 /// Text of `cargo xtask test --help`.
 pub(crate) fn help() -> String {
@@ -180,18 +199,13 @@ pub(crate) fn run(project: &Project, only: &[String]) -> Result<bool, String> {
         .filter(|step| only.is_empty() || only.iter().any(|name| name == step.name))
     {
         if project.ci && only.is_empty() {
-            if step.name == FIRST_BESIDE {
-                beside = Some(Beside::start(project)?);
+            if let Some(lane) = LANES.iter().find(|lane| lane.first == step.name) {
+                beside = Some(Beside::start(project, lane)?);
             }
-            if BESIDE.contains(&step.name) {
-                results.extend(
-                    beside
-                        .take()
-                        .map(Beside::end)
-                        .transpose()?
-                        .into_iter()
-                        .flatten(),
-                );
+            if LANES.iter().any(|lane| lane.steps.contains(&step.name)) {
+                if let Some(lane) = beside.take() {
+                    results.extend(lane.end()?);
+                }
                 continue;
             }
         }
