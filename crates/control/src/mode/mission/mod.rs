@@ -384,16 +384,12 @@ impl<'a> Mode<'a> for Mission<'a> {
     }
 
     fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
-        let spare = match &estimate.reading {
-            Some(reading) => {
-                state.ingest(estimate, reading);
-                // An echo takes longest.
-                reading.range == Range::Clear
+        if let Some(reading) = &estimate.reading {
+            state.ingest(estimate, reading);
+            // An echo takes longest, and in a tick without a reading a plan may begin.
+            if reading.range == Range::Clear {
+                state.echoes.settle();
             }
-            None => !state.plan.is_busy(),
-        };
-        if spare {
-            state.echoes.settle();
         }
         let stale_s = self.params.get(ParamId::StaleRange);
         let beside = following(state.phase) || state.near_m < CAREFUL_M;

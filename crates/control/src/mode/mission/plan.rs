@@ -87,11 +87,6 @@ impl Plan {
         true
     }
 
-    /// A round is under way.
-    pub(super) fn is_busy(&self) -> bool {
-        self.busy
-    }
-
     /// The direction that passes the obstacle on a side, in the middle of what others leave [rad]; or another leaves
     /// nothing, and is part of the obstacle from now on.
     fn past(
