@@ -337,6 +337,7 @@ fn dice(x_m: f32) -> u8 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Detour, Mode, Params, Place, Side, Task};
     use super::*;
     use crate::rig::View;
     use crate::types::SonarId;
@@ -383,5 +384,63 @@ mod tests {
     fn another_face_in_the_beam_does_not_approach() {
         let corner = |time_s: f32| if time_s > 0.3 { 0.35 } else { 0.41 };
         assert_eq!(approaches(1.5, 0.0, corner), None);
+    }
+
+    /// What a standing robot does first about something that approaches, at 0.5 m/s and half a metre away.
+    fn first_drive(off_rad: f32, sure: bool, detour: Option<Detour>) -> Option<Drive> {
+        let params = Params::default();
+        let mission = Mission::new(&params, &Task::Goal { x_m: 3.0, y_m: 0.0 });
+        let mut state = State {
+            phase: Phase::GoToGoal,
+            gap_m: 1.0,
+            detour,
+            ..State::default()
+        };
+        let approach = Approach {
+            off_rad,
+            range_m: 0.5,
+            speed_m_s: 0.5,
+            sure,
+        };
+        state.movement.step(Some(&approach), 0.0);
+        let mut estimate = Estimate::default();
+        (
+            estimate.motion.left.standing,
+            estimate.motion.right.standing,
+        ) = (true, true);
+        mission.give_way(&mut state, &estimate)
+    }
+
+    #[test]
+    fn it_drives_out_of_the_way_of_what_is_abeam_and_backs_off_from_what_is_farther_ahead() {
+        for side in [1.0, -1.0] {
+            assert_eq!(first_drive(1.5 * side, true, None), Some(straight(OUT_M_S)));
+            assert_eq!(
+                first_drive(1.2 * side, true, None),
+                Some(straight(-BACK_M_S))
+            );
+            assert_eq!(
+                first_drive(0.5 * side, true, None),
+                Some(straight(-BACK_M_S))
+            );
+        }
+    }
+
+    #[test]
+    fn around_an_obstacle_it_backs_off_from_what_surely_approaches() {
+        let detour = Some(Detour {
+            side: Side::Left,
+            met: Place::default(),
+            least_m: 3.0,
+            way_m: 0.0,
+            away: false,
+            vain: 0,
+            changes: 0,
+            wound_rad: 0.0,
+            bearing_rad: 0.0,
+        });
+        assert_eq!(first_drive(1.2, true, detour), Some(straight(-BACK_M_S)));
+        // Another obstacle may be behind: it stands.
+        assert_eq!(first_drive(1.2, false, detour), Some(Drive::Release));
     }
 }
