@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// misses a limit (docs/firmware.md says how often): for those scenarios a seed with an unambiguous way.
 fn seed(scenario: &str) -> u64 {
     match scenario {
-        "mode8-obstacles" | "mode8-random" => 3,
+        "mode8-random" => 3,
         _ => 1,
     }
 }

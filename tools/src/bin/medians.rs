@@ -125,9 +125,9 @@ impl Table {
         let [native, chip] =
             [natively, on_chip].map(|runs| runs.iter().filter(|run| run.pass).count());
         if native < natively.len() || chip < on_chip.len() {
-            let _ = write!(
+            let _ = writeln!(
                 self.passes,
-                " {name}: {native} natively, {chip} on the Mega."
+                "- {name}: {native} natively, {chip} on the Mega"
             );
         }
     }
@@ -135,7 +135,10 @@ impl Table {
     fn text(&self, seeds: u64) -> String {
         let passes = match self.passes.as_str() {
             "" => " in every scenario, of both.".to_owned(),
-            others => format!(" in every scenario, of both, but for these:{others}"),
+            others => format!(
+                " in every scenario, of both, but for these:\n\n{}",
+                others.trim_end()
+            ),
         };
         format!(
             "Medians of {seeds} seeds: {} of {} figures are alike, {} of them the same number and left out below.\nWithin their limits are \
