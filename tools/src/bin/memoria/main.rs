@@ -1,6 +1,6 @@
 //! The report's program as an Arduino sketch (`examples/arduino/memoria`) on the emulated Mega, beside its native form and our
 //! core, natively and as the Mega's image: one table of each scenario's metrics and of the chip's time.
-//! `cargo xtask bench --only memoria` or `cargo xtask memoria`.
+//! `cargo xtask memoria` builds and starts it.
 //!
 //! Arguments: how many seeds (default 5), and scenarios (default all). All of them with 5 seeds go into
 //! docs/theory/baseline.md, and in short into docs/figures.md, between their markers.
