@@ -9,7 +9,7 @@ use rumbo_experiment::run::{RunResult, run_all};
 use std::sync::Arc;
 
 /// The robot of each run. Which way it takes around boxes may depend on a few cycles, and now and then the longer one
-/// misses a limit (docs/firmware.md says how often): for those scenarios a seed with an unambiguous way.
+/// misses a limit (docs/firmware.md says how often): a seed with an unambiguous way.
 fn seed(scenario: &str) -> u64 {
     match scenario {
         "mode8-random" => 3,

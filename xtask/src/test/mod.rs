@@ -361,6 +361,19 @@ mod tests {
         );
     }
 
+    /// Else steps would be left out, or a lane ended by the next one.
+    #[test]
+    fn a_lane_begins_before_its_steps_and_after_those_of_the_lane_before() {
+        let place = |name: &str| STEPS.iter().position(|step| step.name == name);
+        let mut places = Vec::new();
+        for lane in &LANES {
+            places.push(place(lane.first).expect(lane.first));
+            let steps = lane.steps.iter().map(|name| place(name).expect(name));
+            places.push(steps.min().expect(lane.first));
+        }
+        assert!(places.is_sorted_by(|one, next| one < next), "{places:?}");
+    }
+
     #[test]
     fn every_step_is_in_the_help() {
         assert!(STEPS.iter().all(|step| help().contains(step.what)));
