@@ -18,6 +18,7 @@ use rumbo_report::Stamp;
 use rumbo_report::grade::{class, student};
 use rumbo_sketch::sandbox::{Limits, Sandbox};
 use rumbo_sketch::{Compiler, SketchError, Toolchain};
+use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::Path;
 use std::time::Duration;
@@ -26,13 +27,25 @@ use std::time::Duration;
 const PAGE: &str = "index.html";
 const STUDENTS: &str = "students";
 const GRADESCOPE: &str = "gradescope";
+/// Most names said of what is no hand-in.
+const MOST_NAMED: usize = 20;
 
 /// Compiles, drives, marks, writes, and prints a line for each hand-in.
 pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
     let assignment = Assignment::read(&output::shown(&args.assignment))?;
     let stamp = check_places(args, &assignment)?;
     set_threads(args.threads)?;
-    let found = hand_ins::find(&args.folder)?;
+    let (found, others) = hand_ins::find(&args.folder)?;
+    if !others.is_empty() {
+        let more = match others.len().saturating_sub(MOST_NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        output::note(&format!(
+            "not graded: {}{more}; a hand-in is a folder with a sketch, an .ino, an .elf or a .hex, and no link",
+            others[..others.len().min(MOST_NAMED)].join(", ")
+        ));
+    }
     let sketches = found.iter().filter(|one| one.is_sketch()).count();
     // Images need no compiler.
     let compiler = match sketches {
@@ -135,7 +148,8 @@ fn write(
         }
         place::folder(&folder)?;
     }
-    for (mark, file) in marks.iter().zip(file_names(marks)) {
+    let files = file_names(marks.iter().map(|mark| &*mark.name));
+    for (mark, file) in marks.iter().zip(&files) {
         let page = out(STUDENTS).join(format!("{file}.html"));
         place::write(
             &page,
@@ -144,7 +158,8 @@ fn write(
         let json = exports::gradescope(assignment, mark, notes, language)?;
         place::write(&out(GRADESCOPE).join(format!("{file}.json")), json)?;
     }
-    let links: Vec<String> = file_names(marks)
+    let links: Vec<String> = files
+        .iter()
         .map(|file| format!("{STUDENTS}/{file}.html"))
         .collect();
     let page = class(assignment, marks, notes, language, &links);
@@ -153,24 +168,22 @@ fn write(
     place::write(&out(PAGE), stamp.put_on(page))
 }
 
-/// File names of each hand-in: its name, restricted to portable characters, and its number.
-fn file_names(marks: &[Mark]) -> impl Iterator<Item = String> + '_ {
-    let plain = |name: &str| -> String {
-        let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-        let name = name.chars().take(80);
-        name.map(|c| if is_plain(c) { c } else { '_' }).collect()
-    };
-    marks.iter().enumerate().map(move |(index, mark)| {
-        let name = plain(&mark.name);
-        let is_taken = marks
-            .iter()
-            .take(index)
-            .any(|other| plain(&other.name).eq_ignore_ascii_case(&name));
-        match is_taken {
-            true => format!("{name}-{index}"),
-            false => name,
-        }
-    })
+/// A file name for each hand-in: its name, restricted to portable characters; where another one has that, whatever
+/// its capitals, with the first number that makes it another.
+fn file_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    let mut taken = BTreeSet::new();
+    names
+        .map(|name| {
+            let name = name.chars().take(80);
+            let name: String = name.map(|c| if is_plain(c) { c } else { '_' }).collect();
+            let numbered = (1..).map(|number| format!("{name}-{number}"));
+            std::iter::once(name.clone())
+                .chain(numbered)
+                .find(|free| taken.insert(free.to_ascii_lowercase()))
+                .unwrap_or(name)
+        })
+        .collect()
 }
 
 fn report(args: &GradeArgs, marks: &[Mark], notes: &[String]) -> Result<(), Failure> {

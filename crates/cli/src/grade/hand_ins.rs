@@ -25,8 +25,9 @@ impl Found {
     }
 }
 
-/// The hand-ins in a folder: each a folder or a file. A file, or a folder that is itself a sketch, is the only one.
-pub(super) fn find(folder: &Path) -> Result<Vec<Found>, Failure> {
+/// The hand-ins in a folder, each a folder or a file, and the names of what else is there. A file, or a folder that is
+/// itself a sketch, is the only one.
+pub(super) fn find(folder: &Path) -> Result<(Vec<Found>, Vec<String>), Failure> {
     let wrong = |error: std::io::Error| {
         Failure::Input(format!(
             "{}: {error}; give the folder with the hand-ins",
@@ -38,24 +39,26 @@ pub(super) fn find(folder: &Path) -> Result<Vec<Found>, Failure> {
     let name = stem(&own);
     if about.is_file() || own.join(format!("{name}.ino")).is_file() {
         let given = given(&own, false);
-        return Ok(vec![Found { name, given }]);
+        return Ok((vec![Found { name, given }], Vec::new()));
     }
     let entries = fs::read_dir(folder).map_err(wrong)?.flatten();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    paths.retain(|path| !super::name_of(path).starts_with('.'));
     paths.sort();
-    paths.retain(|path| is_hand_in(path));
+    let (paths, others): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_hand_in(path));
     match paths.len() {
         0 => Err(Failure::Input(format!(
             "{}: no hand-ins; each is a folder with a sketch, an .ino, an .elf or a .hex",
             folder.display()
         ))),
-        1..=MOST => Ok(paths
-            .iter()
-            .map(|path| Found {
+        1..=MOST => {
+            let found = paths.iter().map(|path| Found {
                 name: stem(path),
                 given: given(path, false),
-            })
-            .collect()),
+            });
+            let others = others.iter().map(|path| super::name_of(path));
+            Ok((found.collect(), others.collect()))
+        }
         count => Err(Failure::Input(format!(
             "{}: {count} hand-ins; at most {MOST} are graded at a time",
             folder.display()
@@ -65,11 +68,9 @@ pub(super) fn find(folder: &Path) -> Result<Vec<Found>, Failure> {
 
 /// A folder or a file that may be one; not a link, which may lead anywhere.
 fn is_hand_in(path: &Path) -> bool {
-    let hidden = super::name_of(path).starts_with('.');
     let ending = path.extension().and_then(|ending| ending.to_str());
     fs::symlink_metadata(path).is_ok_and(|about| {
-        !hidden
-            && (about.is_dir() || about.is_file() && matches!(ending, Some("ino" | "elf" | "hex")))
+        about.is_dir() || about.is_file() && matches!(ending, Some("ino" | "elf" | "hex"))
     })
 }
 

@@ -294,6 +294,37 @@ fn hostile_hand_ins_gain_nothing_and_change_no_other_mark() {
 }
 
 #[test]
+fn every_hand_in_has_files_of_its_own_and_what_is_none_is_named() {
+    let bench = folder().join("grade/names");
+    let _ = fs::remove_dir_all(&bench);
+    fs::create_dir_all(bench.join("in")).unwrap();
+    for name in [
+        "a b.hex",
+        "A_b.hex",
+        "a_b-1.hex",
+        "a_b.hex",
+        "eva.zip",
+        ".x",
+    ] {
+        fs::write(bench.join("in").join(name), "no image").unwrap();
+    }
+    let output = grade(&bench, "wall", &["--out", "out"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(
+        said.contains("note: not graded: eva.zip; a hand-in is"),
+        "{said}"
+    );
+    let class = fs::read_to_string(bench.join("out/index.html")).unwrap();
+    let results = results(&bench.join("out"));
+    assert_eq!(results.len(), 4, "{:?}", results.keys());
+    for file in results.keys() {
+        assert!(class.contains(&format!("students/{file}.html")), "{file}");
+        assert!(bench.join(format!("out/students/{file}.html")).is_file());
+    }
+}
+
+#[test]
 fn a_wrong_assignment_is_said_with_lines_keys_and_near_names() {
     let bench = folder().join("grade/wrong");
     fs::create_dir_all(bench.join("in")).unwrap();
