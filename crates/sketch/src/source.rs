@@ -5,7 +5,7 @@
 use crate::error::SketchError;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Largest sketch [bytes].
@@ -14,6 +14,8 @@ const MOST_BYTES: u64 = 8 << 20;
 const MOST_FILES: usize = 2_000;
 /// Depth of folders below the sketch's own.
 const DEEPEST: usize = 6;
+/// Of a path with nothing at it.
+const NOWHERE: &str = "no such file or folder; `rumbo new sketch NAME` begins a sketch, and example:NAME takes an example";
 /// What a compiler reads, and what else may be included.
 const KINDS: [&str; 14] = [
     "ino", "pde", "c", "cpp", "cc", "cxx", "h", "hpp", "hh", "hxx", "inc", "ipp", "tpp", "S",
@@ -43,7 +45,10 @@ pub struct Source {
 /// # Errors
 /// Nothing of the kind is there, or more than a sketch can be.
 pub fn given(path: &Path, folder_of_ino: bool) -> Result<Given, SketchError> {
-    let about = fs::metadata(path).map_err(|error| SketchError::file(path, error))?;
+    let about = fs::metadata(path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => SketchError::file(path, NOWHERE),
+        _ => SketchError::file(path, error),
+    })?;
     let stem = |path: &Path| {
         path.file_stem()
             .map(|stem| stem.to_string_lossy().into_owned())

@@ -25,6 +25,7 @@ pub(crate) use runs::{
 pub(crate) use studies::{SweepArgs, TuneArgs};
 
 use crate::failure::Failure;
+use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use rumbo_sim::boards::Board;
 use std::path::PathBuf;
@@ -229,6 +230,9 @@ pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
     if !error.use_stderr() {
         return Ok(error.print()?);
     }
+    if let Some(remedy) = left_out(error) {
+        return Err(Failure::Input(remedy));
+    }
     let text = error.to_string();
     let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     let message: Vec<&str> = lines
@@ -240,6 +244,25 @@ pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
         message.trim_start_matches("error: "),
         command_asked()
     )))
+}
+
+/// How to get what a word asks for, if it is of a feature that this build does not have.
+fn left_out(error: &clap::Error) -> Option<String> {
+    let word = [ContextKind::InvalidSubcommand, ContextKind::InvalidArg]
+        .into_iter()
+        .find_map(|kind| match error.get(kind) {
+            Some(ContextValue::String(word)) => Some(word),
+            _ => None,
+        })?;
+    let (feature, page) = match word.as_str() {
+        "ros" if cfg!(not(feature = "ros")) => ("ros", "docs/ros2.md"),
+        "--zenoh" if cfg!(not(feature = "zenoh")) => ("zenoh", "docs/ros2.md"),
+        "--foxglove" if cfg!(not(feature = "foxglove")) => ("foxglove", "docs/logs.md"),
+        _ => return None,
+    };
+    Some(format!(
+        "{word}: this rumbo is built without it; in a checkout, `cargo install --path crates/cli --features {feature}` builds one with it ({page})"
+    ))
 }
 
 /// The command whose help to suggest.

@@ -207,6 +207,11 @@ fn an_example_runs_by_name_and_receives_lines_typed_on_usb() {
         stdout(&again),
         stderr(&again)
     );
+    let nowhere = rumbo(&bench, &["run", "mode1", "--sketch", "mine"]);
+    assert_eq!(
+        stderr(&nowhere),
+        "error: mine: no such file or folder; `rumbo new sketch NAME` begins a sketch, and example:NAME takes an example\n"
+    );
     let unknown = rumbo(&bench, &["run", "mode1", "--sketch", "example:wal"]);
     assert_eq!(
         stderr(&unknown),

@@ -149,3 +149,27 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     }
 }
+
+#[test]
+fn a_feature_that_is_left_out_is_named_with_the_build_that_has_it() {
+    for (feature, left_out, arguments, word) in [
+        ("ros", cfg!(not(feature = "ros")), ["ros", "lab"], "ros"),
+        (
+            "foxglove",
+            cfg!(not(feature = "foxglove")),
+            ["lab", "--foxglove"],
+            "--foxglove",
+        ),
+    ] {
+        let output = rumbo(if left_out { &arguments } else { continue });
+        let expected = format!(
+            "error: {word}: this rumbo is built without it; in a checkout, `cargo install --path crates/cli --features {feature}`"
+        );
+        assert!(
+            stderr(&output).starts_with(&expected),
+            "{}",
+            stderr(&output)
+        );
+        assert_eq!(output.status.code(), Some(2));
+    }
+}
