@@ -1,6 +1,7 @@
 //! The metrics of several robots in one world as tables: a column for each robot, a row for each pair.
 
 use crate::run::in_words;
+use rumbo_experiment::compare::median;
 use rumbo_experiment::files::Setup;
 use std::collections::BTreeMap;
 
@@ -23,8 +24,7 @@ pub(crate) fn take(setup: &Setup, values: &mut Values<'_>) -> Vec<Table> {
         else {
             return true;
         };
-        values.sort_by(f64::total_cmp);
-        let value = in_words(values[values.len() / 2]);
+        let value = in_words(median(values));
         if robots.contains(&whose) {
             of_robots.put(bare, whose, value);
         } else if whose

@@ -10,6 +10,7 @@ use crate::place::{self, Guard};
 use crate::results::Results;
 use crate::run_log::{Kept, Source};
 use indicatif::{ProgressBar, ProgressStyle};
+use rumbo_experiment::compare::median;
 use rumbo_experiment::files::{Library, Overrides, ScenarioFile, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_log::Kind;
@@ -222,15 +223,15 @@ fn row(scenario: &ScenarioFile, metric: &str, mut values: Vec<f64>) -> Vec<Strin
     values.sort_by(f64::total_cmp);
     let mut row = vec![metric.to_owned()];
     match &values[..] {
-        [first, .., last] => row.extend([*first, values[values.len() / 2], *last].map(in_words)),
+        [first, .., last] => row.extend([*first, median(&values), *last].map(in_words)),
         _ => row.extend(values.iter().map(|only| in_words(*only))),
     }
     if let Some(bounds) = scenario.limits.get(metric) {
         let missed = values.iter().filter(|value| !bounds.admit(**value)).count();
-        let verdict = if missed == 0 {
-            "ok".into()
-        } else {
-            format!("MISSED by {missed}")
+        let verdict = match (missed, values.len()) {
+            (0, _) => "ok".into(),
+            (_, 1) => "MISSED".into(),
+            (_, runs) => format!("MISSED by {missed} of {runs}"),
         };
         row.extend([bounds.to_string(), verdict]);
     }

@@ -143,7 +143,7 @@ fn difference(metric: &str, first: &Variant, second: &Variant) -> Difference {
         metric: metric.to_owned(),
         pairs: pairs.len(),
         never,
-        medians: [0, 1].map(|of| median(pairs.iter().map(|pair| pair[of]).collect())),
+        medians: [0, 1].map(|of| median(&pairs.iter().map(|pair| pair[of]).collect::<Vec<_>>())),
         mean,
         interval: [mean - half, mean + half],
         effect: match deviation > 0.0 {
@@ -163,7 +163,10 @@ fn quantile(pairs: usize) -> f64 {
     })
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
+/// The middle value; of an even number, half way between the two in the middle.
+#[must_use]
+pub fn median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
     match values.len() {
@@ -187,6 +190,13 @@ mod tests {
             passes: vec![true; values.len()],
             metrics: metrics.collect(),
         }
+    }
+
+    #[test]
+    fn the_median_of_an_even_number_is_half_way_between_two() {
+        assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), 2.5);
+        assert!(median(&[1.0, f64::NAN]).is_nan() && median(&[]).is_nan());
     }
 
     #[test]

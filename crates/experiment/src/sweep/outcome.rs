@@ -1,6 +1,7 @@
 //! What the runs of a sweep were like.
 
 use super::Plan;
+use crate::compare::median;
 use crate::files::ScenarioFile;
 use crate::metrics::{self, Metrics, bare, more_is_better};
 use crate::run::RunResult;
@@ -65,12 +66,10 @@ impl Spread {
         }
         values.sort_by(f64::total_cmp);
         let last = values.len().checked_sub(1)?;
-        let at = |share: f64| {
-            let value = values[(share * last as f64).round() as usize];
-            if value.is_finite() { value } else { f64::NAN }
-        };
+        let known = |value: f64| if value.is_finite() { value } else { f64::NAN };
+        let at = |share: f64| known(values[(share * last as f64).round() as usize]);
         Some(Self {
-            median: at(0.5),
+            median: known(median(&values)),
             low: at(0.05),
             high: at(0.95),
         })
