@@ -148,8 +148,8 @@ impl Content {
         let differs = before.differs(header);
         if !differs.is_empty() {
             let what = format!(
-                "is of another sweep (another {})",
-                differs.join(", another ")
+                "is of another sweep, which differs in {}",
+                differs.join(", ")
             );
             return Err(wrong(1, &what));
         }

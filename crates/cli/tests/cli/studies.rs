@@ -94,7 +94,7 @@ fn a_sweep_that_was_cut_off_goes_on_to_the_same_bytes() {
     // Another sweep is not gone on with, and a run that is none is named.
     let other = sweep(&part_text, &["--resume", "--seed", "9"]);
     assert!(
-        stderr(&other).contains("another seed"),
+        stderr(&other).contains("differs in seed"),
         "{}",
         stderr(&other)
     );
