@@ -9,11 +9,13 @@ use super::{
     Library, PolicyFile, RobotFile, ScenarioFile, Spread, Start, WorldFile, firmware, parameters,
 };
 use crate::random_world::{Journey, Site, Size};
+use rumbo_control::SonarId;
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
 use rumbo_plant::world::Point;
 use rumbo_sim::mega::firmware::{Firmware, Language};
+use rumbo_sim::wire_fault::Wire;
 use rumbo_sim::wiring::Divider;
 use rumbo_sim::{Config, Program, Sim};
 use rumbo_wire::Command;
@@ -185,6 +187,7 @@ impl Library {
                 name: scenario.rig.clone(),
                 near: near_or_all(&scenario.rig, robot.rigs.keys().map(String::as_str)),
             })?;
+        has_its_sonars(&scenario, &rig)?;
         let wiring = overrides.wiring.as_deref();
         let load = |path: &PathBuf| {
             let firmware = firmware::load(path, wiring, &robot, &scenario)?;
@@ -485,6 +488,28 @@ fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileEr
 }
 
 /// Sets one parameter, of the plant or of the control core, whichever has the name.
+/// Whether what is to fail is there.
+fn has_its_sonars(scenario: &ScenarioFile, rig: &Rig) -> Result<(), FileError> {
+    let sonars = scenario.sonar_faults.iter().map(|fault| fault.sonar);
+    let echoes = scenario.wire_faults.iter().map(|fault| fault.wire);
+    let echoes = echoes.filter_map(|wire| match wire {
+        Wire::Echo(sonar) => Some(sonar),
+        Wire::Encoder(_) => None,
+    });
+    let missing = sonars.chain(echoes).find_map(|sonar| match sonar {
+        SonarId::Left => rig.left.is_none().then_some("left"),
+        SonarId::Right => rig.right.is_none().then_some("right"),
+        SonarId::Front => rig.front.is_none().then_some("front"),
+    });
+    match missing {
+        None => Ok(()),
+        Some(sonar) => Err(FileError::Setting(format!(
+            "scenario {}: its sonar `{sonar}` is to fail, and rig {} has none of that name; name another sonar, or choose another rig",
+            scenario.name, scenario.rig
+        ))),
+    }
+}
+
 fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), FileError> {
     let wrong = |remedy: &str| FileError::Setting(format!("parameter {name} = {value}: {remedy}"));
     let limits = Params::limits();

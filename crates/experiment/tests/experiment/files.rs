@@ -576,6 +576,28 @@ fn the_goal_of_the_world_is_sent_relative_to_the_start() {
 }
 
 #[test]
+fn a_sonar_that_the_rig_lacks_cannot_fail() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_sonar.toml");
+    let setup = |text: String| {
+        std::fs::write(&path, text).unwrap();
+        let setup = Library::new().setup(path.to_str().unwrap(), &Overrides::default());
+        setup.map(|_| ()).map_err(|error| error.to_string())
+    };
+    for fault in [
+        "[[sonar_fault]]\nat_s = 1\nsonar = \"SONAR\"\nkind = \"cut\"\n",
+        "[[wire_fault]]\nat_s = 1\nwire = \"SONAR_echo\"\nkind = \"low\"\n",
+    ] {
+        let text = |sonar: &str| SCENARIO.to_owned() + &fault.replace("SONAR", sonar);
+        assert_eq!(setup(text("front")), Ok(()));
+        assert_eq!(
+            setup(text("left")).unwrap_err(),
+            "scenario no_sonar: its sonar `left` is to fail, and rig front_single has none of that name; \
+             name another sonar, or choose another rig"
+        );
+    }
+}
+
+#[test]
 fn a_robot_cannot_start_inside_a_box() {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("inside.toml");
     let text = SCENARIO.replace("\"open\"", "\"room\"") + "[start]\nx_m = 1.6\n";
