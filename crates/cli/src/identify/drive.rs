@@ -94,8 +94,8 @@ pub(crate) fn at_port(drive: &Drive<'_>, address: &str, baud: u32) -> Result<Dri
     let done = all_parts(&mut driven, drive.battery_v, &asked, |driven, part| {
         // An Enter pressed before this question is no answer to it: the robot may be in somebody's hand.
         while lines.try_recv().is_ok() {}
-        output::line(&format!(
-            "\n{}, {:.0} s: {}; then press Enter. Ctrl-C stops the robot at any time.",
+        output::remark(&format!(
+            "{}, {:.0} s: {}; then press Enter. Ctrl-C stops the robot at any time.",
             part.name,
             part.seconds(),
             part.instruction

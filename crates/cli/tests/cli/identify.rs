@@ -138,7 +138,12 @@ fn driven(port: &str, folder: &Path) -> Option<std::process::Child> {
         .spawn()
         .unwrap();
     let mut lines = BufReader::new(drive.stdout.as_mut().unwrap()).lines();
-    if lines.any(|line| line.unwrap().contains("press Enter")) {
+    let asks = |line: std::io::Result<String>| {
+        let line = line.unwrap();
+        assert!(!line.contains("\\n"), "{line}");
+        line.contains("press Enter")
+    };
+    if lines.any(asks) {
         drive.stdin.as_mut().unwrap().write_all(b"\n").unwrap();
     }
     let until = std::time::Instant::now() + std::time::Duration::from_secs(60);
