@@ -46,6 +46,10 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     if let Some(by) = &args.by {
         check_metrics([by.as_str()].into_iter(), &setup, args.seed.seed)?;
     }
+    // What no run can be made of is said before anything is written.
+    for robot in setup.robots() {
+        robot.config(args.seed.seed)?;
+    }
     let header = header(args, &setup, &overrides, &plan);
     let about = serde_json::to_string(&header).map_err(Failure::input)?;
     let stamp = Stamp::of("sweep", &[about]);

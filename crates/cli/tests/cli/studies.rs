@@ -124,6 +124,10 @@ fn a_sweep_without_sense_is_refused_and_nothing_is_written() {
         ),
         (&["kv=0.01:9:3"], "must be within"),
         (
+            &["kv=0.01,0.02", "--robot", "uno"],
+            "does not fit into the atmega328p",
+        ),
+        (
             &["kv=0.01,0.02", "--param", "kv=0.03"],
             "is an axis and has a --param",
         ),

@@ -8,7 +8,7 @@
 //! [[fleet]]
 //! name = "south"
 //! firmware = "sketch.hex"      # an image beside this file, on an emulated chip
-//! wiring = "memoria"           # may be missing, as with --wiring
+//! wiring = "final"             # may be missing, as with --wiring
 //! [[fleet.command]]
 //! at_s = 0.5
 //! arm = true

@@ -2,7 +2,7 @@
 
 use super::error::FileError;
 use super::kept::Calibrations;
-use super::near::{near, near_or_all};
+use super::near::{did_you_mean, near, near_or_all};
 use super::read::Allowed;
 use super::start::{pose, stand_apart, stands_free};
 use super::{
@@ -178,16 +178,27 @@ impl Library {
         }
         stands_free(&scenario, &robot, &world, alone)?;
         has_its_goal(&scenario, &world)?;
-        let rig = robot
-            .rigs
-            .get(&scenario.rig)
-            .copied()
-            .ok_or_else(|| FileError::Unknown {
-                kind: "rig",
-                name: scenario.rig.clone(),
-                near: near_or_all(&scenario.rig, robot.rigs.keys().map(String::as_str)),
-            })?;
-        has_its_sonars(&scenario, &rig)?;
+        let whose = match alone {
+            true => format!("scenario {}", scenario.name),
+            false => format!("robot {}", scenario.name),
+        };
+        let rig = robot.rigs.get(&scenario.rig).copied().ok_or_else(|| {
+            let near = near_or_all(&scenario.rig, robot.rigs.keys().map(String::as_str));
+            match &overrides.rig {
+                Some(name) => FileError::Unknown {
+                    kind: "rig",
+                    name: name.clone(),
+                    near,
+                },
+                None => FileError::Setting(format!(
+                    "{whose}: robot {} has no rig `{}`; {}",
+                    robot.name,
+                    scenario.rig,
+                    did_you_mean(&near)
+                )),
+            }
+        })?;
+        has_its_sonars(&whose, &scenario, &rig)?;
         let wiring = overrides.wiring.as_deref();
         let load = |path: &PathBuf| {
             let firmware = firmware::load(path, wiring, &robot, &scenario)?;
@@ -489,7 +500,7 @@ fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileEr
 
 /// Sets one parameter, of the plant or of the control core, whichever has the name.
 /// Whether what is to fail is there.
-fn has_its_sonars(scenario: &ScenarioFile, rig: &Rig) -> Result<(), FileError> {
+fn has_its_sonars(whose: &str, scenario: &ScenarioFile, rig: &Rig) -> Result<(), FileError> {
     let sonars = scenario.sonar_faults.iter().map(|fault| fault.sonar);
     let echoes = scenario.wire_faults.iter().map(|fault| fault.wire);
     let echoes = echoes.filter_map(|wire| match wire {
@@ -504,8 +515,8 @@ fn has_its_sonars(scenario: &ScenarioFile, rig: &Rig) -> Result<(), FileError> {
     match missing {
         None => Ok(()),
         Some(sonar) => Err(FileError::Setting(format!(
-            "scenario {}: its sonar `{sonar}` is to fail, and rig {} has none of that name; name another sonar, or choose another rig",
-            scenario.name, scenario.rig
+            "{whose}: its sonar `{sonar}` is to fail, and rig {} has none of that name; name another sonar, or choose another rig",
+            scenario.rig
         ))),
     }
 }

@@ -576,6 +576,19 @@ fn the_goal_of_the_world_is_sent_relative_to_the_start() {
 }
 
 #[test]
+fn a_rig_of_the_scenario_that_the_robot_lacks_is_said_with_both() {
+    let overrides = Overrides {
+        robot: Some("uno".into()),
+        ..Overrides::default()
+    };
+    let error = Library::new().setup("mode2", &overrides).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "scenario mode2: robot uno has no rig `front_pair`; did you mean `front_servo`?"
+    );
+}
+
+#[test]
 fn a_sonar_that_the_rig_lacks_cannot_fail() {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_sonar.toml");
     let setup = |text: String| {
