@@ -11,7 +11,7 @@
  * looks for it at another one, and 'leave' goes back to the lab; `{ port }` is the port's name or null, `{ back }` the
  * name when it is there again or null when it is gone, `{ refused }` why there is none. `{ flash }` writes a program to a board, `{ flashed }` says how far that is. To the page go arrays of the messages of the station's WebSocket, or `{ error }` when the session has ended.
  */
-import { readLink, unpack } from '../src/run_link.js';
+import { readLink, unpack, wrongNumber } from '../src/run_link.js';
 import { LOCK } from '../src/serial_ports.js';
 import { flash } from './flash.js';
 import init, { Flasher, Lab, Recording, Robot } from './rumbo.js';
@@ -233,6 +233,8 @@ self.addEventListener('message', ({ data }) => {
 async function open() {
   const { start, version } = readLink(location.search);
   try {
+    const wrong = wrongNumber(start);
+    if (wrong !== null) throw new Error(wrong);
     if (start.edited) start.edited = await unpack(start.edited);
     if (start.file) start.file = await unpack(start.file);
     const made = new Lab(JSON.stringify(start));
@@ -240,7 +242,7 @@ async function open() {
     return made;
   } catch (error) {
     const made = new Lab('{}');
-    made.warn(`the link is not for this version: ${error}`);
+    made.warn(`the link is not for this version: ${error instanceof Error ? error.message : error}`);
     return made;
   }
 }

@@ -51,6 +51,15 @@ export function readLink(text) {
   return { start, version };
 }
 
+/** What is wrong with the numbers of a link, in words. @param {Start} start @returns {string | null} */
+export function wrongNumber({ parameters, seed, robots, until_s }) {
+  const numbers = Object.entries({ ...parameters, seed, robots, until_s });
+  const none = numbers.find(([, value]) => value !== undefined && !Number.isFinite(value));
+  if (none) return `${none[0]} is no number; write it with a decimal point`;
+  const part = Object.entries({ seed, robots }).find(([, value]) => value !== undefined && !(Number.isSafeInteger(value) && value >= 0));
+  return part ? `${part[0]} is no whole number from 0 on` : null;
+}
+
 /**
  * The link of a run.
  * @param {string} page its address
@@ -73,23 +82,29 @@ const MOST_UNPACKED = 100_000;
 /** A text for a link, compressed: in base64 as addresses take it. @param {string} text */
 export async function pack(text) {
   const packed = await bytesOf(new Blob([text]).stream().pipeThrough(new CompressionStream('deflate-raw')), Infinity);
-  return btoa(String.fromCharCode(...packed)).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
+  return btoa(String.fromCharCode(...(packed ?? []))).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
 }
 
 /** The text that was packed. @param {string} packed */
 export async function unpack(packed) {
-  const bytes = Uint8Array.from(atob(packed.replaceAll('-', '+').replaceAll('_', '/')), (each) => each.charCodeAt(0));
-  const text = await bytesOf(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw')), MOST_UNPACKED);
-  return new TextDecoder().decode(text);
+  const unpacked = async () => {
+    const bytes = Uint8Array.from(atob(packed.replaceAll('-', '+').replaceAll('_', '/')), (each) => each.charCodeAt(0));
+    return bytesOf(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw')), MOST_UNPACKED);
+  };
+  const bytes = await unpacked().catch(() => {
+    throw new Error('a file in it is damaged; copy the whole link');
+  });
+  if (bytes === null) throw new Error('a file in it is too large');
+  return new TextDecoder().decode(bytes);
 }
 
-/** @param {ReadableStream<Uint8Array>} stream @param {number} most */
+/** What comes from a stream, `null` if it is more. @param {ReadableStream<Uint8Array>} stream @param {number} most */
 async function bytesOf(stream, most) {
   /** @type {number[]} */
   const all = [];
   const reader = stream.getReader();
   for (let read = await reader.read(); !read.done; read = await reader.read()) {
-    if (all.length + read.value.length > most) throw new Error('a file in it is too large');
+    if (all.length + read.value.length > most) return null;
     for (const byte of read.value) all.push(byte);
   }
   return new Uint8Array(all);

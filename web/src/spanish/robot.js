@@ -168,6 +168,8 @@ export const ROBOT = {
   'this browser has no WebAssembly or no workers; open the page in another one': 'este navegador no tiene WebAssembly o no tiene workers; abre la página en otro',
   'the link is of version {}, this is {}: the run may differ': 'el enlace es de la versión {}, esta es la {}: puede salir distinto',
   'the link is not for this version: {}': 'el enlace no es para esta versión: {}',
+  '{} is no number; write it with a decimal point': '{} no es un número; escríbelo con punto decimal', '{} is no whole number from 0 on': '{} no es un número entero desde 0',
+  'a file in it is damaged; copy the whole link': 'un archivo que lleva está dañado; copia el enlace entero', 'a file in it is too large': 'un archivo que lleva es demasiado grande',
   'the link has {} changes of commands, and {} are the most: only the first ones are repeated': 'el enlace tiene {} cambios de órdenes, y {} es el máximo: solo se repiten los primeros',
   'the link repeats a run driven by hand until {} s (changes of commands: {}); an order given here ends that':
     'el enlace repite una ejecución llevada a mano hasta {} s (cambios de órdenes: {}); una orden dada aquí termina eso',
