@@ -30,6 +30,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let library = Library::new();
     let setup = |name: &String| library.setup(name, &overrides);
     let setups: Vec<Setup> = args.scenarios.iter().map(setup).collect::<Result<_, _>>()?;
+    setups.iter().try_for_each(sends_all)?;
     check_places(args, &setups)?;
     if let Some(folder) = &args.out {
         place::try_folder(folder)?;
@@ -166,6 +167,18 @@ pub(crate) fn progress_bar(runs: usize) -> ProgressBar {
     }
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left");
     ProgressBar::new(runs as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// Refuses a line that is due when the run is over.
+fn sends_all(setup: &Setup) -> Result<(), Failure> {
+    let duration_s = setup.scenario.duration_s;
+    match setup.texts.iter().find(|text| text.at_s >= duration_s) {
+        None => Ok(()),
+        Some(late) => Err(Failure::Input(format!(
+            "scenario {}: lasts {duration_s} s, and `{}` is to be sent at {} s; send it earlier",
+            setup.scenario.name, late.text, late.at_s
+        ))),
+    }
 }
 
 /// All runs of one scenario: each metric's range over the seeds against its limits, and why runs did not pass.

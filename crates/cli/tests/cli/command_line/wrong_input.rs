@@ -32,7 +32,7 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         "comma.toml",
         "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 0,5\n",
     );
-    let cases: [(&[&str], &str); 27] = [
+    let cases: [(&[&str], &str); 28] = [
         (
             &["run", "typos.toml"],
             "error: typos.toml:5: mode = font_distance: unknown mode; did you mean `front_distance` (1)?",
@@ -108,6 +108,17 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         (
             &["run", "mode1", "--param", "battery"],
             "error: invalid value 'battery' for '--param <NAME=VALUE>': write it as name=value, e.g. battery.open_circuit_v=6.9; see `rumbo run --help`",
+        ),
+        (
+            &[
+                "run",
+                "mode1",
+                "--command",
+                "REF 40@6",
+                "--command",
+                "OFF@9",
+            ],
+            "error: scenario mode1: lasts 9 s, and `OFF` is to be sent at 9 s; send it earlier",
         ),
         (
             &["lab", "--speed", "-1"],
