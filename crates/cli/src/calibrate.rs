@@ -142,6 +142,7 @@ pub(crate) fn check_robot(
     overwrite: OverwriteArgs,
 ) -> Result<(), Failure> {
     let is_robot = same_file::is_same_file(path, robot).unwrap_or(false);
+    place::try_file(path)?;
     if overwrite.force || is_robot || !path.is_file() {
         return Ok(());
     }

@@ -15,6 +15,7 @@ use rumbo_report::Stamp;
 use rumbo_station::log_file;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 type Metrics = BTreeMap<String, f64>;
 
@@ -32,12 +33,25 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     }
 }
 
+/// Refuses a name that says something else than what will be in the file.
+fn check_ending(path: &Path, ending: &str, what: &str) -> Result<(), Failure> {
+    match path.extension() {
+        Some(other) if !other.eq_ignore_ascii_case(ending) => Err(Failure::Input(format!(
+            "{}: {what}; name it .{ending}",
+            path.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// Prints metrics and differences, draws all runs overlaid on request, and fails where a tolerance is exceeded.
 fn compare_logs(args: &CompareArgs) -> Result<(), Failure> {
     let names: Vec<String> = args.logs.iter().map(|path| output::shown(path)).collect();
     let stamp = Stamp::of("compare", &names);
     if let Some(path) = &args.out {
         Guard::new(&args.logs, args.overwrite.force).check(path, &Mark::of(&stamp))?;
+        check_ending(path, "svg", "logs overlaid are a figure")?;
+        place::try_file(path)?;
     }
     let logs = args.logs.iter().map(|path| {
         let log = log_file::read(path).map_err(Failure::input)?;

@@ -42,6 +42,9 @@ struct Report<'a> {
 pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let name = args.check.as_ref().unwrap_or(&args.robot);
     let robot = Library::new().robot(name)?;
+    if let Some(path) = &args.write {
+        place::try_file(path)?;
+    }
     let driving = drive(args, name)?;
     let driven = driving.iter().map(|driving| driving.path.clone());
     let paths: Vec<PathBuf> = args.logs.iter().cloned().chain(driven).collect();

@@ -29,6 +29,7 @@ pub(crate) fn check_places(args: &RunArgs, guard: &Guard) -> Result<(), Failure>
     for (path, option, mark) in files {
         if let Some(path) = path {
             guard.check(path, &mark)?;
+            place::try_file(path)?;
             results.push((path.clone(), option.to_owned()));
         }
     }

@@ -24,6 +24,16 @@ pub(crate) fn try_folder(place: &Path) -> Result<(), Failure> {
         .map_err(|error| unwritable(place, &error))
 }
 
+/// Checks that a file can be made, before the work instead of after it.
+pub(crate) fn try_file(path: &Path) -> Result<(), Failure> {
+    let made = match path.symlink_metadata() {
+        Ok(_) if path.is_dir() => Err(ErrorKind::IsADirectory.into()),
+        Ok(_) => Ok(()),
+        Err(_) => std::fs::File::create_new(path).and_then(|_| std::fs::remove_file(path)),
+    };
+    made.map_err(|error| unwritable(path, &error))
+}
+
 /// Protection against overwriting.
 pub(crate) struct Guard {
     inputs: Vec<PathBuf>,
@@ -189,6 +199,9 @@ pub(crate) fn unwritable(path: &Path, error: &Error) -> Failure {
         ErrorKind::StorageFull => {
             format!("{shown}: {what}, the disk is full; make room or choose another place")
         }
+        ErrorKind::NotFound => {
+            format!("{shown}: {what}, its folder is not there; make it or choose another place")
+        }
         _ => format!("{shown}: {what} ({error}); choose another place"),
     })
 }
@@ -217,6 +230,29 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
         write(&path, "after").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"after");
+    }
+
+    #[test]
+    fn a_place_is_tried_without_a_trace() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        assert!(try_file(&path).is_ok() && !path.exists());
+        std::fs::write(&path, "mine").unwrap();
+        assert!(try_file(&path).is_ok());
+        assert_eq!(std::fs::read(&path).unwrap(), b"mine");
+        for (path, why) in [
+            (folder.path().to_owned(), "irectory"),
+            (
+                folder.path().join("x").join("a.csv"),
+                "its folder is not there",
+            ),
+            (path.join("a.csv"), "a file stands where a folder is needed"),
+        ] {
+            let Err(Failure::Input(said)) = try_file(&path) else {
+                panic!("{}", path.display())
+            };
+            assert!(said.contains(why), "{said}");
+        }
     }
 
     #[test]

@@ -63,6 +63,8 @@ pub(super) fn compare(args: &CompareArgs, scenario: &str) -> Result<(), Failure>
     if let Some(path) = &args.out {
         Guard::new([PathBuf::from(scenario)], args.overwrite.force)
             .check(path, &Mark::of(&stamp))?;
+        super::check_ending(path, "html", "variants are compared on a page")?;
+        place::try_file(path)?;
     }
     set_threads(args.threads)?;
     let progress = progress_bar(variants.len() * seeds.len());

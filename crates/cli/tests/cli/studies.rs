@@ -151,6 +151,28 @@ fn a_sweep_without_sense_is_refused_and_nothing_is_written() {
 }
 
 #[test]
+fn what_cannot_be_written_is_said_before_the_work() {
+    let compare = ["compare", "mode1", "--with", "front_kp=4", "--out"];
+    let tune = ["tune", "mode1", "--over", "front_kp", "--out"];
+    let identify = ["identify", "--drive", "lab", "--write"];
+    for (command, path, why) in [
+        (
+            &compare[..],
+            "x.svg",
+            "x.svg: variants are compared on a page; name it .html",
+        ),
+        (&compare, "no/x.html", "its folder is not there; make it"),
+        (&tune, "no/x.toml", "its folder is not there; make it"),
+        (&identify, "no/x.toml", "its folder is not there; make it"),
+    ] {
+        let output = rumbo(&[command, &[path]].concat());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(why), "{}", stderr(&output));
+        assert!(stdout(&output).is_empty() && !Path::new(path).exists());
+    }
+}
+
+#[test]
 fn the_page_of_a_sweep_is_served_and_a_click_on_a_run_leads_to_its_replay() {
     let (_, text) = out("sweep-served");
     assert!(sweep(&text, &[]).status.success());
