@@ -3,6 +3,7 @@
 use crate::args::{NewArgs, NewKind};
 use crate::failure::Failure;
 use crate::output;
+use crate::place;
 use rumbo_experiment::files::Library;
 use rumbo_lab::manifest::crc32;
 use rumbo_sim::boards::Board;
@@ -10,6 +11,7 @@ use rumbo_sketch::sandbox::{Limits, Sandbox};
 use rumbo_sketch::{
     BOARDS, Board as Target, Compiler, Given, SketchError, Toolchain, example, given, starter,
 };
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Prefix of an example's name.
@@ -100,19 +102,24 @@ pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
             folder.display()
         )));
     };
-    let wrong = |error: std::io::Error| {
-        Failure::Input(format!(
-            "{}: {error}; choose another name",
-            folder.display()
-        ))
-    };
+    let text = starter(target(args.board))?;
     if let Some(parent) = folder.parent() {
-        std::fs::create_dir_all(parent).map_err(wrong)?;
+        place::folder(parent)?;
     }
     // An existing folder may hold somebody's work.
-    std::fs::create_dir(folder).map_err(wrong)?;
+    std::fs::create_dir(folder).map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists => Failure::Input(format!(
+            "{}: is there already; choose another name",
+            folder.display()
+        )),
+        _ => place::unwritable(folder, &error),
+    })?;
     let file = folder.join(format!("{name}.ino"));
-    std::fs::write(&file, starter(target(args.board))?).map_err(wrong)?;
+    if let Err(error) = std::fs::write(&file, text) {
+        // An empty folder would be in the way of the next attempt.
+        let _ = std::fs::remove_dir_all(folder);
+        return Err(place::unwritable(&file, &error));
+    }
     let (file, folder) = (output::shown(&file), output::shown(folder));
     let robot = match Library::new().robot_with(|robot| robot.board == args.board) {
         Some(robot) if args.board != <&Board>::default() => format!(" --robot {robot}"),

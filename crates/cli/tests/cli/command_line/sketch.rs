@@ -35,6 +35,10 @@ fn a_new_sketch_drives_to_the_wall_and_stops_before_it() {
     assert!(code.count() < 45);
     let again = rumbo(&bench, &["new", "sketch", "mine"]);
     assert_eq!(again.status.code(), Some(2));
+    assert_eq!(
+        stderr(&again),
+        "error: mine: is there already; choose another name\n"
+    );
 
     let run = rumbo(
         &bench,
