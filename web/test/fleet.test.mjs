@@ -61,6 +61,19 @@ test('the map shows the others where they drive', async () => {
   if (process.env['SCREENSHOT']) await page.screenshot({ path: process.env['SCREENSHOT'] });
 });
 
+test('what the sonars measure stands beside or below the choice of robots', async () => {
+  const size = page.viewportSize();
+  for (const width of [1440, 1280, 1024, 920]) {
+    await page.setViewportSize({ width, height: 800 });
+    const box = (/** @type {string} */ name) => page.locator(name).boundingBox();
+    await eventually(async () => {
+      const [pose, corner] = await Promise.all([box('#pose'), box('#map-corner')]);
+      assert.ok(pose && corner && (pose.x + pose.width <= corner.x || pose.y + 2 >= corner.y + corner.height), `${width}: ${JSON.stringify([pose, corner])}`);
+    });
+  }
+  if (size) await page.setViewportSize(size);
+});
+
 test('STOP on any page stops all', async () => {
   const { x, width } = await page.locator('#stop').boundingBox() ?? { x: Infinity, width: 0 };
   assert.ok(x + width <= 1280, `STOP ends at ${x + width}`);
