@@ -10,6 +10,7 @@ pub mod commands;
 mod dropped;
 mod error;
 pub mod firmware;
+mod fit;
 mod fleet;
 mod kept;
 mod library;

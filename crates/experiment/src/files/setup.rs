@@ -1,6 +1,7 @@
 //! A scenario with everything it names, and the overrides of the command line.
 
 use super::error::FileError;
+use super::fit::{has_its_goal, has_its_sonars};
 use super::kept::Calibrations;
 use super::near::{did_you_mean, near, near_or_all};
 use super::read::Allowed;
@@ -9,13 +10,11 @@ use super::{
     Library, PolicyFile, RobotFile, ScenarioFile, Spread, Start, WorldFile, firmware, parameters,
 };
 use crate::random_world::{Journey, Site, Size};
-use rumbo_control::SonarId;
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
 use rumbo_plant::world::Point;
 use rumbo_sim::mega::firmware::{Firmware, Language};
-use rumbo_sim::wire_fault::Wire;
 use rumbo_sim::wiring::Divider;
 use rumbo_sim::{Config, Program, Sim};
 use rumbo_wire::Command;
@@ -486,41 +485,7 @@ pub fn goal_seen_from(start: &Start, goal_m: Point) -> Command {
     }
 }
 
-/// Reports a goal that only a random world could provide.
-fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileError> {
-    let asks = scenario.commands.iter().any(|timed| timed.goal_of_world);
-    if !asks || world.random.is_some() || world.goal_m.is_some() {
-        return Ok(());
-    }
-    Err(FileError::Setting(format!(
-        "scenario {}: its goal is that of the world, and world {} has none; give a world with goal_m or [random], or goal_m in place of goal",
-        scenario.name, world.name
-    )))
-}
-
 /// Sets one parameter, of the plant or of the control core, whichever has the name.
-/// Whether what is to fail is there.
-fn has_its_sonars(whose: &str, scenario: &ScenarioFile, rig: &Rig) -> Result<(), FileError> {
-    let sonars = scenario.sonar_faults.iter().map(|fault| fault.sonar);
-    let echoes = scenario.wire_faults.iter().map(|fault| fault.wire);
-    let echoes = echoes.filter_map(|wire| match wire {
-        Wire::Echo(sonar) => Some(sonar),
-        Wire::Encoder(_) => None,
-    });
-    let missing = sonars.chain(echoes).find_map(|sonar| match sonar {
-        SonarId::Left => rig.left.is_none().then_some("left"),
-        SonarId::Right => rig.right.is_none().then_some("right"),
-        SonarId::Front => rig.front.is_none().then_some("front"),
-    });
-    match missing {
-        None => Ok(()),
-        Some(sonar) => Err(FileError::Setting(format!(
-            "{whose}: its sonar `{sonar}` is to fail, and rig {} has none of that name; name another sonar, or choose another rig",
-            scenario.rig
-        ))),
-    }
-}
-
 fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), FileError> {
     let wrong = |remedy: &str| FileError::Setting(format!("parameter {name} = {value}: {remedy}"));
     let limits = Params::limits();
