@@ -352,9 +352,11 @@ impl Session {
         let (now_us, connected) = (now.target_us, self.client.connected());
         let (figures, dropped) = (self.client.link(now_us), self.observer.status().dropped);
         let baud = self.about.baud;
+        // The original program waits for its first ON.
+        let quiet = self.client.speaks_text();
         let trouble = self
             .link_watch
-            .look(now_us, &figures, connected, dropped, baud);
+            .look(now_us, &figures, connected, dropped, baud, quiet);
         if let Some(trouble) = trouble {
             self.note(Level::Warning, trouble, now);
         }

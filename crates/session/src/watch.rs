@@ -1,4 +1,4 @@
-//! Watches the link and reports trouble, at limited intervals: undecodable bytes, a full link, a noisy one.
+//! Watches the link and reports trouble, at limited intervals: a silent one, undecodable bytes, a full link, a noisy one.
 
 use crate::client::LinkFigures;
 use std::fmt;
@@ -7,6 +7,8 @@ use std::fmt;
 pub const DEFAULT_BAUD: u32 = 9_600;
 /// The same trouble is not reported again within this time \[us\].
 const AGAIN_US: u64 = 30_000_000;
+/// A robot of which nothing has come by then is reported \[us\]; one that a port resets says HELLO within two seconds.
+const SILENCE_US: u64 = 5_000_000;
 /// Undecodable bytes are reported after this many.
 const NONSENSE_BYTES: u64 = 100;
 /// More damaged frames than this within [`NOISE_US`] are reported.
@@ -60,6 +62,7 @@ pub fn check_baud(baud: u32) -> Result<Option<String>, BaudTooLow> {
 /// The kinds of trouble.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cause {
+    Silence,
     Nonsense,
     Full,
     Noise,
@@ -68,7 +71,8 @@ enum Cause {
 /// Keeps the times of the reports and the earlier figures.
 #[derive(Debug, Default)]
 pub(crate) struct LinkWatch {
-    reported: [Option<u64>; 3],
+    reported: [Option<u64>; 4],
+    began_us: Option<u64>,
     noise_from: Option<(u64, u16)>,
     dropped: Option<u8>,
     nonsense_from: Option<u64>,
@@ -76,7 +80,7 @@ pub(crate) struct LinkWatch {
 
 impl LinkWatch {
     /// Takes the figures; returns the trouble to report. `dropped`: telemetry frames left out by the robot so far,
-    /// wrapping.
+    /// wrapping. `quiet`: the robot says nothing before it is asked to.
     pub(crate) fn look(
         &mut self,
         now_us: u64,
@@ -84,10 +88,19 @@ impl LinkWatch {
         connected: bool,
         dropped: u8,
         baud: u32,
+        quiet: bool,
     ) -> Option<String> {
+        let silent = self.silent(now_us, link.received_bytes) && !quiet;
         let nonsense = self.nonsense(connected, link.received_bytes);
         let left_out = self.left_out(dropped);
         let noise = self.noise(now_us, link.crc_errors);
+        if silent && self.is_due(Cause::Silence, now_us) {
+            return Some(
+                "nothing comes from the robot: is it on, is this the port of its Bluetooth module and not of its USB cable, \
+                 are TXD and RXD exchanged? With the original program it is silent until its first ON (--text)"
+                    .to_owned(),
+            );
+        }
         if nonsense && self.is_due(Cause::Nonsense, now_us) {
             return Some(format!(
                 "bytes arrive that are neither frames nor rows of text: is {baud} baud the robot's speed? --baud sets it"
@@ -104,6 +117,12 @@ impl LinkWatch {
             ));
         }
         None
+    }
+
+    /// Whether nothing has arrived since the beginning.
+    fn silent(&mut self, now_us: u64, received_bytes: u64) -> bool {
+        let began_us = *self.began_us.get_or_insert(now_us);
+        received_bytes == 0 && now_us >= began_us + SILENCE_US
     }
 
     /// Whether many bytes arrived since the robot was last connected.
@@ -190,7 +209,7 @@ mod tests {
             ..LinkFigures::default()
         };
         let mut look = |t_s: u64, figures: LinkFigures, connected, dropped| {
-            watch.look(t_s * 1_000_000, &figures, connected, dropped, 9_600)
+            watch.look(t_s * 1_000_000, &figures, connected, dropped, 9_600, false)
         };
         assert_eq!(look(0, figures(0, 0), false, 250), None);
         let said = look(1, figures(150, 0), false, 250).unwrap();
@@ -204,5 +223,23 @@ mod tests {
         assert_eq!(look(20, figures(900, 40), true, 2), None);
         assert_eq!(look(40, figures(900, 45), true, 2), None);
         assert!(look(41, figures(900, 64), true, 2).is_some());
+    }
+
+    #[test]
+    fn a_robot_of_which_nothing_comes_is_reported_with_what_to_look_at() {
+        let look = |received_bytes: u64, quiet: bool| {
+            let mut watch = LinkWatch::default();
+            let figures = LinkFigures {
+                received_bytes,
+                ..LinkFigures::default()
+            };
+            let mut at = |t_s: u64| watch.look(t_s * 1_000_000, &figures, false, 0, 9_600, quiet);
+            assert_eq!(at(3), None);
+            assert_eq!(at(7), None);
+            at(8)
+        };
+        assert!(look(0, false).unwrap().contains("Bluetooth"));
+        assert_eq!(look(0, true), None);
+        assert_eq!(look(1, false), None);
     }
 }

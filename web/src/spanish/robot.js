@@ -149,6 +149,8 @@ export const ROBOT = {
   'connected; the robot speaks the original program\'s text: nothing is acknowledged, and it goes on by itself when the link is lost':
     'conectado; el robot habla el texto del programa original: nada se confirma, y sigue por su cuenta si se pierde el enlace',
   'nothing received from the robot for some seconds, though it is on': 'no se recibe nada del robot desde hace unos segundos, aunque está en marcha',
+  'nothing comes from the robot: is it on, is this the port of its Bluetooth module and not of its USB cable, are TXD and RXD exchanged? With the original program it is silent until its first ON (--text)':
+    'no llega nada del robot: ¿está encendido, es este el puerto de su módulo Bluetooth y no el del cable USB, están cambiados TXD y RXD? Con el programa original calla hasta el primer ON (--text)',
   'bytes arrive that are neither frames nor rows of text: is {} baud the robot\'s speed? --baud sets it':
     'llegan bytes que no son ni tramas ni líneas de texto: ¿es {} baudios la velocidad del robot? Se fija con --baud',
   'the link is full: the robot left out {} telemetry frames': 'el enlace está lleno: el robot omitió {} tramas de telemetría',

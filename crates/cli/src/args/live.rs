@@ -55,8 +55,8 @@ pub(crate) struct LabArgs {
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "\
 Examples:
-  rumbo connect /dev/ttyACM0
-  rumbo connect /dev/rfcomm0 --baud 9600
+  rumbo connect /dev/rfcomm0
+  rumbo connect /dev/ttyUSB0 --baud 57600
   rumbo connect COM5
   rumbo connect /dev/ttyUSB0 --text
   rumbo connect tcp:192.168.1.7:2000 --no-browser

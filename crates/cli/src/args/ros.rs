@@ -14,7 +14,7 @@ Examples:
   rumbo ros lab
   rumbo ros lab --scenario mode8-goals --namespace first --port 8361
   rumbo ros lab --robots 4
-  rumbo ros connect /dev/ttyACM0 --domain 7
+  rumbo ros connect /dev/rfcomm0 --domain 7
   rumbo ros replay out/mode1-7.mcap --speed 2
 
 No ROS installation is needed. Connecting arms nothing; STOP of the dashboard always stops the robot. ROS 2 asks nobody for a password:
@@ -61,7 +61,7 @@ Examples:
     /// A real robot, with its dashboard
     #[command(after_help = "\
 Examples:
-  rumbo ros connect /dev/ttyACM0
+  rumbo ros connect /dev/rfcomm0
   rumbo ros connect tcp:192.168.1.7:2000 --network")]
     Connect(Box<ConnectArgs>),
     /// A log, once
