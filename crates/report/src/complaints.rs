@@ -1,10 +1,10 @@
-//! Failures of a run's program or robot, in the reader's language.
+//! Failures of a run's program or robot, and notes beside them, in the reader's language.
 //!
 //! A failure is an English line, as the command line prints it. There are few kinds of lines; faults and refusals have
 //! fixed wordings, translated in `content/es/messages.md`. A line without a translation (from a newer program) is
 //! shown as it is.
 
-use crate::text::{Language, with};
+use crate::text::{Language, escape, quoted, with};
 use crate::words;
 use rumbo_control::Fault;
 use rumbo_wire::Refusal;
@@ -16,11 +16,26 @@ pub(crate) struct Complaint {
     pub(crate) english: String,
 }
 
+impl Complaint {
+    /// As HTML.
+    pub(crate) fn html(&self) -> String {
+        let english = escape(&self.english);
+        let span = format!("<span lang=\"en\" translate=\"no\">{english}</span>");
+        match (self.own.is_empty(), english.is_empty()) {
+            (_, true) => quoted(&self.own),
+            (true, false) => span,
+            (false, false) => format!("{} ({span})", quoted(&self.own)),
+        }
+    }
+}
+
 /// The complaint that a line makes, in a language.
 pub(crate) fn complaint(language: Language, line: &str) -> Complaint {
     let spanish = match language {
         Language::English => None,
-        Language::Spanish => of_robot(line).or_else(|| of_image(line)),
+        Language::Spanish => of_robot(line)
+            .or_else(|| of_image(line))
+            .or_else(|| of_note(line)),
     };
     match (spanish, language) {
         (Some(complaint), _) => complaint,
@@ -88,6 +103,62 @@ fn of_image(line: &str) -> Option<Complaint> {
     })
 }
 
+/// Notes beside a run or a hand-in, with names where values stand, and their names in `messages.md`.
+const NOTES: [(&str, &str); 6] = [
+    (
+        "firmware {name}: it never drove a motor; are its pins those of wiring {wiring}? (docs/emulator.md)",
+        "no-motor",
+    ),
+    (
+        "firmware {name}: nothing came over the Bluetooth link, {link} in wiring {wiring}, on no other either",
+        "no-link",
+    ),
+    (
+        "firmware {name}: nothing came over the Bluetooth link, {link} in wiring {wiring}, but on {others}",
+        "other-link",
+    ),
+    (
+        "handed in as an image: its compiler is not known",
+        "image-handed-in",
+    ),
+    (
+        "compiled with {what} {is}; the assignment's marks are for {wanted}",
+        "other-compiler",
+    ),
+    (
+        "it switches the robot's pins more than {most} times a second, which no motor follows; the run was ended",
+        "too-many-edges",
+    ),
+];
+
+/// One of [`NOTES`].
+fn of_note(line: &str) -> Option<Complaint> {
+    let (values, name) = NOTES
+        .iter()
+        .find_map(|(form, name)| Some((values(form, line)?, name)))?;
+    Some(Complaint {
+        own: with(spanish(name)?, &values),
+        english: String::new(),
+    })
+}
+
+/// What stands in a line where a form has names.
+fn values<'a>(form: &'static str, line: &'a str) -> Option<Vec<(&'static str, &'a str)>> {
+    let mut values = Vec::new();
+    let (before, mut form) = form.split_once('{').unwrap_or((form, ""));
+    let mut line = line.strip_prefix(before)?;
+    while let Some((name, rest)) = form.split_once('}') {
+        let (between, next) = rest.split_once('{').unwrap_or((rest, ""));
+        let (value, after) = match next.is_empty() {
+            true => (line.strip_suffix(between)?, ""),
+            false => line.split_once(between)?,
+        };
+        values.push((name, value));
+        (form, line) = (next, after);
+    }
+    line.is_empty().then_some(values)
+}
+
 /// A text of `content/es/messages.md`.
 fn spanish(name: &str) -> Option<&'static str> {
     let messages = words::messages().ok()?;
@@ -125,12 +196,48 @@ mod tests {
     }
 
     #[test]
-    fn every_message_is_one_of_a_fault_a_refusal_or_an_end() {
+    fn notes_are_translated_with_their_values_and_others_stay() {
+        let name = "a: but on b";
+        for (line, own) in [
+            (
+                format!("firmware {name}: it never drove a motor; are its pins those of wiring mode_1? (docs/emulator.md)"),
+                "no movió ningún motor; ¿son sus pines los del cableado mode_1?",
+            ),
+            (
+                format!("firmware {name}: nothing came over the Bluetooth link, Serial1 in wiring final, but on Serial (USB), Serial3"),
+                "no llegó nada por el enlace Bluetooth, Serial1 en el cableado final; sí por Serial (USB), Serial3",
+            ),
+            (
+                format!("firmware {name}: nothing came over the Bluetooth link, Serial1 in wiring final, on no other either"),
+                "no llegó nada por el enlace Bluetooth, Serial1 en el cableado final, ni por otro",
+            ),
+            (
+                "handed in as an image: its compiler is not known".into(),
+                "entregado como imagen: no se conoce su compilador",
+            ),
+            (
+                "compiled with avr-gcc 7.3; the assignment's marks are for 5.4.0".into(),
+                "compilado con avr-gcc 7.3; las calificaciones del enunciado son para 5.4.0",
+            ),
+            (
+                "it switches the robot's pins more than 25000 times a second, which no motor follows; the run was ended".into(),
+                "conmuta los pines del robot más de 25000 veces por segundo",
+            ),
+        ] {
+            let spanish = complaint(Language::Spanish, &line);
+            assert!(spanish.own.contains(own) && spanish.english.is_empty(), "{line}: {spanish:?}");
+            assert!(!spanish.own.contains("{{"), "{spanish:?}");
+        }
+    }
+
+    #[test]
+    fn every_message_is_one_of_a_fault_a_refusal_an_end_or_a_note() {
         let faults = Fault::ALL.map(|fault| format!("Fault::{fault:?}"));
         let refusals = Refusal::ALL.map(|refusal| format!("Refusal::{refusal:?}"));
         let ends = ENDS.map(|(_, name)| name.to_owned());
         let lines = ["fault", "refused", "image"].map(String::from);
-        let mut due = [&faults[..], &refusals, &ends, &lines].concat();
+        let notes = NOTES.map(|(_, name)| name.to_owned());
+        let mut due = [&faults[..], &refusals, &ends, &notes, &lines].concat();
         due.sort();
         let known: Vec<_> = words::messages().unwrap().keys().cloned().collect();
         assert_eq!(known, due);

@@ -6,6 +6,7 @@
 use crate::chapters::maps;
 use crate::chapters::panels::pwm_panel;
 use crate::chapters::parts::{DISTANCE, LEFT, REFERENCE, RIGHT, SPEED, TIME};
+use crate::complaints::complaint;
 use crate::judge;
 use crate::metric_names::{Shown, shown};
 use crate::signals::{CM, Outcome, Place, RPM};
@@ -68,9 +69,9 @@ pub fn student(
 ) -> String {
     let mut body = verdict(mark, language);
     let notes = [notes, &mark.notes].concat();
-    body += &list(NOTES.of(language), &notes, "note");
+    body += &list(language, NOTES, &notes);
     if mark.refused.is_empty() {
-        body += &list(ENDED.of(language), &mark.ended, "note");
+        body += &list(language, ENDED, &mark.ended);
         body += &points(assignment, mark, language);
         body += &advice(assignment, mark, language);
         body += &curves(assignment, mark, language);
@@ -97,7 +98,7 @@ pub fn class(
     language: Language,
     links: &[String],
 ) -> String {
-    let mut body = list(NOTES.of(language), notes, "note");
+    let mut body = list(language, NOTES, notes);
     body += &heading(DISTRIBUTION.of(language));
     body += &distribution(assignment, marks, language);
     body += &heading(MARKS.of(language));
@@ -140,17 +141,17 @@ pub fn class(
     )
 }
 
-fn list(title: &str, lines: &[String], class: &str) -> String {
+fn list(language: Language, title: Text, lines: &[String]) -> String {
     if lines.is_empty() {
         return String::new();
     }
     let items = lines
         .iter()
-        .map(|line| format!("<li>{}</li>\n", escape(line)));
+        .map(|line| format!("<li>{}</li>\n", complaint(language, line).html()));
     let items: String = items.collect();
     format!(
-        "<div class=\"{class}\"><p>{}</p><ul>\n{items}</ul></div>\n",
-        escape(title)
+        "<div class=\"note\"><p>{}</p><ul>\n{items}</ul></div>\n",
+        escape(title.of(language))
     )
 }
 

@@ -1,10 +1,10 @@
 //! Metrics against their limits, as people read them.
 
-use crate::complaints::{self, Complaint};
+use crate::complaints;
 use crate::metric_names::{Shown, shown};
 use crate::signals::Outcome;
 use crate::table::{Cell, Tone, table};
-use crate::text::{Language, Text, escape, quoted, with, word};
+use crate::text::{Language, Text, escape, with, word};
 use rumbo_experiment::files::Bounds;
 
 pub(crate) fn capital(text: &str) -> String {
@@ -166,16 +166,7 @@ fn complaints(language: Language, outcome: &Outcome) -> String {
         outcome.setup.scenario.limits.keys().any(of)
     };
     let complaint = |line: &String| {
-        let Complaint { own, english } = complaints::complaint(language, line);
-        let span = format!(
-            "<span lang=\"en\" translate=\"no\">{}</span>",
-            escape(&english)
-        );
-        let said = match (own.is_empty(), english.is_empty()) {
-            (_, true) => quoted(&own),
-            (true, false) => span,
-            (false, false) => format!("{} ({span})", quoted(&own)),
-        };
+        let said = complaints::complaint(language, line).html();
         let name = name_of(&outcome.result.scenario);
         let message = with(
             &escape(MESSAGE.of(language)),
