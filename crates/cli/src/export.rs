@@ -53,6 +53,13 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     let figures = figures::of_one(&log);
     for format in formats {
         match format {
+            // Nobody asked for one: the tables are what there is.
+            Format::Svg if figures.is_empty() && args.formats.is_empty() => {
+                output::note(&format!(
+                    "{}: holds no signals to draw, so there is no figure",
+                    args.log.display()
+                ));
+            }
             Format::Svg | Format::Png if figures.is_empty() => {
                 return Err(Failure::Input(format!(
                     "{}: holds no signals to draw; --format csv writes what there is",

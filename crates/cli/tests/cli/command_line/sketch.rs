@@ -61,6 +61,11 @@ fn the_log_of_a_headless_run_shows_what_a_sketch_does_and_prints() {
         &["run", "mode1", "--sketch", "mine", "--out", "logs"],
     );
     assert_ne!(run.status.code(), Some(2), "{}", stderr(&run));
+    // It sends no telemetry, so there is nothing to draw: no error where no figure was asked for.
+    let usual = rumbo(&bench, &["export", "logs/mode1-1.mcap", "--out", "usual"]);
+    assert!(usual.status.success(), "{}", stderr(&usual));
+    assert!(stderr(&usual).contains("there is no figure"));
+    assert!(bench.join("usual/mode1-1.instruments.csv").is_file());
     let export = rumbo(&bench, &["export", "logs/mode1-1.mcap", "--format", "csv"]);
     assert!(export.status.success(), "{}", stderr(&export));
     let csv = |name: &str| std::fs::read_to_string(bench.join(name)).unwrap();
