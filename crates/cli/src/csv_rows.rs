@@ -10,6 +10,9 @@ use rumbo_wire::text::{Row, RowKind};
 use std::f64::consts::PI;
 use std::path::Path;
 
+/// Most of a first line that an error shows \[characters\]: every header has fewer.
+const MOST_SHOWN: usize = 160;
+
 /// Conversion of a column: its unit's factor, and the limits of its values.
 pub(crate) struct Column {
     original: &'static csv::Column,
@@ -100,15 +103,16 @@ fn unknown(header: &str) -> String {
         due.filter(|name| found.contains(name)).count()
     };
     let nearest = RowKind::ALL.into_iter().max_by_key(matching);
+    // Where lines end otherwise, all of the file is its first line.
+    let shown: String = header.chars().take(MOST_SHOWN).collect();
     match nearest.filter(|kind| matching(kind) > 2) {
         Some(kind) => format!(
-            "`{header}` is no header of the original program; the nearest is that of {}: {}",
+            "`{shown}` is no header of the original program; the nearest is that of {}: {}",
             modes(kind),
             header_of(kind)
         ),
         None => format!(
-            "`{}` is neither a header of the original program nor a line of a capture; `rumbo import --help` shows the headers",
-            header.chars().take(60).collect::<String>()
+            "`{shown}` is neither a header of the original program nor a line of a capture; `rumbo import --help` shows the headers"
         ),
     }
 }
