@@ -9,7 +9,7 @@
 //! shorter reach. A point counts only if no other obstacle stands between it and the apex, so a slanted face that gives
 //! no echo hides what is behind it.
 
-use libm::{acos, cos, sin, sqrt};
+use libm::{acos, cos, sincos, sqrt};
 
 use crate::world::{Obstacle, Point, World, add, cross, dot, scale, sub};
 
@@ -84,7 +84,24 @@ struct Candidate {
 /// The nearest echo in the cone at an instant, `None` without one.
 #[must_use]
 pub fn nearest(world: &World, now_us: u64, cone: &Cone, hearing: &Hearing) -> Option<Return> {
-    let edge = |angle: f64| [cos(angle), sin(angle)];
+    let echo = candidate(world, now_us, cone, hearing)?;
+    Some(Return {
+        range_m: echo.range_m,
+        incidence_rad: acos(echo.facing.clamp(-1.0, 1.0)),
+        corner: echo.corner,
+    })
+}
+
+/// The range of [`nearest`].
+pub(crate) fn nearest_m(world: &World, now_us: u64, cone: &Cone, hearing: &Hearing) -> Option<f64> {
+    candidate(world, now_us, cone, hearing).map(|echo| echo.range_m)
+}
+
+fn candidate(world: &World, now_us: u64, cone: &Cone, hearing: &Hearing) -> Option<Candidate> {
+    let edge = |angle_rad: f64| {
+        let (s, c) = sincos(angle_rad);
+        [c, s]
+    };
     let query = Query {
         apex: cone.apex,
         right: edge(cone.axis_rad - cone.half_angle_rad),
@@ -104,9 +121,10 @@ pub fn nearest(world: &World, now_us: u64, cone: &Cone, hearing: &Hearing) -> Op
             continue;
         }
         if obstacle.contains(cone.apex) {
-            return Some(Return {
+            return Some(Candidate {
+                at: cone.apex,
                 range_m: 0.0,
-                incidence_rad: 0.0,
+                facing: 1.0,
                 corner: false,
             });
         }
@@ -126,11 +144,7 @@ pub fn nearest(world: &World, now_us: u64, cone: &Cone, hearing: &Hearing) -> Op
             }
         });
     }
-    best.map(|candidate| Return {
-        range_m: candidate.range_m,
-        incidence_rad: acos(candidate.facing.clamp(-1.0, 1.0)),
-        corner: candidate.corner,
-    })
+    best
 }
 
 impl Query {

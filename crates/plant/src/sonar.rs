@@ -133,6 +133,9 @@ pub struct Sonar {
     params: params::Sonar,
     sound_m_s: f64,
     cycle_m: f64,
+    /// Weakness of an echo from `noise_full_m` and beyond, in motion and undisturbed, and the growth of faults there: most
+    /// echoes are such ones, and powers cost much.
+    far: [f64; 2],
     noise: Noise,
 }
 
@@ -141,10 +144,16 @@ impl Sonar {
     #[must_use]
     pub fn new(params: &params::Sonar, noise: Noise) -> Self {
         let sound_m_s = 331.3 + 0.606 * params.temperature_c;
+        let far_weakness = pow(
+            params.noise_full_m / params.noise_range_m,
+            params.noise_growth,
+        );
+        let far = [far_weakness, pow(far_weakness, params.fault_growth)];
         Self {
             params: *params,
             sound_m_s,
             cycle_m: 0.5 * sound_m_s / params.carrier_hz,
+            far,
             noise,
         }
     }
@@ -172,7 +181,7 @@ impl Sonar {
             incidence_limit_rad,
             corner_reach_m: self.params.corner_reach_m,
         };
-        cone::nearest(world, now_us, &cone, &hearing).map(|echo| echo.range_m)
+        cone::nearest_m(world, now_us, &cone, &hearing)
     }
 
     /// Triggers sonar `id` now. False if its line is not low: the trigger is then ignored.
@@ -241,7 +250,11 @@ impl Sonar {
     /// The reading of an echo from `range_m`; `None` if it is missed.
     fn reading_m(&self, own: usize, ping: u64, range_m: f64, weakness: f64) -> Option<f64> {
         let p = &self.params;
-        let growth = pow(weakness, p.fault_growth);
+        let growth = if weakness == self.far[0] {
+            self.far[1]
+        } else {
+            pow(weakness, p.fault_growth)
+        };
         if self.draw(own, 1).chance(ping, p.loss_rate * growth) {
             return None;
         }
@@ -279,11 +292,12 @@ impl Sonar {
 
     fn weakness(&self, range_m: f64, unsteady: f64) -> f64 {
         let p = &self.params;
-        unsteady
-            * pow(
-                range_m.min(p.noise_full_m) / p.noise_range_m,
-                p.noise_growth,
-            )
+        let growth = if range_m < p.noise_full_m {
+            pow(range_m / p.noise_range_m, p.noise_growth)
+        } else {
+            self.far[0]
+        };
+        unsteady * growth
     }
 
     /// Error of timing a wrong cycle of the burst, for a standard normal draw.
