@@ -13,15 +13,18 @@ pub(super) struct Bodies<S: Simd> {
     x_m: V<S>,
     y_m: V<S>,
     heading_rad: V<S>,
-    forward_m_s: V<S>,
-    yaw_rad_s: V<S>,
+    /// What the last step moved, and how long it took.
+    moved_m: V<S>,
+    turned_rad: V<S>,
+    dt_s: f64,
     reach_m: V<S>,
     clearance_m: V<S>,
     /// Dry friction that blocked wheels feel.
     pub(super) resist_n_m: [V<S>; 2],
 }
 
-/// The lanes of touches that begin in a step, and the touches.
+/// The lanes of touches that begin in a step, and the touches there.
+#[derive(Default)]
 pub(super) struct Impacts {
     pub(super) lanes: Bits,
     pub(super) each: [Option<Impact>; LANES],
@@ -41,8 +44,9 @@ impl<S: Simd> Bodies<S> {
             x_m: gather(simd, |lane| pose(lane).x_m),
             y_m: gather(simd, |lane| pose(lane).y_m),
             heading_rad: gather(simd, |lane| pose(lane).heading_rad),
-            forward_m_s: gather(simd, |lane| group[lane].1.speed[0]),
-            yaw_rad_s: gather(simd, |lane| group[lane].1.speed[1]),
+            moved_m: splat(simd, 0.0),
+            turned_rad: splat(simd, 0.0),
+            dt_s: 1.0,
             reach_m: gather(simd, |lane| group[lane].0.footprint.reach_m),
             clearance_m: gather(simd, |lane| group[lane].1.contact.clearance_m),
             resist_n_m: [resist(0), resist(1)],
@@ -52,7 +56,10 @@ impl<S: Simd> Bodies<S> {
     #[inline(always)]
     pub(super) fn scatter(&self, lane: usize, state: &mut State) {
         state.pose = self.pose(lane);
-        state.speed = [self.forward_m_s[lane], self.yaw_rad_s[lane]];
+        state.speed = [
+            self.moved_m[lane] / self.dt_s,
+            self.turned_rad[lane] / self.dt_s,
+        ];
         state.contact.clearance_m = self.clearance_m[lane];
     }
 
@@ -73,7 +80,8 @@ impl<S: Simd> Bodies<S> {
         group: &mut [Lane<'_>; LANES],
         motion: &Motion<S>,
         dt_s: f64,
-    ) -> Impacts {
+        impacts: &mut Impacts,
+    ) {
         let zero = splat(simd, 0.0);
         let moves = motion.forward_m.simd_ne(zero) | motion.yaw_rad.simd_ne(zero);
         let before = [self.x_m, self.y_m, self.heading_rad];
@@ -81,11 +89,12 @@ impl<S: Simd> Bodies<S> {
         self.x_m += motion.forward_m * ahead;
         self.y_m += motion.forward_m * across;
         self.heading_rad += motion.yaw_rad;
-        let impacts = self.settle(simd, group, &before, moves, dt_s);
+        self.settle(simd, group, &before, moves, dt_s, impacts);
 
         let moved_m = (self.x_m - before[0]) * ahead + (self.y_m - before[1]) * across;
-        self.forward_m_s = moves.select(moved_m / dt_s, zero);
-        self.yaw_rad_s = moves.select((self.heading_rad - before[2]) / dt_s, zero);
+        self.moved_m = moves.select(moved_m, zero);
+        self.turned_rad = moves.select(self.heading_rad - before[2], zero);
+        self.dt_s = dt_s;
         let heading_rad = self.heading_rad;
         let (half, turn) = (splat(simd, PI), splat(simd, TAU));
         let wrapped = heading_rad.simd_gt(half).select(
@@ -97,7 +106,6 @@ impl<S: Simd> Bodies<S> {
         self.x_m = moves.select(self.x_m, before[0]);
         self.y_m = moves.select(self.y_m, before[1]);
         self.heading_rad = moves.select(wrapped, before[2]);
-        impacts
     }
 
     /// `Footprint::settle` for all that move.
@@ -109,23 +117,20 @@ impl<S: Simd> Bodies<S> {
         before: &[V<S>; 3],
         moves: M<S>,
         dt_s: f64,
-    ) -> Impacts {
+        impacts: &mut Impacts,
+    ) {
         let way = (self.x_m - before[0]).abs() + (self.y_m - before[1]).abs();
         let turn_rad = (self.heading_rad - before[2]).abs();
         let left_m = self.clearance_m - (way + self.reach_m * turn_rad);
         self.clearance_m = moves.select(left_m, self.clearance_m);
         let clear = left_m.simd_gt(splat(simd, 0.0));
-        let mut impacts = Impacts {
-            lanes: Bits(0),
-            each: [None; LANES],
-        };
+        impacts.lanes = Bits(0);
         for lane in Bits(Bits::of(moves).0 & !Bits::of(clear).0) {
             let (plant, state) = &mut group[lane];
-            let [x_m, y_m, heading_rad] = [0, 1, 2].map(|i: usize| before[i][lane]);
             let before = Pose {
-                x_m,
-                y_m,
-                heading_rad,
+                x_m: before[0][lane],
+                y_m: before[1][lane],
+                heading_rad: before[2][lane],
             };
             let mut pose = self.pose(lane);
             let contact = &mut state.contact;
@@ -148,6 +153,5 @@ impl<S: Simd> Bodies<S> {
             impacts.lanes.0 |= u64::from(impact.is_some()) << lane;
             impacts.each[lane] = impact;
         }
-        impacts
     }
 }

@@ -100,7 +100,7 @@ impl<S: Simd> Wheels<S> {
 }
 
 impl<S: Simd> Wheels<S> {
-    /// `Drivetrain::roll`, but for the draws of knots and the slip; gives the angle turned.
+    /// `Drivetrain::roll`, but for passing knots and the slip; gives the angle turned.
     #[inline(always)]
     fn roll(&mut self, simd: S, speed_rad_s: V<S>, dt_s: f64) -> V<S> {
         let one = splat(simd, 1.0);
@@ -127,7 +127,7 @@ impl<S: Simd> Wheels<S> {
 
 /// The drivetrains of a group.
 pub(super) struct Drivetrains<S: Simd> {
-    pub(super) wheels: [Wheels<S>; 2],
+    wheels: [Wheels<S>; 2],
     drop_v: V<S>,
     two_diodes_v: V<S>,
     loop_ohm: V<S>,
@@ -225,21 +225,13 @@ impl<S: Simd> Drivetrains<S> {
         ];
         let new = self.speeds_after(simd, group, old, torque_n_m, dry_n_m, dt_s);
 
-        let rolled = [
-            self.wheels[0].roll(simd, new[0], dt_s),
-            self.wheels[1].roll(simd, new[1], dt_s),
-        ];
         let [left, right] = &mut self.wheels;
-        wander::draw(
-            simd,
-            group,
-            [
-                &mut left.floor,
-                &mut left.slipping,
-                &mut right.floor,
-                &mut right.slipping,
-            ],
-        );
+        let rolled = [
+            left.roll(simd, new[0], dt_s),
+            right.roll(simd, new[1], dt_s),
+        ];
+        wander::pass(simd, group, &mut left.floor, &mut right.floor);
+        wander::pass(simd, group, &mut left.slipping, &mut right.slipping);
         let left_m = left.way_m(simd, self.slip, rolled[0]);
         let right_m = right.way_m(simd, self.slip, rolled[1]);
         Motion {

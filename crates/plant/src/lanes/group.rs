@@ -54,9 +54,31 @@ impl<S: Simd> Discs<S> {
         self.passed = Bits::of(up | down);
     }
 
-    /// Reports the edges of one robot.
+    /// Passes the first edge of one robot.
     #[inline(always)]
-    fn report(
+    fn pass(&mut self, lane: usize, plant: &Plant, state: &mut State) -> Event {
+        let i = self.side.index();
+        let sensor = &mut state.encoders[i];
+        let level = plant.encoders[i].pass(sensor, self.up.has(lane));
+        self.below_rad[lane] = sensor.below_rad;
+        self.above_rad[lane] = sensor.above_rad;
+        Event::Edge {
+            wheel: self.side,
+            at_us: state.now_us + self.first_us[lane] as u64,
+            level,
+        }
+    }
+
+    /// There are more edges in the step.
+    #[inline(always)]
+    fn is_passed_again(&self, lane: usize) -> bool {
+        let to_rad = self.turn_rad[1][lane];
+        to_rad >= self.above_rad[lane] || to_rad < self.below_rad[lane]
+    }
+
+    /// Passes the other edges of one robot, if there are some.
+    #[inline(always)]
+    fn pass_others(
         &mut self,
         lane: usize,
         plant: &Plant,
@@ -65,19 +87,13 @@ impl<S: Simd> Discs<S> {
         queue: &mut Queue,
         events: &mut impl FnMut(Event),
     ) {
-        let (i, wheel) = (self.side.index(), self.side);
-        let level = plant.encoders[i].pass(&mut state.encoders[i], self.up.has(lane));
-        let at_us = state.now_us + self.first_us[lane] as u64;
-        let event = Event::Edge {
-            wheel,
-            at_us,
-            level,
-        };
-        queue.put(event, events);
-        let turn_rad = [self.turn_rad[0][lane], self.turn_rad[1][lane]];
-        plant.pass_edges(state, wheel, turn_rad, step_us, queue, events);
-        self.below_rad[lane] = state.encoders[i].below_rad;
-        self.above_rad[lane] = state.encoders[i].above_rad;
+        if self.is_passed_again(lane) {
+            let turn_rad = [self.turn_rad[0][lane], self.turn_rad[1][lane]];
+            plant.pass_edges(state, self.side, turn_rad, step_us, queue, events);
+            let sensor = &state.encoders[self.side.index()];
+            self.below_rad[lane] = sensor.below_rad;
+            self.above_rad[lane] = sensor.above_rad;
+        }
     }
 }
 
@@ -90,16 +106,23 @@ pub(super) fn advance<S: Simd>(
     events: &mut impl FnMut(usize, Event),
 ) {
     let phase_us = group[0].1.now_us % STEP_US;
+    let mut start_us = [0; LANES];
+    for (start_us, (_, state)) in start_us.iter_mut().zip(group.iter()) {
+        *start_us = state.now_us;
+    }
     let mut drivetrains = Drivetrains::gather(simd, group);
     let mut bodies = Bodies::gather(simd, group);
-    let mut discs = [Side::Left, Side::Right].map(|side| Discs::gather(simd, group, side));
+    let mut discs = [
+        Discs::gather(simd, group, Side::Left),
+        Discs::gather(simd, group, Side::Right),
+    ];
     // Time to the next edge of an echo line [us].
-    let mut due_us = gather(simd, |lane| due_us(group[lane].1, 0));
+    let mut due_us = gather(simd, |lane| due_us(group[lane].1, start_us[lane]));
     let mut turning = Bits(0);
     for (lane, (_, state)) in group.iter().enumerate() {
         turning.0 |= u64::from(state.servo.angle_rad != state.servo.target_rad) << lane;
     }
-    let mut queue = Queue::default();
+    let (mut queue, mut impacts) = (Queue::default(), Impacts::default());
 
     let mut passed_us = 0;
     while passed_us < for_us {
@@ -109,41 +132,55 @@ pub(super) fn advance<S: Simd>(
         let before_rad = drivetrains.angles();
         let motion = drivetrains.step(simd, group, dt_s, &bodies.resist_n_m);
         let after_rad = drivetrains.angles();
-        let impacts = bodies.step(simd, group, &motion, dt_s);
+        bodies.step(simd, group, &motion, dt_s, &mut impacts);
         passed_us += step_us;
-        let [left, right] = &mut discs;
-        left.turn(simd, before_rad[0], after_rad[0], step_us as f64);
-        right.turn(simd, before_rad[1], after_rad[1], step_us as f64);
+        discs[0].turn(simd, before_rad[0], after_rad[0], step_us as f64);
+        discs[1].turn(simd, before_rad[1], after_rad[1], step_us as f64);
         let echoes = Bits::of(due_us.simd_le(splat(simd, passed_us as f64)));
 
         for lane in turning {
             let (plant, state) = &mut group[lane];
             state.servo.step(&plant.servo, dt_s);
         }
-        for lane in Bits(left.passed.0 | right.passed.0 | impacts.lanes.0 | echoes.0) {
+        let [left, right] = [discs[0].passed.0, discs[1].passed.0];
+        let others = impacts.lanes.0 | echoes.0;
+        // Which of two wheels it is, and which edge comes first, is as chance has it: the less that branches by it, the
+        // better.
+        for lane in Bits((left ^ right) & !others) {
+            let (plant, state) = &mut group[lane];
+            let discs = &mut discs[(right >> lane & 1) as usize];
+            state.now_us = start_us[lane] + (passed_us - step_us);
+            let event = discs.pass(lane, plant, state);
+            let events = &mut |event| events(lane, event);
+            events(event);
+            discs.pass_others(lane, plant, state, step_us as f64, &mut queue, events);
+            queue.flush(events);
+        }
+        for lane in Bits(left & right | others) {
             let (plant, state) = &mut group[lane];
             let events = &mut |event| events(lane, event);
-            for discs in [&mut *left, &mut *right] {
+            state.now_us = start_us[lane] + (passed_us - step_us);
+            for discs in &mut discs {
                 if discs.passed.has(lane) {
-                    discs.report(lane, plant, state, step_us as f64, &mut queue, events);
+                    queue.put(discs.pass(lane, plant, state), events);
+                    discs.pass_others(lane, plant, state, step_us as f64, &mut queue, events);
                 }
             }
-            state.now_us += step_us;
+            state.now_us = start_us[lane] + passed_us;
             touch(&impacts, lane, state, &mut queue, events);
             if echoes.has(lane) {
                 Plant::pass_echoes(state, &mut queue, events);
-                due_us[lane] = self::due_us(state, passed_us);
+                due_us[lane] = self::due_us(state, start_us[lane]);
             }
-            state.now_us -= step_us;
             queue.flush(events);
         }
-        for (_, state) in group.iter_mut() {
-            state.now_us += step_us;
-        }
     }
-    for (lane, (_, state)) in group.iter_mut().enumerate() {
-        drivetrains.scatter(lane, &mut state.drivetrain);
-        bodies.scatter(lane, state);
+    if for_us > 0 {
+        for (lane, (_, state)) in group.iter_mut().enumerate() {
+            state.now_us = start_us[lane] + for_us;
+            drivetrains.scatter(lane, &mut state.drivetrain);
+            bodies.scatter(lane, state);
+        }
     }
 }
 
@@ -155,7 +192,9 @@ fn touch(
     queue: &mut Queue,
     events: &mut impl FnMut(Event),
 ) {
-    if let Some(impact) = impacts.each[lane] {
+    if impacts.lanes.has(lane)
+        && let Some(impact) = impacts.each[lane]
+    {
         let event = Event::Contact {
             at_us: state.now_us,
             obstacle: impact.obstacle,
@@ -167,8 +206,7 @@ fn touch(
 
 /// Time from the group's start to the next edge of a robot's echo lines [us]; infinite without one.
 #[inline(always)]
-fn due_us(state: &State, passed_us: u64) -> f64 {
-    let start_us = state.now_us - passed_us;
+fn due_us(state: &State, start_us: u64) -> f64 {
     let due = state.sonars.iter().filter_map(|sonar| sonar.due_us());
     due.min()
         .map_or(f64::INFINITY, |due_us| (due_us - start_us) as f64)

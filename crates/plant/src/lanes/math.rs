@@ -1,7 +1,6 @@
 //! libm's sine and cosine and the quantile of the standard normal, with their bits.
 
-use super::LANES;
-use super::vector::{Bits, M, V, gather, splat};
+use super::vector::{Bits, M, V, splat};
 use crate::noise::{self, CENTRE, SIDE};
 use fearless_simd::prelude::*;
 
@@ -108,21 +107,20 @@ fn k_cos<W: Simd>(simd: W, x: V<W>, y: V<W>) -> V<W> {
 
 /// [`noise::normal_quantile`]; beyond one in 7e10 robot by robot.
 #[inline(always)]
-pub(super) fn normal_quantile<W: Simd>(simd: W, p: &[f64; LANES]) -> [f64; LANES] {
-    let (all, zero) = (gather(simd, |lane| p[lane]), splat(simd, 0.0));
-    let q = all - 0.5;
+pub(super) fn normal_quantile<W: Simd>(simd: W, p: V<W>) -> V<W> {
+    let q = p - 0.5;
     let mut z = q * ratio(simd, splat(simd, 0.180_625) - q * q, &CENTRE);
     let beside = q.abs().simd_gt(splat(simd, 0.425));
     if !Bits::of(beside).none() {
-        let below = q.simd_lt(zero);
-        let r = (-log(simd, below.select(all, splat(simd, 1.0) - all))).sqrt();
+        let below = q.simd_lt(splat(simd, 0.0));
+        let r = (-log(simd, below.select(p, splat(simd, 1.0) - p))).sqrt();
         let size = ratio(simd, r - 1.6, &SIDE);
         z = beside.select(below.select(-size, size), z);
         for lane in Bits(Bits::of(beside).0 & !Bits::of(r.simd_le(splat(simd, 5.0))).0) {
             z[lane] = noise::normal_quantile(p[lane]);
         }
     }
-    z.into()
+    z
 }
 
 /// libm's logarithm of a normal number below 1.
@@ -162,6 +160,8 @@ fn horner<W: Simd>(simd: W, x: V<W>, c: &[f64; 8]) -> V<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lanes::LANES;
+    use crate::lanes::vector::gather;
     use fearless_simd::Level;
 
     /// Calls `with` with so many groups of uniform numbers.
@@ -212,8 +212,9 @@ mod tests {
             return;
         };
         let check = |p: [f64; LANES]| {
+            let z = normal_quantile(simd, gather(simd, |lane| p[lane]));
             let expected = p.map(noise::normal_quantile);
-            assert_eq!(bits(normal_quantile(simd, &p)), bits(expected), "{p:?}");
+            assert_eq!(bits(z.into()), bits(expected), "{p:?}");
         };
         groups(50_000, &check);
         groups(10_000, |u| check(u.map(|u| 0.08 * u)));

@@ -25,7 +25,7 @@ pub(super) fn gather<S: Simd>(simd: S, of: impl Fn(usize) -> f64) -> V<S> {
 }
 
 /// The numbers of those lanes whose bit is set, from the first on.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Bits(pub(super) u64);
 
 impl Bits {

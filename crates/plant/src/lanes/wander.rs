@@ -1,6 +1,8 @@
 //! Floor and slip along the way, in lanes: see [`crate::drivetrain`].
+//!
+//! The knots that come next are drawn for all robots when the first of them comes to one that is not drawn yet.
 
-use super::vector::{Bits, V, gather, splat};
+use super::vector::{Bits, M, V, gather, splat};
 use super::{LANES, Lane, math};
 use crate::drivetrain::wander::{KNOT_SD, Wander};
 use crate::noise::source;
@@ -9,30 +11,48 @@ use fearless_simd::prelude::*;
 /// A disturbance of one wheel of each robot.
 pub(super) struct Wanders<S: Simd> {
     source: u32,
-    knot: [u64; LANES],
     phase: V<S>,
     from: V<S>,
     to: V<S>,
+    /// The knot after `to`, where it is drawn.
+    next: V<S>,
+    drawn: Bits,
+    /// The number of `to` at the start, and how many have been passed since.
+    knot: [u64; LANES],
+    passed: V<S>,
 }
 
 impl<S: Simd> Wanders<S> {
     #[inline(always)]
     pub(super) fn gather(simd: S, source: u32, of: impl Fn(usize) -> Wander) -> Self {
+        let zero = splat(simd, 0.0);
+        let mut knot = [0; LANES];
+        for (lane, knot) in knot.iter_mut().enumerate() {
+            *knot = of(lane).knot;
+        }
         Self {
             source: source::DRIVETRAIN + source,
-            knot: [of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)].map(|one| one.knot),
             phase: gather(simd, |lane| of(lane).phase),
             from: gather(simd, |lane| of(lane).from),
             to: gather(simd, |lane| of(lane).to),
+            next: zero,
+            drawn: Bits(0),
+            knot,
+            passed: zero,
         }
     }
 
     #[inline(always)]
     pub(super) fn scatter(&self, lane: usize, one: &mut Wander) {
-        one.knot = self.knot[lane];
+        one.knot = self.knot(lane);
         one.phase = self.phase[lane];
         one.from = self.from[lane];
         one.to = self.to[lane];
+    }
+
+    #[inline(always)]
+    fn knot(&self, lane: usize) -> u64 {
+        self.knot[lane] + self.passed[lane] as u64
     }
 
     /// The values here.
@@ -41,44 +61,57 @@ impl<S: Simd> Wanders<S> {
         self.from + (self.to - self.from) * self.phase
     }
 
-    /// Goes on by so many knots; the new knots are drawn by [`draw`].
+    /// Goes on by so many knots; [`pass`] follows.
     #[inline(always)]
     pub(super) fn advance(&mut self, knots: V<S>) {
         self.phase += knots;
     }
+
+    /// Where it has come to the next knot.
+    #[inline(always)]
+    fn over(&self, simd: S) -> M<S> {
+        self.phase.simd_ge(splat(simd, 1.0))
+    }
+
+    #[inline(always)]
+    fn draw(&mut self, simd: S, group: &[Lane<'_>; LANES]) {
+        let p = gather(simd, |lane| {
+            let noise = &group[lane].0.drivetrain.noise;
+            noise.probability(self.source, self.knot(lane) + 1)
+        });
+        self.next = math::normal_quantile(simd, p) * KNOT_SD;
+        self.drawn = Bits(0xff);
+    }
+
+    #[inline(always)]
+    fn pass(&mut self, simd: S, over: M<S>) {
+        self.phase = over.select(self.phase - 1.0, self.phase);
+        self.from = over.select(self.to, self.from);
+        self.to = over.select(self.next, self.to);
+        self.passed += over.select(splat(simd, 1.0), splat(simd, 0.0));
+        self.drawn.0 &= !Bits::of(over).0;
+    }
 }
 
-/// Draws the knots that these have come to, all at once.
+/// Goes past the knots that these have come to. Both wheels draw at the same time: neither waits for the other.
 #[inline(always)]
-pub(super) fn draw<S: Simd>(simd: S, group: &[Lane<'_>; LANES], mut wanders: [&mut Wanders<S>; 4]) {
+pub(super) fn pass<S: Simd>(
+    simd: S,
+    group: &[Lane<'_>; LANES],
+    left: &mut Wanders<S>,
+    right: &mut Wanders<S>,
+) {
     loop {
-        let (mut used, mut places, mut p) = (0, [(0, 0); 4 * LANES], [0.5; 4 * LANES]);
-        for (number, wander) in wanders.iter_mut().enumerate() {
-            let over = wander.phase.simd_ge(splat(simd, 1.0));
-            let lanes = Bits::of(over);
-            if lanes.none() {
-                continue;
-            }
-            wander.phase = over.select(wander.phase - 1.0, wander.phase);
-            wander.from = over.select(wander.to, wander.from);
-            for lane in lanes {
-                wander.knot[lane] += 1;
-                let noise = &group[lane].0.drivetrain.noise;
-                places[used] = (number, lane);
-                p[used] = noise.probability(wander.source, wander.knot[lane]);
-                used += 1;
-            }
-        }
-        if used == 0 {
+        let over = [left.over(simd), right.over(simd)];
+        let lanes = [Bits::of(over[0]).0, Bits::of(over[1]).0];
+        if lanes[0] | lanes[1] == 0 {
             return;
         }
-        let (places, p) = (places.as_chunks::<LANES>().0, p.as_chunks::<LANES>().0);
-        for (places, p) in places.iter().zip(p).take(used.div_ceil(LANES)) {
-            let z = math::normal_quantile(simd, p);
-            for ((number, lane), z) in places.iter().zip(z).take(used.min(LANES)) {
-                wanders[*number].to[*lane] = KNOT_SD * z;
-            }
-            used -= used.min(LANES);
+        if lanes[0] & !left.drawn.0 | lanes[1] & !right.drawn.0 != 0 {
+            left.draw(simd, group);
+            right.draw(simd, group);
         }
+        left.pass(simd, over[0]);
+        right.pass(simd, over[1]);
     }
 }
