@@ -292,7 +292,20 @@ impl Body {
 
     /// Takes the course of another one with the same outline.
     pub(crate) fn go_as(&mut self, other: &Self) {
-        self.course.clone_from(&other.course);
+        match (&mut self.course, &other.course) {
+            // Robots of a fleet do so all the time: plain numbers, copied.
+            (
+                Course::Straight { at_us, from },
+                &Course::Straight {
+                    at_us: other_us,
+                    from: other_from,
+                },
+            ) => {
+                *at_us = other_us;
+                *from = other_from;
+            }
+            (own, course) => own.clone_from(course),
+        }
         self.fastest_m_s = other.fastest_m_s;
     }
 

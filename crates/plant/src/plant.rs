@@ -18,13 +18,18 @@ use crate::moving::{Body, Motion as BodyMotion, Velocity};
 use crate::noise::Noise;
 use crate::params::{self, Params};
 use crate::servo;
-use crate::sonar::{self, Ping, Sonar, SonarId, View};
+use crate::sonar::{self, InAir, Ping, Sonar, SonarId, View};
 use crate::world::{ShapeError, World};
 
 /// Longest physical step, and the grid it keeps to.
 pub(crate) const STEP_US: u64 = 1000;
 /// No sonar listens for longer after a burst has left.
 const IN_AIR_US: u64 = 40_000;
+
+/// The ping may still arrive somewhere then.
+const fn is_in_air(one: &InAir, now_us: u64) -> bool {
+    one.ping.rise_us + IN_AIR_US > now_us
+}
 
 /// The parts of a plant.
 #[derive(Clone, Debug, Default)]
@@ -53,8 +58,9 @@ pub struct Plant {
     sonar: Sonar,
     mounts: [Option<Mount>; 3],
     pub(crate) world: Arc<World>,
-    /// Pings of other robots that may still be in the air.
-    air: Vec<Ping>,
+    /// Pings of other robots, and when they were last received: those that may still be in the air then count.
+    air: Vec<InAir>,
+    air_us: u64,
     pub(crate) wheels_in_air: bool,
 }
 
@@ -123,6 +129,7 @@ impl Plant {
             mounts: rig.mounts(),
             world: Arc::new(world),
             air: Vec::new(),
+            air_us: 0,
             wheels_in_air,
         }
     }
@@ -242,34 +249,41 @@ impl Plant {
             .sonar
             .trigger(&mut state.sonars, sonar, now_us, &self.world, &view);
         if pings {
-            for ping in &self.air {
-                self.overhear(state, sonar, &view, ping);
-            }
+            let in_air = |one: &&InAir| is_in_air(one, self.air_us);
+            self.overhear(state, sonar, &view, self.air.iter().filter(in_air));
         }
         pings
     }
 
-    fn overhear(&self, state: &mut State, sonar: SonarId, view: &View, ping: &Ping) {
+    fn overhear<'a>(
+        &self,
+        state: &mut State,
+        sonar: SonarId,
+        view: &View,
+        pings: impl Iterator<Item = &'a InAir>,
+    ) {
         let (now_us, own) = (state.now_us, &mut state.sonars[sonar.index()]);
         self.sonar
-            .overhear_ping(own, sonar, now_us, &self.world, view, ping);
+            .overhear_pings(own, sonar, now_us, &self.world, view, pings);
     }
 
     /// Lets the sonars receive pings of other robots, which have left within the last millisecond.
     pub fn receive_pings(&mut self, state: &mut State, pings: &[Ping]) {
-        let now_us = state.now_us;
-        self.air.retain(|ping| ping.rise_us + IN_AIR_US > now_us);
+        let air_us = state.now_us;
+        self.air_us = air_us;
         if pings.is_empty() {
             return;
         }
+        self.air.retain(|one| is_in_air(one, air_us));
+        let received = self.air.len();
+        self.air.extend(pings.iter().map(InAir::new));
         for sonar in SonarId::ALL {
-            if let Some(view) = self.view(state, sonar) {
-                for ping in pings {
-                    self.overhear(state, sonar, &view, ping);
-                }
+            if state.sonars[sonar.index()].listens()
+                && let Some(view) = self.view(state, sonar)
+            {
+                self.overhear(state, sonar, &view, self.air[received..].iter());
             }
         }
-        self.air.extend(pings);
     }
 
     /// A sonar as it is now.

@@ -15,7 +15,7 @@
 //!   echo, or its second one, obstacle - body - obstacle. With two paired sonars fired one right after the other, the
 //!   second reads a few centimetres short in one of a dozen pings for that reason, and is noisier in the others.
 //!
-//! - *Crosstalk of other robots* ([`Sonar::overhear_ping`]): a burst that comes straight from the sonar of a robot that
+//! - *Crosstalk of other robots* ([`Ping`]): a burst that comes straight from the sonar of a robot that
 //!   looks here, or now and then its echo.
 //!
 //! *Weakness* is the one measure of an echo that drives these: 1 in motion at about half a metre, growing with the
@@ -23,6 +23,7 @@
 
 mod ping;
 
+pub(crate) use ping::InAir;
 pub use ping::Ping;
 
 use libm::{cos, floor, pow};
