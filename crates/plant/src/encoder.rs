@@ -6,15 +6,13 @@
 use crate::noise::{Noise, source};
 use crate::params::Params;
 
-const MOST_EDGES: usize = 32;
 const TURN_RAD: f64 = 2.0 * std::f64::consts::PI;
 
 /// The disc of one wheel's motor.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Encoder {
-    /// Boundaries within one motor turn, as angles of the wheel, ascending.
-    boundaries_rad: [f64; MOST_EDGES],
-    edges: usize,
+    /// Boundaries within one motor turn, as angles of the wheel, ascending; at least one.
+    boundaries_rad: Box<[f64]>,
     motor_turn_rad: f64,
 }
 
@@ -40,19 +38,17 @@ impl Encoder {
     /// The disc of wheel `index` (0 left, 1 right).
     #[must_use]
     pub fn new(params: &Params, noise: &Noise, index: u32) -> Self {
-        // A whole number from 1 to MOST_EDGES by the parameter's limits.
-        let edges = (params.encoder.edges_per_motor_turn as usize).clamp(1, MOST_EDGES);
+        // A whole number from 1 on by the parameter's limits.
+        let edges = (params.encoder.edges_per_motor_turn as usize).max(1);
         let motor_turn_rad = TURN_RAD / params.motor.gear_ratio;
         let pitch_rad = motor_turn_rad / edges as f64;
-        let mut boundaries_rad = [0.0; MOST_EDGES];
-        for (i, boundary_rad) in boundaries_rad.iter_mut().take(edges).enumerate() {
+        let boundary_rad = |i: usize| {
             let shift = params.encoder.spacing_error
                 * (noise.uniform(source::ENCODER + index, i as u64) - 0.5);
-            *boundary_rad = pitch_rad * (i as f64 + 0.5 + shift);
-        }
+            pitch_rad * (i as f64 + 0.5 + shift)
+        };
         Self {
-            boundaries_rad,
-            edges,
+            boundaries_rad: (0..edges).map(boundary_rad).collect(),
             motor_turn_rad,
         }
     }
@@ -60,7 +56,8 @@ impl Encoder {
     /// The sensor at this wheel angle, its count at zero.
     #[must_use]
     pub fn start(&self, angle_rad: f64) -> State {
-        let mut index = libm::floor(angle_rad / self.motor_turn_rad) as i64 * self.edges as i64;
+        let mut index =
+            libm::floor(angle_rad / self.motor_turn_rad) as i64 * self.boundaries_rad.len() as i64;
         while self.boundary_rad(index) <= angle_rad {
             index += 1;
         }
@@ -77,7 +74,9 @@ impl Encoder {
         state.count % 2 == 0
     }
 
-    /// Moves the wheel from one angle to another at constant speed and reports the edges in the order of time.
+    /// Moves the wheel from one angle to another at constant speed and reports the edges in the order of time. In most steps
+    /// there is none: a call would cost more than that.
+    #[inline(always)]
     pub fn turn(&self, state: &mut State, from_rad: f64, to_rad: f64, mut each: impl FnMut(Edge)) {
         while to_rad >= state.above_rad {
             let fraction = (state.above_rad - from_rad) / (to_rad - from_rad);
@@ -106,7 +105,7 @@ impl Encoder {
     }
 
     fn boundary_rad(&self, index: i64) -> f64 {
-        let edges = self.edges as i64;
+        let edges = self.boundaries_rad.len() as i64;
         let turn = index.div_euclid(edges) as f64;
         turn * self.motor_turn_rad + self.boundaries_rad[index.rem_euclid(edges) as usize]
     }
