@@ -5,8 +5,9 @@
 
 use crate::files::{FileError, Setup};
 use crate::metrics::{Metrics, more_is_better};
-use crate::run::{in_order, run};
+use crate::run::run_each;
 use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 /// Share of such intervals that hold the true mean difference.
@@ -41,16 +42,16 @@ pub fn run_variants<E: From<FileError>>(
         })
         .collect();
     let count = variants.len();
-    let work = |index: usize| {
-        let result = run(&variants[index % count].1, seeds[index / count])?;
-        Ok((result.pass, result.metrics))
+    let job = |index: usize| {
+        let (setup, seed) = (&variants[index % count].1, seeds[index / count]);
+        Ok((Cow::Borrowed(setup), seed))
     };
-    in_order(
+    run_each(
         rayon::current_num_threads(),
         count * seeds.len(),
-        work,
-        |index, result: Result<_, FileError>| {
-            let (pass, metrics) = result?;
+        job,
+        |_, result| (result.pass, result.metrics),
+        |index, (pass, metrics)| {
             let variant = &mut all[index % count];
             variant.passes.push(pass);
             variant.metrics.push(metrics);

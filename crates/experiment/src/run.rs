@@ -6,7 +6,7 @@
 mod batch;
 
 #[cfg(feature = "host")]
-pub use batch::{in_order, run_all, run_all_on};
+pub use batch::{in_order, run_all, run_all_on, run_each};
 
 use crate::calibrate::calibrate_simulated;
 use crate::files::{Calibrated, FileError, Setup, near, unknown};
@@ -14,6 +14,8 @@ use crate::metrics::{self, Metrics};
 use crate::operator::Operator;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_emulator::observe::waveform::Waveform;
+#[cfg(feature = "host")]
+use rumbo_plant::lanes::{LANES, Lanes};
 use rumbo_sim::Sim;
 use rumbo_sim::fleet::Fleet;
 use rumbo_sim::mega::Mega;
@@ -161,14 +163,47 @@ impl<'a> Run<'a> {
 
     /// Advances to the end of a sample, or to where a debugger halts the program.
     pub fn advance(&mut self) {
+        self.operate();
+        self.fleet.advance(self.sample_us);
+        self.draw_levels();
+        self.sample();
+    }
+
+    /// The same of several at once, none of which is over. As many single robots as there are lanes share the work.
+    #[cfg(feature = "host")]
+    fn advance_together(lanes: Lanes, runs: &mut [&mut Self]) {
+        for run in runs.iter_mut() {
+            run.operate();
+        }
+        let for_us = runs[0].sample_us - runs[0].fleet.now_us();
+        let sims = runs.iter_mut().map(|run| {
+            let alike = run.sample_us - run.fleet.now_us() == for_us;
+            run.fleet.only_mut().filter(|_| alike)
+        });
+        let sims = sims.collect::<Option<Vec<&mut Sim>>>();
+        match sims.map(<[&mut Sim; LANES]>::try_from) {
+            Some(Ok(sims)) => Sim::advance_together(lanes, sims, for_us),
+            _ => runs
+                .iter_mut()
+                .for_each(|run| run.fleet.advance(run.sample_us)),
+        }
+        for run in runs {
+            run.sample();
+        }
+    }
+
+    /// Before a sample: what the operators send.
+    fn operate(&mut self) {
         if self.fleet.now_us() >= self.sample_us {
             for (sim, member) in std::iter::zip(self.fleet.robots_mut(), &mut self.members) {
                 member.operator.step(sim);
             }
             self.sample_us = (self.fleet.now_us() + SAMPLE_US).min(self.end_us);
         }
-        self.fleet.advance(self.sample_us);
-        self.draw_levels();
+    }
+
+    /// At its end, or that of a program.
+    fn sample(&mut self) {
         if self.fleet.now_us() >= self.sample_us || self.has_ended() {
             for (sim, member) in std::iter::zip(self.fleet.robots_mut(), &mut self.members) {
                 member.trace.sample(sim);
@@ -333,16 +368,43 @@ pub fn run_by<E: From<FileError>>(
     seed: u64,
     go_on: impl FnOnce(&mut Run<'_>) -> Result<(), E>,
 ) -> Result<RunResult, E> {
-    let mut robots = Vec::new();
-    for robot in setup.robots() {
-        robots.push(match robot.of_seed(seed)? {
-            Cow::Borrowed(robot) => prepare(robot, seed)?,
-            Cow::Owned(robot) => Cow::Owned(prepare(&robot, seed)?.into_owned()),
-        });
-    }
+    let robots = prepare_all(setup, seed)?;
     let mut run = Run::new(setup, robots.iter().map(|robot| &**robot), seed)?;
     go_on(&mut run)?;
     Ok(run.judge())
+}
+
+/// Runs some, each as [`run`] does.
+#[cfg(feature = "host")]
+fn run_together(jobs: &[(Cow<'_, Setup>, u64)]) -> Vec<Result<RunResult, FileError>> {
+    let lanes = Lanes::widest();
+    let together = || -> Result<_, FileError> {
+        let prepared = jobs.iter().map(|(setup, seed)| prepare_all(setup, *seed));
+        let prepared: Vec<_> = prepared.collect::<Result<_, _>>()?;
+        let runs = std::iter::zip(jobs, &prepared)
+            .map(|((setup, seed), robots)| Run::new(setup, robots.iter().map(|r| &**r), *seed));
+        let mut runs: Vec<_> = runs.collect::<Result<_, _>>()?;
+        loop {
+            let going = runs.iter_mut().filter(|run| !run.is_over());
+            match &mut going.collect::<Vec<_>>()[..] {
+                [] => return Ok(runs.into_iter().map(|run| Ok(run.judge())).collect()),
+                going => Run::advance_together(lanes, going),
+            }
+        }
+    };
+    // One by one, an error is that of its own job.
+    together().unwrap_or_else(|_| jobs.iter().map(|(setup, seed)| run(setup, *seed)).collect())
+}
+
+/// The robots of a setup, each prepared for the seed.
+fn prepare_all(setup: &Setup, seed: u64) -> Result<Vec<Cow<'_, Setup>>, FileError> {
+    let robots = setup.robots().iter().map(|robot| {
+        Ok(match robot.of_seed(seed)? {
+            Cow::Borrowed(robot) => prepare(robot, seed)?,
+            Cow::Owned(robot) => Cow::Owned(prepare(&robot, seed)?.into_owned()),
+        })
+    });
+    robots.collect()
 }
 
 /// The setup to run: if its scenario requests it, with the parameters from a calibration of this seed's robot. The

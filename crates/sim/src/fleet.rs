@@ -153,6 +153,14 @@ impl Fleet {
         &mut self.robots[0]
     }
 
+    /// The only one of them.
+    pub fn only_mut(&mut self) -> Option<&mut Sim> {
+        match &mut self.robots[..] {
+            [only] => Some(only),
+            _ => None,
+        }
+    }
+
     /// The time of all of them [us].
     pub fn now_us(&self) -> u64 {
         self.first().now_us()

@@ -13,8 +13,9 @@ pub use axis::{Axis, AxisError, Values};
 pub use outcome::{Row, Spread, Sweep};
 
 use crate::files::{FileError, Setup};
-use crate::run::{in_order, run};
+use crate::run::{RunResult, run_each};
 use rumbo_plant::noise::{Noise, source};
+use std::borrow::Cow;
 use std::fmt;
 
 /// Most runs of a sweep.
@@ -181,17 +182,12 @@ impl Plan {
         threads: usize,
         mut handle: impl FnMut(Row) -> Result<(), E>,
     ) -> Result<(), E> {
-        let work = |index: usize| {
+        let job = |index: usize| {
             let (point, seed) = self.job(first + index);
-            let result = run(&self.setup(setup, point)?, seed)?;
-            Ok(Row::of(point, &result))
+            Ok((Cow::Owned(self.setup(setup, point)?), seed))
         };
-        in_order(
-            threads,
-            self.len() - first,
-            work,
-            |_, row: Result<Row, FileError>| handle(row?),
-        )
+        let row = |index: usize, result: RunResult| Row::of(self.job(first + index).0, &result);
+        run_each(threads, self.len() - first, job, row, |_, row| handle(row))
     }
 }
 

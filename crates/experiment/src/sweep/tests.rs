@@ -93,7 +93,7 @@ fn each_run_is_that_of_its_point_and_seed_and_can_go_on_anywhere() {
     assert_eq!(all.len(), 6);
     assert_eq!(rows(4)[..], all[4..]);
     let own = setup.with_parameters(&[("kv", 0.03)]).unwrap();
-    let result = run(&own, 4).unwrap();
+    let result = crate::run::run(&own, 4).unwrap();
     assert_eq!((all[3].point, all[3].seed), (1, 4));
     assert_eq!(
         format!("{:?}", all[3].metrics),

@@ -4,7 +4,7 @@
 
 use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Batch, Driver, OBSERVED, Robot, TRUE};
-use rumbo_experiment::files::{Kind, Library, Overrides, Setup};
+use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup};
 use rumbo_experiment::run;
 use rumbo_plant::lanes::Lanes;
 use rumbo_sim::trace::Sample;
@@ -55,6 +55,31 @@ fn of_robot(robot: &Robot) -> [u64; 8] {
         "battery_v",
     ]
     .map(value)
+}
+
+#[test]
+fn runs_that_share_lanes_are_those_of_one_by_one() {
+    let jobs = |setups: &[Setup]| -> Vec<(Setup, u64)> {
+        let setups = setups.iter().cycle().take(35);
+        setups.cloned().zip(1..).collect()
+    };
+    // The last three of 35 fill no group. Robots of other worlds, and runs of other lengths, do not disturb.
+    for jobs in [
+        jobs(&[setup("mode1")]),
+        jobs(&[setup("mode3"), setup("mode5")]),
+    ] {
+        let jobs: Vec<_> = jobs.iter().map(|(setup, seed)| (setup, *seed)).collect();
+        let mut results = Vec::new();
+        run::run_all_on::<FileError>(1, &jobs, |_, result| {
+            results.push(result);
+            Ok(())
+        })
+        .unwrap();
+        let alone = jobs
+            .iter()
+            .map(|(setup, seed)| run::run(setup, *seed).unwrap());
+        assert!(results.into_iter().eq(alone));
+    }
 }
 
 #[test]
