@@ -165,14 +165,7 @@ impl SpeedEstimator {
                 evenness_of(new, span_us, edges.turn_us)
             };
             self.turn_rad_s = turn;
-            let explained = turn * explained(new);
-            if fresh > turn + explained {
-                fresh - explained
-            } else if fresh < turn - explained {
-                fresh + explained
-            } else {
-                turn
-            }
+            fuse(turn, fresh, new)
         } else {
             fresh
         };
@@ -180,6 +173,19 @@ impl SpeedEstimator {
         self.last = edges.last;
         self.standing = false;
         evenness
+    }
+}
+
+/// Speed of a turning wheel from the mean of the last motor turn and that of the newest edges [rad/s], so many of them.
+#[must_use]
+pub fn fuse(turn_rad_s: f32, fresh_rad_s: f32, new: u16) -> f32 {
+    let explained_rad_s = turn_rad_s * explained(new);
+    if fresh_rad_s > turn_rad_s + explained_rad_s {
+        fresh_rad_s - explained_rad_s
+    } else if fresh_rad_s < turn_rad_s - explained_rad_s {
+        fresh_rad_s + explained_rad_s
+    } else {
+        turn_rad_s
     }
 }
 

@@ -10,7 +10,7 @@
 use crate::contradiction;
 use crate::error::IdentifyError;
 use crate::log::{DriveLog, Seen};
-use crate::problem::{Problem, TIMED_MODEL_ERROR, UNKNOWNS, dead_zone_pwm};
+use crate::problem::{Problem, UNKNOWNS, dead_zone_pwm};
 use crate::progress::Progress;
 use crate::replay::Nuisance;
 use crate::score::{RunScore, score};
@@ -18,6 +18,7 @@ use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationRe
 use nalgebra::{DMatrix, DVector};
 use rumbo_plant::params::Params;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Generations of each round of the search that suffice for runs of half a minute.
 pub const GENERATIONS: usize = 60;
@@ -26,8 +27,6 @@ const SEARCHES: usize = 3;
 const POPULATION: usize = 24;
 /// Half of the 95 % interval of a normal distribution, in standard deviations.
 pub(crate) const SDS_95: f64 = 1.96;
-/// Most by which the uncertainty's square grows for the residuals that the fit has taken away.
-const MOST_TAKEN: f64 = 2.0;
 /// First spread of a round, in standard deviations of the curvature.
 const SPREAD: f64 = 1.0;
 /// Longest first step of a descent, in standard deviations of what is believed beforehand.
@@ -305,23 +304,24 @@ pub(crate) fn descend<'a>(
 /// For the report's runs the inverse of the curvature H, scaled by the residuals' size. For logs of our program, in which
 /// residuals near each other have common causes such as the floor at a place, that would be too small: there it is the
 /// sandwich H^-1 (B + sum g g') H^-1, with B the curvature of what is believed beforehand and g the gradient of one block
-/// of residuals, among which anything may be correlated.
+/// of residuals, among which anything may be correlated, at the fit without it.
 fn standard_deviations(problem: &Problem<'_>, z: &DVector<f64>) -> Result<Vec<f64>, IdentifyError> {
     let jacobian = jacobian(problem, z)?;
     let residuals = problem.residuals_at(z);
     let curvature = jacobian.transpose() * &jacobian;
+    let inverse = curvature.clone().try_inverse().ok_or_else(undetermined)?;
     let middle = match problem.is_the_reports {
         true => {
             let freedom = residuals.len().saturating_sub(z.len()).max(1) as f64;
             &curvature * (residuals.norm_squared() / freedom).max(1.0)
         }
-        false => correlated(problem, z, &jacobian, &residuals) * TIMED_MODEL_ERROR.powi(2),
+        false => correlated(problem, z, &jacobian, &residuals, &inverse),
     };
-    let inverse = curvature.try_inverse().ok_or_else(undetermined)?;
     let covariance = &inverse * middle * &inverse;
     // What is believed beforehand bounds the uncertainty, whatever the residuals' size.
-    let sd = |variance: &f64| variance.sqrt().min(1.0);
-    Ok(covariance.diagonal().iter().map(sd).collect())
+    let sd =
+        |(index, variance): (usize, &f64)| (problem.model_error(index) * variance.sqrt()).min(1.0);
+    Ok(covariance.diagonal().iter().enumerate().map(sd).collect())
 }
 
 fn jacobian(problem: &Problem<'_>, z: &DVector<f64>) -> Result<DMatrix<f64>, IdentifyError> {
@@ -338,31 +338,43 @@ fn undetermined() -> IdentifyError {
     IdentifyError::Optimiser("the runs leave a parameter undetermined".into())
 }
 
-/// B + sum g g' of the sandwich.
+/// B + sum g g' of the sandwich, given H^-1.
+///
+/// A fit takes part of each block's residuals away, the more the fewer blocks tell a parameter. So a block's gradient is
+/// what it would be at the fit without it, (1 - C H^-1)^-1 g with C the block's curvature: the jackknife.
 fn correlated(
     problem: &Problem<'_>,
     z: &DVector<f64>,
     jacobian: &DMatrix<f64>,
     residuals: &DVector<f64>,
+    inverse: &DMatrix<f64>,
 ) -> DMatrix<f64> {
-    let blocks = problem.blocks(z);
-    let count = blocks.iter().flatten().max().map_or(0, |last| last + 1);
-    let (mut gradients, mut middle) = (
-        DMatrix::zeros(count, z.len()),
-        DMatrix::zeros(z.len(), z.len()),
-    );
-    for (i, block) in blocks.iter().enumerate() {
-        let row = jacobian.row(i);
+    let unknowns = z.len();
+    let of_block = || {
+        (
+            DMatrix::zeros(unknowns, unknowns),
+            DVector::<f64>::zeros(unknowns),
+        )
+    };
+    let mut blocks = BTreeMap::new();
+    let mut middle = DMatrix::zeros(unknowns, unknowns);
+    for (i, block) in problem.blocks(z).iter().enumerate() {
+        let slopes = jacobian.row(i).transpose();
+        let curvature = &slopes * slopes.transpose();
         match block {
             Some(block) => {
-                let mut gradient = gradients.row_mut(*block);
-                gradient += row * residuals[i];
+                let (of_all, gradient) = blocks.entry(*block).or_insert_with(of_block);
+                *of_all += curvature;
+                *gradient += slopes * residuals[i];
             }
-            None => middle += row.transpose() * row,
+            None => middle += curvature,
         }
     }
-    // The fit has taken part of each block's residuals away.
-    let blocks = count as f64;
-    let freedom = (blocks / (blocks - z.len() as f64).max(1.0)).min(MOST_TAKEN);
-    middle + gradients.transpose() * &gradients * freedom
+    for (curvature, gradient) in blocks.into_values() {
+        let left = DMatrix::identity(unknowns, unknowns) - curvature * inverse;
+        // What only this block tells has no fit without it; what is believed beforehand bounds that.
+        let without = left.lu().solve(&gradient).unwrap_or(gradient);
+        middle += &without * without.transpose();
+    }
+    middle
 }

@@ -33,6 +33,7 @@ mod report;
 mod residuals;
 mod rewrite;
 mod score;
+mod shown;
 mod stretches;
 mod wall;
 

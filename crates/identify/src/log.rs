@@ -42,6 +42,8 @@ pub struct Row {
     pub range_m: [f64; 2],
     /// Over what time the speeds of the left and right wheel were measured.
     pub window: [Window; 2],
+    /// Whether the left and right wheel have too few edges for a speed, near a standstill.
+    pub edgeless: [bool; 2],
 }
 
 /// The time over which a speed was measured.
@@ -335,6 +337,7 @@ impl Columns {
             speed_rad_s: [0.0; 2],
             range_m: [0.0; 2],
             window: [Window::default(); 2],
+            edgeless: [false; 2],
         };
         match self.signals {
             Signals::Speeds { speed, reference } => {

@@ -6,6 +6,9 @@
 //! | straight on | rolling resistance; the body's mass, which is known, gives the torques their scale |
 //! | turns on the spot | scrubbing, damping of the yaw, yaw inertia |
 //!
+//! A frame of telemetry tells in which 40 ms the duty changed, not at which of the four ticks. Rests last a tick more than
+//! whole frames, so that changes fall on all four alike.
+//!
 //! Fast stretches are followed by slow ones: how long the friction remembers. Each movement on the floor has its
 //! opposite, so that the robot ends about where it began.
 
@@ -82,12 +85,16 @@ pub fn plan() -> [Part; 3] {
 
 fn in_the_air() -> Vec<Step> {
     let direction = |movement| {
-        let ramp = (30..=50).step_by(4).map(|pwm| step(movement, pwm, 0.4));
+        let ramp = (30..=50).step_by(4).map(|pwm| step(movement, pwm, 0.41));
         // Coasting shows friction over inertia, whatever the motors do.
         let levels = [70, 110, 180, 255];
-        let levels = levels.map(|pwm| [step(movement, pwm, 1.2), rest(0.8)]);
+        let levels = levels.map(|pwm| [step(movement, pwm, 1.2), rest(0.81)]);
         // How easily a wheel runs that has gone fast for long, and for how long it does.
-        let after = [step(movement, 255, 5.0), step(movement, 60, 3.5), rest(0.8)];
+        let after = [
+            step(movement, 255, 5.0),
+            step(movement, 60, 3.5),
+            rest(0.81),
+        ];
         let starts = [100, 0, 160, 0].map(|pwm| step(movement, pwm, 0.7));
         let parts: [Vec<Step>; 4] = [ramp.collect(), levels.concat(), after.into(), starts.into()];
         parts.concat()
@@ -108,12 +115,16 @@ fn straight_on() -> Vec<Step> {
         (170, 0.8),
     ] {
         for movement in [Movement::Forward, Movement::Backward] {
-            steps.extend([step(movement, pwm, seconds), rest(0.7)]);
+            steps.extend([step(movement, pwm, seconds), rest(0.71)]);
         }
     }
     // Fast to slow, without a stop.
     for movement in [Movement::Forward, Movement::Backward] {
-        steps.extend([step(movement, 150, 0.7), step(movement, 75, 1.2), rest(0.7)]);
+        steps.extend([
+            step(movement, 150, 0.7),
+            step(movement, 75, 1.2),
+            rest(0.71),
+        ]);
     }
     steps
 }
@@ -127,9 +138,13 @@ fn turns() -> Vec<Step> {
         (180, 0.8),
         (115, 1.2),
         (220, 0.7),
+        (95, 1.3),
+        (160, 0.9),
+        (130, 1.1),
+        (200, 0.75),
     ] {
         for movement in [Movement::TurnLeft, Movement::TurnRight] {
-            steps.extend([step(movement, pwm, seconds), rest(0.6)]);
+            steps.extend([step(movement, pwm, seconds), rest(0.61)]);
         }
     }
     for pair in [
@@ -137,7 +152,7 @@ fn turns() -> Vec<Step> {
         [Movement::PivotRightForward, Movement::PivotRightBackward],
     ] {
         for movement in pair {
-            steps.extend([step(movement, 130, 0.9), rest(0.6)]);
+            steps.extend([step(movement, 130, 0.9), rest(0.61)]);
         }
     }
     steps

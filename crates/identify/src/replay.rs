@@ -9,6 +9,7 @@
 //! for the duty, which is the prediction's input.
 
 use crate::log::{DriveLog, Program, Row, Window};
+use crate::shown::Angles;
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side, State};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
@@ -109,7 +110,7 @@ impl<'a> Replay<'a> {
         };
         let (mut state, mut way_m, mut heading_rad) = (self.start(), 0.0, 0.0);
         let mut rows = self.log.rows.iter().peekable();
-        for now_ms in 0..=self.log.duration_ms() {
+        for now_ms in 0..=self.log.duration_ms() + SHIFT_MS {
             trace.angle_rad.push(angles(&state));
             trace.way_m.push(way_m);
             trace.heading_rad.push(heading_rad);
@@ -126,7 +127,7 @@ impl<'a> Replay<'a> {
     /// Speeds that the rows of the log would have shown in this trace, rad/s.
     #[must_use]
     pub(crate) fn speeds(&self, trace: &Trace) -> Vec<[f64; 2]> {
-        let speed = |row: &Row| window_speeds(&row.window, &trace.angle_rad, 0);
+        let speed = |row: &Row| self.shown(&row.window, &trace.angle_rad, 0);
         self.log.rows.iter().map(speed).collect()
     }
 
@@ -163,7 +164,7 @@ impl<'a> Replay<'a> {
                 // Rows between two windows' ends show the same window again.
                 if shown_ms != Some(now_ms) {
                     shown_ms = Some(now_ms);
-                    now.correct(correct, row, window_speeds(&row.window, &angle_rad, 0));
+                    now.correct(correct, row, self.shown(&row.window, &angle_rad, 0));
                 }
                 observed.push(now);
             }
@@ -183,7 +184,7 @@ impl<'a> Replay<'a> {
         let (angle_rad, from_ms) = self.run_on(index, observed, target);
         Some((
             target,
-            window_speeds(&self.log.rows[target].window, &angle_rad, from_ms),
+            self.shown(&self.log.rows[target].window, &angle_rad, from_ms),
         ))
     }
 
@@ -192,7 +193,10 @@ impl<'a> Replay<'a> {
     pub(crate) fn span(&self, index: usize, observed: &Observed, last: usize) -> Vec<Predicted> {
         let (angle_rad, from_ms) = self.run_on(index, observed, last);
         let within = |row: &Row| {
-            let begins = |window: &Window| window.end_ms >= from_ms + window.length_ms + SHIFT_MS;
+            // The simulated wheel's may be somewhat longer.
+            let begins = |window: &Window| {
+                window.end_ms >= from_ms + window.length_ms + window.length_ms / 4 + SHIFT_MS
+            };
             row.window.iter().all(begins)
         };
         let rows = (index + 1..=last).filter(|&target| within(&self.log.rows[target]));
@@ -214,12 +218,12 @@ impl<'a> Replay<'a> {
                 end_ms: window.end_ms + by_ms,
                 ..window
             });
-            window_speeds(&window, angle_rad, from_ms + SHIFT_MS)
+            self.shown(&window, angle_rad, from_ms + SHIFT_MS)
         };
         let (before, after) = (later(0), later(2 * SHIFT_MS));
         Predicted {
             row,
-            speed_rad_s: window_speeds(&shown.window, angle_rad, from_ms),
+            speed_rad_s: self.shown(&shown.window, angle_rad, from_ms),
             slope_rad_s2: [0, 1].map(|i| (after[i] - before[i]) / (2e-3 * SHIFT_MS as f64)),
         }
     }
@@ -231,11 +235,11 @@ impl<'a> Replay<'a> {
         Some(index + after.iter().position(|row| row.measured_ms() >= due_ms)?)
     }
 
-    /// Both wheels' angles at each millisecond from row `index`, where the state is `observed`, to row `target`; and
-    /// when the first one is.
+    /// Both wheels' angles at each millisecond from row `index`, where the state is `observed`, to row `target` and so much
+    /// longer that its slope shows; and when the first one is.
     fn run_on(&self, index: usize, observed: &Observed, target: usize) -> (Vec<[f64; 2]>, usize) {
         let from_ms = self.log.rows[index].measured_ms();
-        let until_ms = self.log.rows[target].measured_ms();
+        let until_ms = self.log.rows[target].measured_ms() + SHIFT_MS;
         let mut now = *observed;
         let applied = self.log.rows.partition_point(|row| row.at_ms < from_ms);
         let mut rows = self.log.rows[applied..].iter().peekable();
@@ -258,6 +262,19 @@ impl<'a> Replay<'a> {
             now.resist_n_m[i] *=
                 (1.0 - motion.wheel_rad[i].abs() * self.forgetting_per_rad[i]).max(0.0);
         }
+    }
+
+    /// What the program would have shown with these windows, had the wheels' angles of each millisecond from `from_ms`
+    /// on been these, rad/s.
+    fn shown(&self, window: &[Window; 2], angle_rad: &[[f64; 2]], from_ms: usize) -> [f64; 2] {
+        [0, 1].map(|wheel| {
+            let angles = Angles {
+                angle_rad,
+                from_ms,
+                wheel,
+            };
+            angles.shown(self.log.program, window[wheel])
+        })
     }
 
     fn apply(&self, state: &mut State, row: &Row) {
@@ -296,15 +313,4 @@ impl Observed {
 
 fn angles(state: &State) -> [f64; 2] {
     state.wheels.map(|wheel| wheel.angle_rad)
-}
-
-/// What these windows would have shown if the wheels' angles, of each millisecond from `from_ms` on, had been these,
-/// rad/s. Windows that reach beyond end there.
-fn window_speeds(window: &[Window; 2], angle_rad: &[[f64; 2]], from_ms: usize) -> [f64; 2] {
-    let speed = |i: usize| {
-        let Window { end_ms, length_ms } = window[i];
-        let at = |ms: usize| angle_rad[ms.saturating_sub(from_ms).min(angle_rad.len() - 1)][i];
-        (at(end_ms) - at(end_ms.saturating_sub(length_ms))) * 1000.0 / length_ms as f64
-    };
-    [speed(0), speed(1)]
 }

@@ -18,7 +18,7 @@ const CORRELATION_S: f64 = 0.2;
 const AHEAD_EVERY: usize = 4;
 /// Logs of our program: a speed's error that counts as one standard deviation in the air, where only the edges' spacing
 /// and the time of a change of duty are uncertain, and on the floor, which is rough; rad/s.
-const AIR_SD_RAD_S: f64 = 0.1;
+const AIR_SD_RAD_S: f64 = 0.04;
 const FLOOR_SD_RAD_S: f64 = 0.25;
 /// They are predicted over this time from an observed state, one stretch after the other.
 const SPAN_MS: usize = 1_000;
@@ -26,8 +26,9 @@ const SPAN_MS: usize = 1_000;
 const CHANGE_SD_S: f64 = 0.011;
 /// Faster than this a wheel that shows no edge for 40 ms cannot be: 16.4 mrad in that time.
 const STANDING_RAD_S: f64 = 0.5;
-/// Slower ones have less than a motor turn in 65 ms, rad/s.
-const SLOWEST_RAD_S: f64 = 2.0;
+/// Slower ones have too few edges, rad/s. A limit that slow turns reach would leave out those that the floor happens to
+/// slow down, and so take it for an easier one.
+const SLOWEST_RAD_S: f64 = 1.0;
 /// In so short a time an observed state follows the measured speeds.
 const SETTLED_MS: usize = 200;
 /// Errors closer in time than this may have one cause, such as the floor at a place: they are independent beyond, ms.
@@ -158,16 +159,20 @@ fn settled(log: &DriveLog, from: Option<usize>) -> Option<usize> {
     Some((from..until).find(constant).unwrap_or(from))
 }
 
-/// A speed's error, rad/s. A wheel counts as standing that turns so slowly that no edge comes for long, and just after a
-/// standstill or before one there are too few edges for a speed.
-fn error(predicted_rad_s: f64, measured_rad_s: f64) -> f64 {
-    if measured_rad_s == 0.0 {
-        let moving = (predicted_rad_s.abs() - STANDING_RAD_S).max(0.0);
-        moving.copysign(predicted_rad_s)
+/// A speed's error, rad/s, and its slope, rad/s2; none where there are too few edges for a speed. A wheel counts as
+/// standing that turns so slowly that no edge comes for long.
+fn error(predicted: &Predicted, row: &Row, wheel: usize) -> Option<(f64, f64)> {
+    let (predicted_rad_s, measured_rad_s) = (predicted.speed_rad_s[wheel], row.speed_rad_s[wheel]);
+    if row.edgeless[wheel] {
+        None
+    } else if measured_rad_s == 0.0 {
+        let moving_rad_s = (predicted_rad_s.abs() - STANDING_RAD_S).max(0.0);
+        Some((moving_rad_s.copysign(predicted_rad_s), 0.0))
     } else if measured_rad_s.abs() < SLOWEST_RAD_S {
-        0.0
+        None
     } else {
-        predicted_rad_s - measured_rad_s
+        let error_rad_s = predicted_rad_s - measured_rad_s;
+        Some((error_rad_s, predicted.slope_rad_s2[wheel]))
     }
 }
 
@@ -184,23 +189,19 @@ fn compare(
         let first = segments.partition_point(|each| *each < segments[segment[0].row]);
         // The frame that shows a change first is partly from before.
         let rows = segment.iter().filter(|predicted| predicted.row > first);
-        let errors = |predicted: &Predicted| {
-            let measured = log.rows[predicted.row].speed_rad_s;
-            [0, 1].map(|i| error(predicted.speed_rad_s[i], measured[i]))
-        };
+        let errors = rows.clone().flat_map(|predicted| {
+            let row = &log.rows[predicted.row];
+            let of = move |wheel| Some((row, error(predicted, row, wheel)?));
+            [of(0), of(1)].into_iter().flatten()
+        });
         let (mut explained, mut slopes) = (0.0, 0.0);
-        for predicted in rows.clone() {
-            for (error, slope) in errors(predicted).iter().zip(predicted.slope_rad_s2) {
-                explained += weight * weight * slope * error;
-                slopes += weight * weight * slope * slope;
-            }
+        for (_, (error, slope)) in errors.clone() {
+            explained += weight * weight * slope * error;
+            slopes += weight * weight * slope * slope;
         }
         let shift_s = explained / (slopes + CHANGE_SD_S.powi(-2));
-        for predicted in rows {
-            let row = &log.rows[predicted.row];
-            for (error, slope) in errors(predicted).iter().zip(predicted.slope_rad_s2) {
-                residuals.push(row, robust(weight * (error - slope * shift_s)));
-            }
+        for (row, (error, slope)) in errors {
+            residuals.push(row, robust(weight * (error - slope * shift_s)));
         }
         if segment.iter().any(|predicted| predicted.row > first) {
             let row = &log.rows[segment[0].row];

@@ -1,8 +1,8 @@
 //! Logs of our own program, cut into stretches in which the duty is known throughout.
 //!
 //! A telemetry frame each 40 ms has the duty applied at its tick, and the wheel speeds at its tick and 20 ms before. A
-//! speed is the mean over the last motor turn, up to the last edge ([`rumbo_control::speed`]): the window of a row. The
-//! duty changes somewhere within the 40 ms before a frame, at one of four ticks, and takes effect 3 ms later: 12 ms
+//! speed is that of the last motor turn, up to the last edge: the window of a row. How it is joined with that of the newest
+//! edges ([`rumbo_control::speed`]) is in `shown.rs`. The duty changes somewhere within the 40 ms before a frame, at one of four ticks, and takes effect 3 ms later: 12 ms
 //! before the frame on average.
 //!
 //! A stretch ends where frames are lost, where the robot's clock jumps (it was switched off and on), where the mode
@@ -34,6 +34,11 @@ const LEAD_MS: i64 = 200;
 /// Angle of one edge, and of one motor turn, rad.
 const EDGE_RAD: f64 = std::f64::consts::TAU / 384.0;
 const MOTOR_TURN_RAD: f64 = 8.0 * EDGE_RAD;
+/// A wheel that has turned by less since it stood has no whole motor turn of edges yet, rad: it turned less fast before a
+/// frame than at it.
+const TELLING_RAD: f64 = 2.0 * MOTOR_TURN_RAD;
+/// So many frames before a wheel stands it sticks sooner or later than a model says.
+const STOPPING_ROWS: usize = 2;
 /// Time over which a standing wheel is known to stand.
 const STANDING_MS: f64 = 40.0;
 /// Shortest and longest window: a tick, and what a wheel takes that is about to stop.
@@ -127,7 +132,8 @@ impl Stretches {
             return;
         };
         let from_ms = first.t_ms - LEAD_MS;
-        let rows: Vec<Row> = frames.iter().map(|frame| frame.row(from_ms)).collect();
+        let mut rows: Vec<Row> = frames.iter().map(|frame| frame.row(from_ms)).collect();
+        mark_edgeless(&mut rows);
         let on_floor = surface(first.t_ms);
         let name = path
             .file_name()
@@ -163,6 +169,7 @@ impl Frame {
             duty: self.duty,
             reference_rad_s: self.reference_rad_s,
             speed_rad_s: self.speed_rad_s,
+            edgeless: [false; 2],
             range_m: [0.0; 2],
             window: self.speed_rad_s.map(|speed_rad_s| {
                 let (half_edge_ms, length_ms) = match speed_rad_s.abs() {
@@ -175,6 +182,29 @@ impl Frame {
                     length_ms: length_ms.clamp(WINDOW_MS.0, WINDOW_MS.1).round() as usize,
                 }
             }),
+        }
+    }
+}
+
+/// Marks where a wheel has too few edges for a speed: it has not turned far enough since it stood, it is about to stand, or
+/// has just come to.
+fn mark_edgeless(rows: &mut [Row]) {
+    for wheel in [0, 1] {
+        let stands: Vec<bool> = rows
+            .iter()
+            .map(|row| row.speed_rad_s[wheel] == 0.0)
+            .collect();
+        let (mut turned_rad, mut before_ms) = (0.0, rows.first().map_or(0, |row| row.at_ms));
+        for (index, row) in rows.iter_mut().enumerate() {
+            let passed_ms = row.at_ms - std::mem::replace(&mut before_ms, row.at_ms);
+            turned_rad += row.speed_rad_s[wheel].abs() * passed_ms as f64 / 1e3;
+            row.edgeless[wheel] = if stands[index] {
+                turned_rad = 0.0;
+                index == 0 || !stands[index - 1]
+            } else {
+                let soon = &stands[index..stands.len().min(index + 1 + STOPPING_ROWS)];
+                turned_rad < TELLING_RAD || soon.contains(&true)
+            };
         }
     }
 }

@@ -34,6 +34,8 @@ const ANSWER_US: u64 = 5_000_000;
 const SILENT_US: u64 = 500_000;
 /// A robot that was switched ON or OFF reports it within this time [us].
 const ON_US: u64 = 2_500_000;
+/// A person takes so long to move the robot, in which its friction forgets how fast the wheels were [us].
+const MOVED_US: u64 = 15_000_000;
 /// Going forward, the robot is stopped for good when something is nearer ahead than this [m]: on the free floor that is
 /// asked for nothing is.
 const AHEAD_M: f64 = 0.25;
@@ -76,6 +78,10 @@ pub(crate) fn in_lab(drive: &Drive<'_>, robot: &str, seed: u64) -> Result<Drivin
     let asked = Arc::new(AtomicBool::new(false));
     let done = all_parts(&mut driven, battery_v.into(), &asked, |driven, part| {
         driven.robot().lift(!part.on_floor);
+        let until_us = driven.now_us() + MOVED_US;
+        while driven.now_us() < until_us {
+            pass(driven, &asked)?;
+        }
         Ok(())
     });
     let path = end(driven, done)?;

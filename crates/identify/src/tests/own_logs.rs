@@ -1,7 +1,9 @@
 //! Logs of our own program, cut into stretches.
 
+use crate::replay::{Correct, Nuisance, Replay};
 use crate::{BATTERY, IN_THE_AIR, ON_THE_FLOOR, Stretches, stretches};
 use rumbo_log::{Level, Log, LoggedEvent, Row};
+use rumbo_plant::params::Params;
 use std::path::Path;
 
 /// A frame of mode 0 that drives, with ground truth that is far off.
@@ -38,6 +40,46 @@ fn cut(rows: Vec<Row>, events: &[(f64, String)]) -> Stretches {
     };
     log.events = events.iter().map(event).collect();
     stretches(Path::new("logs/robot.mcap"), &log).unwrap()
+}
+
+#[test]
+fn the_last_speed_of_a_prediction_changes_as_the_one_before() {
+    let log = cut(driven(at(0, 4_000)), &[]).logs.remove(0);
+    let nuisance = Nuisance {
+        battery_v: 7.4,
+        floor_scale: 1.0,
+    };
+    let replay = Replay::new(&log, &Params::default(), nuisance);
+    let observed = replay.observe(Correct::Speeds);
+    let last = log.rows.len() - 1;
+    let span = replay.span(20, &observed[20], last);
+    let [.., before, end] = &span[..] else {
+        panic!("{} rows", span.len());
+    };
+    assert_eq!(end.row, last);
+    for wheel in [0, 1] {
+        let change_rad_s2 = end.slope_rad_s2[wheel] - before.slope_rad_s2[wheel];
+        assert!(change_rad_s2.abs() < 1.0, "{change_rad_s2}");
+    }
+}
+
+#[test]
+fn a_wheel_that_starts_or_is_about_to_stand_has_too_few_edges() {
+    let mut rows = driven(at(0, 4_000));
+    for row in &mut rows {
+        if row.t_ms < 1_000 || row.t_ms >= 3_000 {
+            row.set("left_rad_s", 0.0);
+        }
+    }
+    let log = cut(rows, &[]).logs.remove(0);
+    let edgeless = |wheel: usize| -> Vec<usize> {
+        let rows = log.rows.iter().enumerate();
+        let rows = rows.filter(|(_, row)| row.edgeless[wheel]);
+        rows.map(|(index, _)| index).collect()
+    };
+    // 6 rad/s and 40 ms are nearly two motor turns.
+    assert_eq!(edgeless(0), [0, 25, 73, 74, 75]);
+    assert_eq!(edgeless(1), [0, 1]);
 }
 
 fn at(from_ms: i64, until_ms: i64) -> impl Iterator<Item = i64> {
