@@ -1,5 +1,5 @@
 //! CSVs as spreadsheets write them: semicolons or tabulators between the columns, commas in the numbers, quoted cells, a
-//! first line that names the separator, UTF-16, a byte-order mark.
+//! first line that names the separator, UTF-16, a byte-order mark, lines ended as on an old Macintosh.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -16,13 +16,16 @@ impl fmt::Display for NoText {
 
 impl std::error::Error for NoText {}
 
-/// The text of a CSV of numbers with commas between the columns and points in the numbers, whatever stood there. Lines stay lines, but for a first one
-/// that only names the separator (`sep=;`), which a spreadsheet does not count either.
+/// The text of a CSV of numbers with commas between the columns and points in the numbers, whatever stood there. Lines
+/// stay lines, but for a first one that only names the separator (`sep=;`), which a spreadsheet does not count either.
 ///
 /// # Errors
 /// Bytes that are no text.
 pub fn plain(bytes: &[u8]) -> Result<Cow<'_, str>, NoText> {
-    let whole = text_of(bytes)?;
+    let mut whole = text_of(bytes)?;
+    if whole.contains('\r') && !whole.contains('\n') {
+        whole = Cow::Owned(whole.replace('\r', "\n"));
+    }
     let (first, rest) = whole.split_once('\n').unwrap_or((&whole, ""));
     let named = named_separator(first);
     let text = if named.is_some() { rest } else { &whole };
@@ -171,6 +174,12 @@ mod tests {
         ] {
             assert_eq!(plain(bytes).unwrap(), PLAIN);
         }
+    }
+
+    #[test]
+    fn lines_that_end_as_on_an_old_macintosh_are_lines() {
+        assert_eq!(plain(b"a;b\r1,5;2\r").unwrap(), "a,b\n1.5,2\n");
+        assert_eq!(plain(b"a,b\r1.5,2\r").unwrap(), "a,b\n1.5,2\n");
     }
 
     #[test]
