@@ -114,8 +114,10 @@ fn straight_on() -> Vec<Step> {
         (230, 0.6),
         (170, 0.8),
     ] {
+        // A fast robot rolls for longer; it is not to be driven back before it stands.
+        let rolling_s = if pwm < 170 { 0.71 } else { 1.01 };
         for movement in [Movement::Forward, Movement::Backward] {
-            steps.extend([step(movement, pwm, seconds), rest(0.71)]);
+            steps.extend([step(movement, pwm, seconds), rest(rolling_s)]);
         }
     }
     // Fast to slow, without a stop.

@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// Robots of a sample, and the seed of the first one.
 const SAMPLE: u64 = 2;
-const FIRST: u64 = 2_001;
+const FIRST: u64 = 7_001;
 /// Share of the true values that lie inside their 95 % intervals, of those that differ from robot to robot.
 const INSIDE: f64 = 0.90;
 /// From so many robots on that is asked of each parameter.
