@@ -163,10 +163,10 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
 
 #[test]
 fn a_file_that_is_all_one_line_is_not_shown_whole() {
-    let header = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\r";
+    let header = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b ";
     file(
         "one_line.csv",
-        &(header.to_owned() + &"69,107,107,30,1,115,115\r".repeat(1_000)),
+        &(header.to_owned() + &"69,107,107,30,1,115,115 ".repeat(1_000)),
     );
     let output = rumbo(&["import", "one_line.csv"]);
     assert_eq!(output.status.code(), Some(2));
