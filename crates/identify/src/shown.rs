@@ -5,11 +5,12 @@
 //! edges were no log tells, so both means are read from the angle.
 
 use crate::log::{Program, Window};
-use rumbo_control::speed::{EDGE_RAD, fuse};
+use rumbo_control::speed::{self, fuse};
 
-/// Angle of one motor turn, rad.
-const MOTOR_TURN_RAD: f64 = 8.0 * EDGE_RAD as f64;
-/// The newest edges are those of so long a time.
+/// Angle of one edge, and of one motor turn, rad.
+pub(crate) const EDGE_RAD: f64 = speed::EDGE_RAD as f64;
+pub(crate) const MOTOR_TURN_RAD: f64 = 8.0 * EDGE_RAD;
+/// The newest edges are those of a tick.
 const FRESH_MS: usize = 10;
 /// Longest motor turn that is looked for.
 const LONGEST_TURN_MS: usize = 150;
@@ -52,7 +53,7 @@ impl Angles<'_> {
         };
         let turn_rad_s = MOTOR_TURN_RAD * 1e3 / turn_ms;
         // There were as many edges in a tick or one more, each as often as the angle says.
-        let edges = newest_rad.abs() / f64::from(EDGE_RAD);
+        let edges = newest_rad.abs() / EDGE_RAD;
         let fewest = edges.floor().max(1.0);
         let fused = |new: f64| f64::from(fuse(turn_rad_s as f32, fresh_rad_s as f32, new as u16));
         let more = (edges - fewest).clamp(0.0, 1.0);
@@ -92,7 +93,7 @@ mod tests {
         const PLACES: usize = 40;
         let shown = |place: usize| {
             let edge_at = |us: u32| {
-                let edges = angle_rad(f64::from(us) * 1e-6) / f64::from(EDGE_RAD);
+                let edges = angle_rad(f64::from(us) * 1e-6) / EDGE_RAD;
                 (edges + place as f64 / PLACES as f64).floor() as i64
             };
             let (mut estimator, mut times, mut shown) =
@@ -124,7 +125,7 @@ mod tests {
             from_ms: 0,
             wheel: 0,
         };
-        let edge_ms = 1e3 * f64::from(EDGE_RAD) / mean;
+        let edge_ms = 1e3 * EDGE_RAD / mean;
         let window = Window {
             end_ms: (1e3 - 0.5 * edge_ms).round() as usize,
             length_ms: (8.0 * edge_ms).round() as usize,
@@ -159,19 +160,15 @@ mod tests {
 
     #[test]
     fn a_wheel_that_stands_has_no_speed() {
-        let (shown, expected) = (0.0, {
-            let angles = [[0.3; 2]; 200];
-            let angles = Angles {
-                angle_rad: &angles,
-                from_ms: 0,
-                wheel: 1,
-            };
-            let window = Window {
-                end_ms: 190,
-                length_ms: 40,
-            };
-            angles.shown(Program::Rumbo, window)
-        });
-        assert_eq!(shown, expected);
+        let angles = Angles {
+            angle_rad: &[[0.3; 2]; 200],
+            from_ms: 0,
+            wheel: 1,
+        };
+        let window = Window {
+            end_ms: 190,
+            length_ms: 40,
+        };
+        assert_eq!(angles.shown(Program::Rumbo, window), 0.0);
     }
 }

@@ -11,6 +11,7 @@
 
 use crate::error::IdentifyError;
 use crate::log::{DriveLog, Program, Row, Seen, Window};
+use crate::shown::{EDGE_RAD, MOTOR_TURN_RAD};
 use rumbo_log::Log;
 use std::path::Path;
 
@@ -31,9 +32,6 @@ const ROLLING_MS: i64 = 1_000;
 const SHORTEST_MS: usize = 1_000;
 /// Time before the first frame of a stretch, for the windows of its speeds.
 const LEAD_MS: i64 = 200;
-/// Angle of one edge, and of one motor turn, rad.
-const EDGE_RAD: f64 = std::f64::consts::TAU / 384.0;
-const MOTOR_TURN_RAD: f64 = 8.0 * EDGE_RAD;
 /// A wheel that has turned by less since it stood has no whole motor turn of edges yet, rad: it turned less fast before a
 /// frame than at it.
 const TELLING_RAD: f64 = 2.0 * MOTOR_TURN_RAD;
