@@ -25,7 +25,7 @@ use crate::speed::WheelMotion;
 use crate::types::Side;
 use crate::types::{Drive, Duty, SIDES, TICK_S, Wheels};
 
-/// References below this are a standstill [rad/s]: half a turn per minute.
+/// References below this are a standstill [rad/s], half a turn per minute; so are duties, which move no wheel.
 const STANDSTILL_RAD_S: f32 = 0.05;
 /// Growth of the kick of a wheel that still stands [1/s].
 const KICK_GROWTH: f32 = 1.5;
@@ -223,7 +223,7 @@ impl DriveLayer {
         for &side in &SIDES {
             let (wheel, motion) = (&mut self.wheels[side], &motion[side]);
             driven.duty[side] = if open_loop {
-                wheel.open_loop(wanted[side], motion)?
+                wheel.open_loop(wanted[side], motion, stopping[side.other()])?
             } else {
                 wheel.speed(
                     params.speed_loop(side),
@@ -273,13 +273,26 @@ impl WheelState {
         motion.standing
     }
 
-    fn open_loop(&mut self, duty: f32, motion: &WheelMotion) -> Result<Duty, NotFinite> {
+    /// Whether the wheel waits for the other one to come to rest. A late edge of a wheel at rest neither ends the waiting
+    /// nor gives a speed to start from.
+    fn waits(&mut self, motion: &WheelMotion, partner_stops: bool) -> bool {
+        self.waits = partner_stops && (motion.standing || self.waits);
+        self.waits
+    }
+
+    fn open_loop(
+        &mut self,
+        duty: f32,
+        motion: &WheelMotion,
+        partner_stops: bool,
+    ) -> Result<Duty, NotFinite> {
         if !is_finite(duty) {
             return Err(NotFinite);
         }
         self.release();
+        let waits = self.waits(motion, partner_stops);
         let counts = counts(abs(duty));
-        Ok(if counts > 0 && self.may_drive(duty, motion) {
+        Ok(if counts > 0 && self.may_drive(duty, motion) && !waits {
             self.duty(counts)
         } else {
             Duty::RELEASED
@@ -298,11 +311,10 @@ impl WheelState {
             return Err(NotFinite);
         }
         let standstill = abs(reference_rad_s) < STANDSTILL_RAD_S;
-        // A late edge of a wheel at rest neither ends the waiting nor gives a speed to start from.
-        self.waits = partner_stops && (motion.standing || self.waits);
-        if standstill || !self.may_drive(reference_rad_s, motion) || self.waits {
+        let waits = self.waits(motion, partner_stops);
+        if standstill || !self.may_drive(reference_rad_s, motion) || waits {
             self.release();
-            if self.waits {
+            if waits {
                 self.ramp_rad_s = Some(0.0);
             }
             return Ok(Duty::RELEASED);

@@ -55,7 +55,10 @@ fn wheels(left: WheelMotion, right: WheelMotion) -> Wheels<WheelMotion> {
 }
 
 fn both(layer: &mut DriveLayer, left: f32, right: f32, motion: Wheels<WheelMotion>) -> [i16; 2] {
-    let drive = Drive::WheelSpeed(Wheels { left, right });
+    driven(layer, Drive::WheelSpeed(Wheels { left, right }), motion)
+}
+
+fn driven(layer: &mut DriveLayer, drive: Drive, motion: Wheels<WheelMotion>) -> [i16; 2] {
     let duty = layer
         .step(&Params::default(), &drive, &motion, None)
         .unwrap()
@@ -73,6 +76,26 @@ fn after_a_reversal_the_wheel_that_stands_first_waits_for_the_other() {
     }
     let [left, right] = both(&mut layer, -6.0, -6.0, wheels(STANDING, STANDING));
     assert!(left < 0 && left == right, "{left} {right}");
+}
+
+#[test]
+fn an_open_loop_reversal_starts_with_both_wheels_at_rest() {
+    let mut layer = DriveLayer::default();
+    let backward = Drive::Duty(Wheels::both(-0.5));
+    // The left wheel comes to rest first; a jolt gives it an edge.
+    for left in [STANDING, TURNING, STANDING] {
+        assert_eq!(driven(&mut layer, backward, wheels(left, TURNING)), [0, 0]);
+    }
+    assert_eq!(
+        driven(&mut layer, backward, Wheels::both(STANDING)),
+        [-128, -128]
+    );
+    // What turns on goes on.
+    let turn = Drive::Duty(Wheels {
+        left: -0.5,
+        right: 0.5,
+    });
+    assert_eq!(driven(&mut layer, turn, Wheels::both(TURNING)), [-128, 0]);
 }
 
 #[test]

@@ -1,7 +1,10 @@
 //! Guarantees of the drive layer to every mode that requests wheel speeds.
 
-use super::{seeds, setup};
+use super::{fault, seeds, setup};
+use rumbo_control::mode::{Level, Movement};
+use rumbo_experiment::files::TimedCommand;
 use rumbo_experiment::run::RunResult;
+use rumbo_wire::Command;
 
 /// Wheel angle of one edge [rad].
 const EDGE_RAD: f64 = std::f64::consts::TAU / 384.0;
@@ -54,4 +57,33 @@ fn both_wheels_start_together_from_rest() {
 fn both_wheels_start_together_after_a_reversal() {
     assert_together("mode5-reversal", 5.5, [-1.0, -1.0], 0.021, 3.0);
     assert_together("mode5-reversal", 10.5, [1.0, 1.0], 0.021, 3.0);
+}
+
+#[test]
+fn an_open_loop_reversal_is_no_silent_encoder() {
+    let mut setup = setup("manual-straight");
+    let arm = setup.scenario.commands[0];
+    let moves = [
+        (0.5, Movement::Forward),
+        (1.1, Movement::Stop),
+        (1.7, Movement::Backward),
+    ];
+    setup.scenario.commands = vec![arm];
+    setup
+        .scenario
+        .commands
+        .extend(moves.map(|(at_s, movement)| TimedCommand {
+            at_s,
+            command: Command::Move {
+                movement,
+                level: Level::Duty(0.9),
+            },
+            ..arm
+        }));
+    setup.scenario.duration_s = 2.5;
+    // In these robots one wheel comes to rest long before the other. Driven at once it would jolt the robot, whose other
+    // wheel would give edges, and then none.
+    for run in seeds(&setup, 2217..2219) {
+        assert_eq!(fault(&run), None, "seed {}", run.seed);
+    }
 }
