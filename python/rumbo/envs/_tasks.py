@@ -58,6 +58,11 @@ def collided(truth: Floats) -> Bools:
     return hard
 
 
+def closeness(error: Floats, none: float) -> Floats:
+    """1 without an error, 0 from an error of `none` on. Never negative, or an early end would be worth having."""
+    return np.maximum(1.0 - error / none, 0.0)
+
+
 @dataclass(frozen=True)
 class Task:
     """A task, in one place for single and vector environments."""
@@ -91,7 +96,7 @@ class WheelSpeed(Task):
     def judge(self, before: Floats, truth: Floats, targets: Floats) -> tuple[Floats, Bools]:
         left = np.abs(column(truth, "left_rad_s") - targets[:, 0])
         right = np.abs(column(truth, "right_rad_s") - targets[:, 1])
-        return -(left + right) / 10.0, np.zeros(len(truth), np.bool_)
+        return closeness(0.5 * (left + right), 20.0), np.zeros(len(truth), np.bool_)
 
 
 class StopAtWall(Task):
@@ -102,7 +107,7 @@ class StopAtWall(Task):
 
     def judge(self, before: Floats, truth: Floats, targets: Floats) -> tuple[Floats, Bools]:
         error = np.abs(np.minimum(column(truth, "range_front_m"), REACH_M) - targets[:, 0])
-        return -error, np.zeros(len(truth), np.bool_)
+        return closeness(error, 1.0), np.zeros(len(truth), np.bool_)
 
 
 class FollowWall(Task):
@@ -116,7 +121,7 @@ class FollowWall(Task):
         right = np.minimum(column(truth, "range_right_m"), REACH_M)
         error = np.abs(0.5 * (left + right) - targets[:, 0])
         ahead = np.clip(column(truth, "forward_m_s"), 0.0, 0.3) / 0.3
-        return ahead - error / 0.1, np.zeros(len(truth), np.bool_)
+        return ahead * closeness(error, 0.5), np.zeros(len(truth), np.bool_)
 
 
 class Goal(Task):

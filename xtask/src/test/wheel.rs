@@ -24,11 +24,17 @@ const PACKAGES: [&str; 11] = [
 
 /// For its tests and figures on Ray.
 const RAY_PACKAGES: [&str; 3] = ["numpy==2.4.6", "pytest==9.2.0", "ray==2.60.0"];
+/// For Stable-Baselines3, which needs PyTorch: 5 GB.
+const SB3_PACKAGES: [&str; 4] = [
+    "numpy==2.4.6",
+    "pytest==9.2.0",
+    "stable-baselines3==2.9.2",
+    "torch==2.15.0",
+];
 
 /// Builds the package, installs it, and runs its tests and type checks.
 pub(super) fn check(project: &Project) -> Result<(), Stop> {
-    let python = tools::python_with(project, "wheel", &PACKAGES)?;
-    install(project, &python, &wheel(project)?)?;
+    let python = installed(project, "wheel", &PACKAGES)?;
     let sources = package(project, &python, &["sdist"], "gz")?;
     let rumbo = project.release_binary()?;
     let module = |words: &[&str]| module(project, &python, words);
@@ -60,17 +66,11 @@ pub(super) fn check(project: &Project) -> Result<(), Stop> {
     Ok(run(stub.current_dir(project.target.join("tmp")))?)
 }
 
-/// Builds the package, installs it beside Ray, and runs its tests on clusters of two workers, then its figures.
+/// Installs the package beside Ray, and runs its tests on clusters of two workers, then its figures.
 pub(crate) fn on_ray(project: &Project) -> Result<(), Stop> {
-    let python = tools::python_with(project, "ray", &RAY_PACKAGES)?;
-    install(project, &python, &wheel(project)?)?;
+    let python = installed(project, "ray", &RAY_PACKAGES)?;
     let rumbo = project.release_binary()?;
-    let file = "python/tests/test_ray.py";
-    run(&mut module(
-        project,
-        &python,
-        &["pytest", "--quiet", "-p", "no:cacheprovider", file],
-    ))?;
+    tests(project, &python, "python/tests/test_ray.py")?;
     let mut bench = project.command(&python);
     bench
         .env("RUMBO_COMMAND", rumbo)
@@ -78,18 +78,29 @@ pub(crate) fn on_ray(project: &Project) -> Result<(), Stop> {
     Ok(run(&mut bench)?)
 }
 
-/// Builds the package, installs it, and learns a policy as the example does, whole; it fails where too few goals are
-/// reached.
+/// Learns as the examples do, whole, with JAX and with Stable-Baselines3, whose checker looks at the environments; fails
+/// where too few robots arrive.
 pub(crate) fn learning(project: &Project) -> Result<(), Stop> {
-    let python = tools::python_with(project, "wheel", &PACKAGES)?;
-    install(project, &python, &wheel(project)?)?;
+    let jax = installed(project, "wheel", &PACKAGES)?;
+    example(project, &jax, "ppo.py")?;
+    let sb3 = installed(project, "sb3", &SB3_PACKAGES)?;
+    tests(project, &sb3, "python/tests/test_sb3.py")?;
+    example(project, &sb3, "sb3.py")
+}
+
+/// Runs an example; what it writes is left in the target folder.
+fn example(project: &Project, python: &Path, name: &str) -> Result<(), Stop> {
     let folder = project.target.join("tmp/learning");
     std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
-    let example = project.root.join("examples/python/ppo.py");
-    let mut learning = project.command(&python);
-    // It leaves the network here.
-    learning.current_dir(&folder).arg(example);
-    Ok(run(&mut learning)?)
+    let mut learning = project.command(python);
+    let example = project.root.join("examples/python").join(name);
+    Ok(run(learning.current_dir(&folder).arg(example))?)
+}
+
+/// Runs the tests of one file.
+fn tests(project: &Project, python: &Path, file: &str) -> Result<(), Stop> {
+    let words = ["pytest", "--quiet", "-p", "no:cacheprovider", file];
+    Ok(run(&mut module(project, python, &words))?)
 }
 
 /// A module of Python, as a program.
@@ -99,6 +110,13 @@ fn module(project: &Project, python: &Path, words: &[&str]) -> Command {
     command.env("PYTHONDONTWRITEBYTECODE", "1");
     command.arg("-m").args(words);
     command
+}
+
+/// A Python with these packages, and the wheel of the sources as they are.
+fn installed(project: &Project, name: &str, packages: &[&str]) -> Result<PathBuf, Stop> {
+    let python = tools::python_with(project, name, packages)?;
+    install(project, &python, &wheel(project)?)?;
+    Ok(python)
 }
 
 /// Builds the wheel.
