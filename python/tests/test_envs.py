@@ -169,6 +169,15 @@ OPEN = {
 }
 
 
+@pytest.mark.parametrize("name", ["WheelSpeed", "StopAtWall", "FollowWall"])
+def test_no_early_end_is_worth_having(name: str) -> None:
+    vector = make_vec(name, 20)
+    vector.reset(seed=1)
+    for given in actions(3, 150, 20):
+        _, rewards, terminated, _, _ = vector.step(3 * given)
+        assert np.all((rewards >= 0) & (rewards <= 1) | terminated)
+
+
 def test_driving_into_the_wall_ends_the_episode() -> None:
     env = make("StopAtWall").unwrapped
     env.reset(seed=1)
