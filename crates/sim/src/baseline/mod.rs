@@ -211,8 +211,8 @@ impl Baseline {
         }
         let bytes = self.line_bytes();
         let blocked_us = self.chip.print(bytes);
-        match self.program {
-            Program::Walls(_) => blocked_us + walls::PAUSE_US,
+        match &self.program {
+            Program::Walls(walls) => blocked_us + walls.pause_us(),
             _ => blocked_us,
         }
     }

@@ -16,10 +16,12 @@ use super::chip::Chip;
 use super::pid::{Gains, Pid};
 use rumbo_control::{SonarId, Wheels};
 
-/// `delay()` at the end of a pass, and what the pass itself takes [us].
-pub(super) const PAUSE_US: u64 = 61_100;
-/// What a reading takes besides its echo [us].
-const CALL_US: u64 = 1_100;
+/// `delay()` at the end of a pass, and what the pass takes besides its readings [us].
+const PAUSE_US: u64 = 61_000;
+/// What a reading takes besides waiting for its echo [us].
+const READING_US: u64 = 1_100;
+/// So often `pulseIn` is asked here whether its echo has ended [us].
+const POLL_US: u64 = 100;
 /// `pulseIn` gives up after this [us] and returns 0.
 const PATIENCE_US: u64 = 1_000_000;
 /// Microseconds of echo per centimetre: 292 / 10 * 2.
@@ -106,7 +108,7 @@ impl Walls {
         };
         let silent = chip.now_us >= since_us + PATIENCE_US;
         if !chip.answered(sonar) && !silent {
-            return Some(1000);
+            return Some(POLL_US);
         }
         let reading_cm = if silent {
             0.0
@@ -125,7 +127,16 @@ impl Walls {
     fn fire(&mut self, chip: &mut Chip, sonar: SonarId) -> u64 {
         chip.ping(sonar);
         self.waiting = Some((sonar, chip.now_us));
-        CALL_US
+        POLL_US
+    }
+
+    /// How long a pass takes besides waiting for echoes [us].
+    pub(super) fn pause_us(&self) -> u64 {
+        let readings = match self.task {
+            Task::Distance => 1,
+            Task::Align | Task::Hold | Task::Follow => 2,
+        };
+        PAUSE_US + readings * READING_US
     }
 
     /// Controls on the readings of this pass.
