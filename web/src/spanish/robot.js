@@ -200,6 +200,8 @@ export const ROBOT = {
   'collision: the robot touches something': 'colisión: el robot toca algo', 'the changed program runs, from the start': 'el programa modificado está en marcha, desde el principio',
   'the changed program does not compile: the robot is switched off until it does': 'el programa modificado no compila: el robot está apagado hasta que compile',
   'compiler: {}': 'compilador: {}', 'program: refused, {}': 'programa: rechazado, {}', 'only an .ino, .elf or .hex file is a program for the Mega': 'solo un archivo .ino, .elf o .hex es un programa para el Mega',
+  'here are several robots, and a program from the page runs on one alone; set robots to 1, or choose a scenario with one':
+    'aquí hay varios robots, y un programa de la página va en uno solo; pon robots en 1 o elige un escenario con uno',
   'refused: a program is taken only where no other computer reaches the page': 'rechazado: solo se acepta un programa donde ningún otro ordenador alcanza la página',
   'the program does not compile; correct it and save': 'el programa no compila; corrígelo y guárdalo', 'this robot takes no program from a page': 'este robot no acepta programas desde una página',
   'recording to {}': 'grabando en {}', 'not recording: {}': 'no se graba: {}', 'recording ended: the log cannot be written ({}); is the disk full?': 'fin de la grabación: no se puede escribir ({}); ¿disco lleno?',
@@ -235,6 +237,9 @@ export const ROBOT = {
   'not while a real robot is driven: go back to the lab first': 'no mientras se conduce un robot real: vuelve antes al laboratorio',
   'the recording is full: save it, and connect again for another one': 'la grabación está llena: guárdala y vuelve a conectar para empezar otra',
   'there are two of the kind: choose one again': 'hay dos iguales: elige uno otra vez', 'the browser does not offer it: plug it in, or choose it again': 'el navegador no lo ofrece: enchúfalo o elígelo otra vez',
+  'port {} closes as soon as it is open ({}): is the robot behind it on, and no other program connected to it? It is tried again every few seconds':
+    'el puerto {} se cierra nada más abrirse ({}): ¿está encendido el robot al otro lado, y ningún otro programa conectado a él? Se prueba otra vez cada pocos segundos',
+  'the other side closed it': 'lo cerró el otro extremo',
   'port {} is gone ({}); waiting for it': 'el puerto {} ya no está ({}); se espera a que vuelva', 'port {} is back': 'el puerto {} ha vuelto',
   'saved parameters': 'parámetros guardados', 'saved parameters: {}': 'parámetros guardados: {}', 'parameters saved on the robot': 'parámetros guardados en el robot',
   'in force since the start, from the first copy': 'en vigor desde el arranque, de la primera copia',
