@@ -3,13 +3,14 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { test } from 'node:test';
+import { FILES } from '../src/spanish/files.js';
 import { GUIDE } from '../src/spanish/guide.js';
 import { PAGE } from '../src/spanish/page.js';
 import { PARAMETERS } from '../src/spanish/parameters.js';
 import { ROBOT } from '../src/spanish/robot.js';
 import { SCENARIOS } from '../src/spanish/scenarios.js';
 
-const TABLES = [PAGE, ROBOT, PARAMETERS, SCENARIOS, GUIDE];
+const TABLES = [PAGE, ROBOT, PARAMETERS, SCENARIOS, GUIDE, FILES];
 /** @type {Record<string, string>} */
 const SPANISH = Object.assign({}, ...TABLES);
 
@@ -87,6 +88,19 @@ test('why nothing is tuned', () => {
   const texts = [...displays, read('../../crates/experiment/src/tune/over.rs').match(/"[^"]+ sets it itself[^"]*"/)?.[0] ?? ''].flatMap((part) => [...part.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped(found[1] ?? '').replace(/\{[^}]*\}/g, '{}')));
   assert.ok(texts.length > 9, String(texts.length));
   allSpanish(texts);
+});
+
+/** Parts of such messages, which have their Spanish with the rest of the sentence, or need none. */
+const WITHIN = ['not valid TOML: {}{}', '; write decimals with a point', 'must be a number{}, without quotes', ' in {}', ' or ', 'turn rate', ', or '];
+
+test('what is wrong with a scenario, a world or an image', () => {
+  const files = ['read', 'value', 'word', 'near', 'dropped', 'scenario', 'commands', 'fleet', 'mover', 'route', 'world', 'fit', 'start'].map((name) => `experiment/src/files/${name}`);
+  const texts = [...files, 'sim/src/fleet', 'lab/src/fleet', 'emulator/src/image/error', 'emulator/src/image/hex'].flatMap((name) => {
+    const source = (read(`../../crates/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '');
+    return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped((found[1] ?? '').replaceAll('{{', '').replace(/\{[^}]*\}+/g, '{}')));
+  });
+  assert.ok(texts.length > 150, String(texts.length));
+  allSpanish(texts.filter((text) => / /.test(text) && hasWords(text) && !text.includes('[[fleet]]') && !WITHIN.includes(text)));
 });
 
 test('titles and groups of the built-in scenarios', () => {
