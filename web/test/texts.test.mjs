@@ -126,7 +126,9 @@ test('a text keeps its values in the other language, and stands in one table onl
   assert.deepEqual(keys.filter((key, index) => keys.indexOf(key) !== index), []);
 });
 
-test('Spanish has one word for one thing: lazo for a control loop, referencia, PWM a she', () => {
-  const wrong = Object.values(SPANISH).filter((spanish) => /\bbucles?\b|consigna|\bordenad[ao]s?\b|\b(?:el|del|los) PWM\b/i.test(spanish));
+test('Spanish has one word for one thing, lazo for a control loop, referencia, PWM a she, and says tú', () => {
+  const report = ['messages', 'words'].flatMap((name) => read(`../../crates/report/content/es/${name}.md`).split('\n- '));
+  const exercises = ['wall', 'speed', 'box'].flatMap((name) => read(`../../examples/assignments/${name}/assignment.toml`).split('\n'));
+  const wrong = [...Object.values(SPANISH), ...report, ...exercises].filter((spanish) => /\bbucles?\b|consigna|\bordenad[ao]s?\b|\b(?:el|del|los) PWM\b|\busted\b|\b(?:compruebe|pruebe|elija|pulse|ponga|conéctelo|cárguela)\b/i.test(spanish));
   assert.deepEqual(wrong, []);
 });
