@@ -265,7 +265,7 @@ export const ROBOT = {
   '{}: scenario {} sets it itself, whatever a robot file says; take it out of the scenario': '{}: lo fija el propio escenario {}, diga lo que diga el archivo del robot; quítalo del escenario',
   '`{}`: write metrics and limits with commas between them, e.g. "settling_s, overshoot_m < 0.01"': '`{}`: escribe métricas y límites separados por comas, p. ej. "settling_s, overshoot_m < 0.01"',
   '`{}`: its limit is not a number': '`{}`: su límite no es un número',
-  'unknown {} `{}`; {}': 'no hay {} `{}`; {}', 'did you mean {}?': '¿quizá {}?', 'did you mean {} or {}?': '¿quizá {} o {}?', 'known are {}': 'hay {}', 'none is like it': 'ninguno se le parece',
+  'unknown {} `{}`; {}': 'no hay {} `{}`; {}', 'did you mean {}?': '¿quizá {}?', 'did you mean {} or {}?': '¿quizá {} o {}?', 'known are {}': 'hay {}', 'none is like it; see `rumbo list`': 'ninguno se le parece; mira `rumbo list`',
   'parameter of the control core': 'parámetro del programa de control',
   // Commands, and how they ended.
   'sent: {}': 'enviado: {}',
