@@ -170,11 +170,8 @@ fn verdict(mark: &Mark, language: Language) -> String {
 /// A metric as displayed, for the plotted run or any other.
 fn metric(assignment: &Assignment, line: &Line, language: Language) -> Shown {
     let criterion = &assignment.criteria[line.criterion];
-    let outcome = Outcome {
-        setup: assignment.tests[line.test].setup.clone(),
-        result: Default::default(),
-    };
-    shown(language, &outcome, &criterion.metric).unwrap_or(Shown {
+    let scenario = &assignment.tests[line.test].setup.scenario;
+    shown(language, scenario, &criterion.metric).unwrap_or(Shown {
         name: criterion.metric.clone(),
         ..judge::plain("")
     })
