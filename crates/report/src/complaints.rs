@@ -17,6 +17,15 @@ pub(crate) struct Complaint {
 }
 
 impl Complaint {
+    /// As a line.
+    pub(crate) fn text(self) -> String {
+        match (self.own.is_empty(), self.english.is_empty()) {
+            (_, true) => self.own,
+            (true, false) => self.english,
+            (false, false) => format!("{} ({})", self.own, self.english),
+        }
+    }
+
     /// As HTML.
     pub(crate) fn html(&self) -> String {
         let english = escape(&self.english);
