@@ -144,7 +144,7 @@ export const PAGE = {
   'Drag shapes and their handles on the map. Keys on the map: arrows move, [ and ] turn, Delete, Ctrl+Z.': 'Arrastra en el mapa las figuras y sus tiradores. Teclas en el mapa: las flechas mueven, [ y ] giran, Supr, Ctrl+Z.',
   'wall {}': 'pared {}', 'box {}': 'caja {}', 'start': 'salida', 'the world': 'el mundo', 'from x': 'desde x', 'to x': 'hasta x', 'middle x': 'centro x', 'length': 'largo', 'angle': 'ángulo',
   'Recordings': 'Grabaciones', 'Recordings of this computer: find, open, compare, delete': 'Grabaciones de este ordenador: buscar, abrir, comparar, borrar', 'scenario, robot, date': 'escenario, robot, fecha',
-  'Compare': 'Comparar', 'compare': 'comparar', 'recording': 'grabación', 'duration': 'duración', 'size': 'tamaño', 'actions': 'acciones', 'find': 'buscar', '{} of {} recordings': '{} de {} grabaciones', 'no recordings': 'no hay grabaciones',
+  'Compare': 'Comparar', 'compare': 'comparar', 'recording': 'grabación', 'duration': 'duración', 'size': 'tamaño', 'actions': 'acciones', 'find': 'buscar', 'recordings: {} of {}': 'grabaciones: {} de {}', 'no recordings': 'no hay grabaciones',
   'Choose two recordings to compare': 'Elige dos grabaciones para compararlas', 'a real robot': 'un robot real', 'not readable': 'ilegible', 'Compare {}': 'Comparar {}', 'Open|replay': 'Abrir',
   'Show it as a replay, in a page of its own': 'La muestra en una página aparte', 'being recorded': 'grabándose', 'Delete this recording': 'Borra esta grabación', 'Delete for good': 'Borrar para siempre', 'Keep': 'Conservar',
   'signal': 'señal', 'metric': 'métrica', 'parameter that differs': 'parámetro distinto', 'never': 'nunca', 'the two have no signal in common': 'las dos no tienen ninguna señal en común',

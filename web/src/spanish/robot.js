@@ -205,7 +205,7 @@ export const ROBOT = {
   'refused: a program is taken only where no other computer reaches the page': 'rechazado: solo se acepta un programa donde ningún otro ordenador alcanza la página',
   'the program does not compile; correct it and save': 'el programa no compila; corrígelo y guárdalo', 'this robot takes no program from a page': 'este robot no acepta programas desde una página',
   'recording to {}': 'grabando en {}', 'not recording: {}': 'no se graba: {}', 'recording ended: the log cannot be written ({}); is the disk full?': 'fin de la grabación: no se puede escribir ({}); ¿disco lleno?',
-  'recording: the disk is slow, {} entries are missing in the log': 'grabación: el disco es lento, faltan {} entradas',
+  'recording: the disk is slow; entries missing in the log: {}': 'grabación: el disco es lento; entradas que faltan: {}',
   'recording: more came in this second than a robot says; {} bytes of the link and {} samples and events are left out':
     'grabación: en este segundo llegó más de lo que un robot dice; se omiten {} bytes del enlace y {} muestras y eventos',
   'about the log: {}': 'sobre la grabación: {}',
