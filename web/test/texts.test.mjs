@@ -69,7 +69,7 @@ test('messages of the robot: faults, refusals, why it started, events, modes, st
 const NO_SENTENCE = ['rig', 'in world', 'with rig', 'this program has none', '{}: {}', '{}-{}-{}T{}:{}:{}Z', 'reset: {}{}{}, seed {}', 'a new route, {}', 'allowed is {}', 'parameter {}', 'once', 'again and again'];
 
 test('messages of session and station', () => {
-  const texts = ['session/src/words', 'session/src/anomaly', 'session/src/error', 'session/src/observer', 'session/src/session', 'session/src/session/calibrating', 'session/src/session/commanding', 'session/src/observer/describe', 'station/src/session', 'station/src/tuning', 'station/src/web/tuning', 'cli/src/tune/dashboard', 'station/src/recordings', 'station/src/web/recordings', 'session/src/replay', 'log/src/bound', 'browser/src/lab', 'browser/src/following'].flatMap((name) => {
+  const texts = ['wire/src/words', 'session/src/words', 'session/src/anomaly', 'session/src/error', 'session/src/observer', 'session/src/session', 'session/src/session/calibrating', 'session/src/session/commanding', 'session/src/observer/describe', 'station/src/session', 'station/src/tuning', 'station/src/web/tuning', 'cli/src/tune/dashboard', 'station/src/recordings', 'station/src/web/recordings', 'session/src/replay', 'log/src/bound', 'browser/src/lab', 'browser/src/following'].flatMap((name) => {
     const source = (read(`../../crates/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '');
     return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => (found[1] ?? '').replace(/\{[^}]*\}/g, '{}'));
   }).map((text) => text.replace('allowed is {} to {} {}', 'allowed is {} to {}').replace(/^allowed is \{\} to \{\} (?:cm|rpm)$/, 'allowed is {} to {}'));

@@ -182,7 +182,7 @@ mod tests {
     fn faults_and_refusals_are_translated_whole_and_left_alone_in_english() {
         let faults = Fault::ALL.map(|fault| format!("at 1.20 s fault: {}", fault.explanation()));
         let refusals = Refusal::ALL
-            .map(|refusal| format!("at 0.50 s Arm was refused: {}", refusal.explanation()));
+            .map(|refusal| format!("at 0.50 s ON was refused: {}", refusal.explanation()));
         for line in faults.iter().chain(&refusals) {
             let spanish = complaint(Language::Spanish, line);
             assert!(
