@@ -18,7 +18,7 @@ export const ROBOT = {
   'reach a goal by a learned network': 'llegar a un destino con una red aprendida',
   'a forward speed and a yaw rate from outside': 'una velocidad de avance y otra de giro, desde fuera',
   // Groups of parameters.
-  'arcs': 'arcos', 'approach to the wall': 'acercamiento a la pared', 'straightening': 'corrección del rumbo', 'angle to the wall': 'ángulo con la pared',
+  'end of a goal': 'final de un destino', 'arcs': 'arcos', 'approach to the wall': 'acercamiento a la pared', 'straightening': 'corrección del rumbo', 'angle to the wall': 'ángulo con la pared',
   'along the wall': 'a lo largo de la pared', 'distance to the wall': 'distancia a la pared', 'ramp': 'rampa', 'route': 'ruta', 'lane': 'carril',
   'speed loops': 'lazos de velocidad', 'feedforward': 'prealimentación', 'ramps of the wheels': 'rampas de las ruedas', 'turns on the spot': 'giros en el sitio',
   'straight lines': 'líneas rectas',
