@@ -77,11 +77,11 @@ test('what is wrong with a dropped file is said in Spanish, with the words and n
   const says = (/** @type {string} */ text) => spanish.page.locator('#events li', { hasText: text }).first().waitFor();
   const scenario = 'title = "x"\nrobot = "memoria"\nrig = "front_single"\nworld = "open"\nmode = "front_dist"\nduration_s = 9000.5\nseconds = 1\n';
   await dropOn(spanish.page, [{ name: 'mine.toml', content: scenario }]);
-  await says('escenario mine, línea 5: mode = "front_dist": modo desconocido; ¿quizá `front_distance` (1)?');
+  await says('escenario mine, línea 5: mode = front_dist: modo desconocido; ¿quizá `front_distance` (1) o `front_align` (2)?');
   await says('escenario mine, línea 6: duration_s = 9000.5: debe estar entre');
   await says('escenario mine, línea 7: seconds = 1: clave desconocida');
   await dropOn(spanish.page, [{ name: 'cut.hex', content: ':0000000100\n' }]);
-  await says('programa: rechazado, firmware cut.hex: la línea 1 del archivo HEX está mal: la suma de comprobación no cuadra');
+  await says('programa: rechazado, firmware cut.hex: la línea 1 del archivo HEX está mal: su suma de comprobación es FF, y debería ser 00');
   assert.deepEqual(await spanish.page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
   await spanish.close();
 });
