@@ -169,8 +169,10 @@ fn interrupted(port: &str, folder: &Path) -> Option<std::process::Output> {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_stops_the_robot_and_keeps_the_log() {
-    let robot = support::Running::start(&["lab", "--pty", "--scenario", "free", "--world", "open"]);
+    // Each time another robot: one that was left alone has a fault.
+    let lab = ["lab", "--pty", "--scenario", "free", "--world", "open"];
     let ended = (0..5).find_map(|_| {
+        let robot = support::Running::start(&lab);
         let folder = tempfile::tempdir().unwrap();
         interrupted(&robot.said, folder.path()).map(|output| (folder, output))
     });
