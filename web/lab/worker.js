@@ -195,7 +195,7 @@ function begin(before, changes) {
     lab = new Lab(JSON.stringify(changes.file ? { parameters, ...changes } : { file, edited, parameters, ...changes }));
     before.free();
   } catch (error) {
-    before.warn(`${changes.scenario}: ${error}`);
+    before.warn(String(error));
   }
 }
 

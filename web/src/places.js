@@ -47,7 +47,7 @@ export class Places {
     this.#scene = scene;
     const [goal] = scene?.goals ?? [];
     // The form starts with the experiment's first goal.
-    for (const [index, input] of [this.#x, this.#y].entries()) if (goal) write(input, goal[index] ?? 0);
+    for (const [index, input] of [this.#x, this.#y].entries()) if (goal) write(input, rounded(goal[index] ?? 0));
     if (this.#mode) this.layOut(this.#mode);
   }
 

@@ -90,7 +90,7 @@ export class Recordings {
     const wanted = this.#find.value.trim().toLowerCase();
     const found = this.#list.filter((each) => this.#words(each).toLowerCase().includes(wanted));
     this.#rows.replaceChildren(...found.map((each) => this.#row(each)));
-    setText(this.#none, found.length > 0 ? t('{} of {} recordings', found.length, this.#list.length) : t('no recordings'));
+    setText(this.#none, found.length > 0 ? t('recordings: {} of {}', found.length, this.#list.length) : t('no recordings'));
     this.#compare.disabled = this.#chosen.length !== 2;
     this.#compare.title = t('Choose two recordings to compare');
   }

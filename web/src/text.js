@@ -5,6 +5,7 @@
  *
  * `{}` in a text stands for a value. The part after a bar, as in `off|motor`, separates meanings of one English word.
  */
+import { FILES } from './spanish/files.js';
 import { GUIDE } from './spanish/guide.js';
 import { PAGE } from './spanish/page.js';
 import { PARAMETERS } from './spanish/parameters.js';
@@ -12,7 +13,7 @@ import { ROBOT, UNDERSCORED } from './spanish/robot.js';
 import { SCENARIOS } from './spanish/scenarios.js';
 
 /** Every text with its Spanish. @type {Record<string, string>} */
-export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...SCENARIOS, ...GUIDE };
+export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...SCENARIOS, ...GUIDE, ...FILES };
 
 /** The languages, by the code that browsers have for them. */
 export const LANGUAGES = /** @type {const} */ ({ en: 'English', es: 'Español' });
@@ -108,6 +109,7 @@ const PATTERNS = Object.keys(SPANISH).filter((english) => english.includes('{}')
  */
 export function said(english) {
   if (language === 'en' || english === '') return withMinus(english).replace(/\b[a-z]+(?:_[a-z]+)+\b/g, (name) => (UNDERSCORED.includes(name) ? name.replaceAll('_', ' ') : name));
+  if (english.includes('\n')) return english.split('\n').map(said).join('\n');
   const found = translate(english);
   if (found === null) untranslated.add(english);
   return found ?? english;
@@ -119,7 +121,10 @@ function translate(english) {
   if (known !== undefined) return known;
   for (const { english: pattern, form } of PATTERNS) {
     const values = form.exec(english)?.slice(1);
-    if (values) return fill(SPANISH[pattern] ?? pattern, values.map((value) => translate(value) ?? numbersAs(value)));
+    // Of a file: one word is a key or a name of it, and its numbers have points.
+    const inFile = FILES[pattern] !== undefined;
+    const inside = (/** @type {string} */ value) => (inFile && !/ /.test(value) ? value : translate(value) ?? (inFile ? value : numbersAs(value)));
+    if (values) return fill(SPANISH[pattern] ?? pattern, values.map(inside));
   }
   return null;
 }

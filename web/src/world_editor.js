@@ -119,7 +119,7 @@ export class WorldEditor {
 
   /** @param {string | null} problem */
   #showProblem(problem) {
-    setText(this.#problem, (problem ?? '').split('\n').map(said).join('\n'));
+    setText(this.#problem, said(problem ?? ''));
     this.#drive.disabled = problem !== null;
   }
 

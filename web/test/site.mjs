@@ -95,3 +95,13 @@ export async function share(page) {
   await page.locator('#share-dialog').waitFor();
   return new URL(await page.locator('#share-link').inputValue());
 }
+
+/** Drops files on the page, together. @param {import('playwright-core').Page} page @param {{name: string, content: Buffer | string}[]} files */
+export function dropOn(page, files) {
+  const coded = files.map(({ name, content }) => ({ name, data: Buffer.from(content).toString('base64') }));
+  return page.evaluate((coded) => {
+    const transfer = new DataTransfer();
+    for (const { name, data } of coded) transfer.items.add(new File([Uint8Array.from(atob(data), (each) => each.charCodeAt(0))], name));
+    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
+  }, coded);
+}

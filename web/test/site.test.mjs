@@ -10,7 +10,7 @@ import { existsSync, readFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { folder, program } from './dashboard.mjs';
-import { open, share, skip } from './site.mjs';
+import { open, share, skip, dropOn } from './site.mjs';
 
 const SKETCH = join(process.env['SKETCHES'] ?? '', 'memoria-mode5.elf');
 const FIRMWARE = process.env['FIRMWARE'] ?? '';
@@ -37,13 +37,7 @@ const isArmed = (armed) => page.waitForFunction((armed) => /** @type {any} */ (w
 const says = (text) => page.locator('#events li', { hasText: text }).first().waitFor();
 
 /** Drops a file on the page. @param {string} name @param {Buffer | string} content */
-function drop(name, content) {
-  return page.evaluate(({ name, data }) => {
-    const transfer = new DataTransfer();
-    transfer.items.add(new File([Uint8Array.from(atob(data), (each) => each.charCodeAt(0))], name));
-    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
-  }, { name, data: Buffer.from(content).toString('base64') });
-}
+const drop = (name, content) => dropOn(page, [{ name, content }]);
 
 test('the lab starts by itself, in real time, and the robot is not armed by it', { skip }, async () => {
   await page.waitForSelector('#connection.good');

@@ -7,7 +7,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { eventually } from './dashboard.mjs';
-import { open, share, skip } from './site.mjs';
+import { dropOn, open, share, skip } from './site.mjs';
 
 const [CORNERS, SQUARE] = ['corners', 'square'].map((name) => new URL(`../../examples/fleet/${name}.toml`, import.meta.url).pathname);
 
@@ -67,6 +67,25 @@ test('STOP stops all', { skip }, async () => {
   }
 });
 
+test('a program that is dropped where there are several robots says what to do instead', { skip }, async () => {
+  await dropOn(page, [{ name: 'blink.hex', content: ':00000001FF' }]);
+  await page.locator('#events li', { hasText: 'set robots to 1, or choose a scenario with one' }).first().waitFor();
+});
+
+test('what is wrong with a dropped file is said in Spanish, with the words and numbers of the file', { skip }, async () => {
+  const spanish = await open({ locale: 'es-ES' });
+  const says = (/** @type {string} */ text) => spanish.page.locator('#events li', { hasText: text }).first().waitFor();
+  const scenario = 'title = "x"\nrobot = "memoria"\nrig = "front_single"\nworld = "open"\nmode = "front_dist"\nduration_s = 9000.5\nseconds = 1\n';
+  await dropOn(spanish.page, [{ name: 'mine.toml', content: scenario }]);
+  await says('escenario mine, línea 5: mode = front_dist: modo desconocido; ¿quizá `front_distance` (1) o `front_align` (2)?');
+  await says('escenario mine, línea 6: duration_s = 9000.5: debe estar entre');
+  await says('escenario mine, línea 7: seconds = 1: clave desconocida');
+  await dropOn(spanish.page, [{ name: 'cut.hex', content: ':0000000100\n' }]);
+  await says('programa: rechazado, firmware cut.hex: la línea 1 del archivo HEX está mal: su suma de comprobación es FF, y debería ser 00');
+  assert.deepEqual(await spanish.page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
+  await spanish.close();
+});
+
 test('another number of robots begins anew, and is in the link', { skip }, async () => {
   await page.locator('#robots').fill('2');
   await page.locator('#robots').press('Enter');
@@ -81,17 +100,12 @@ test('another number of robots begins anew, and is in the link', { skip }, async
 });
 
 test('a scenario of one\'s own is dropped with its world, and its link opens it', { skip }, async () => {
-  const files = [CORNERS, SQUARE].map((path = '') => ({ name: path.split('/').at(-1) ?? '', text: readFileSync(path, 'utf8') }));
-  const drop = (/** @type {{name: string, text: string}[]} */ some) => page.evaluate((files) => {
-    const transfer = new DataTransfer();
-    for (const { name, text } of files) transfer.items.add(new File([text], name));
-    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
-  }, some);
-  await drop(files.slice(0, 1));
+  const files = [CORNERS, SQUARE].map((path = '') => ({ name: path.split('/').at(-1) ?? '', content: readFileSync(path, 'utf8') }));
+  await dropOn(page, files.slice(0, 1));
   await page.locator('#events li', { hasText: 'square.toml' }).first().waitFor();
-  await drop(files.slice(1));
+  await dropOn(page, files.slice(1));
   await page.locator('#events li', { hasText: 'no scenario is among these files' }).first().waitFor();
-  await drop(files);
+  await dropOn(page, files);
   const names = ['south_west', 'south_east', 'north_east', 'north_west'];
   await eventually(async () => assert.deepEqual(await page.locator('#robot option').allTextContents(), names));
   const link = await share(page);

@@ -78,6 +78,12 @@ test('numbers have a decimal comma, and fields take a point too', async () => {
   // Bytes and the file's name are none.
   const points = await page.evaluate(() => document.body.innerText.split('\n').filter((line) => /\d\.\d/.test(line) && !line.includes('/')));
   assert.deepEqual(points, []);
+  const size = page.viewportSize();
+  for (const width of [1280, 1000, 390]) {
+    await page.setViewportSize({ width, height: 720 });
+    await eventually(async () => assert.ok(await page.locator('#aim').evaluate((aim) => aim.scrollWidth <= aim.clientWidth), `at ${width} px the aim is cut`));
+  }
+  if (size) await page.setViewportSize(size);
 });
 
 test('every mode, parameter and event has been said in Spanish', async () => {

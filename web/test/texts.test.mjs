@@ -3,13 +3,14 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { test } from 'node:test';
+import { FILES } from '../src/spanish/files.js';
 import { GUIDE } from '../src/spanish/guide.js';
 import { PAGE } from '../src/spanish/page.js';
 import { PARAMETERS } from '../src/spanish/parameters.js';
 import { ROBOT } from '../src/spanish/robot.js';
 import { SCENARIOS } from '../src/spanish/scenarios.js';
 
-const TABLES = [PAGE, ROBOT, PARAMETERS, SCENARIOS, GUIDE];
+const TABLES = [PAGE, ROBOT, PARAMETERS, SCENARIOS, GUIDE, FILES];
 /** @type {Record<string, string>} */
 const SPANISH = Object.assign({}, ...TABLES);
 
@@ -68,7 +69,7 @@ test('messages of the robot: faults, refusals, why it started, events, modes, st
 const NO_SENTENCE = ['rig', 'in world', 'with rig', 'this program has none', '{}: {}', '{}-{}-{}T{}:{}:{}Z', 'reset: {}{}{}, seed {}', 'a new route, {}', 'allowed is {}', 'parameter {}', 'once', 'again and again'];
 
 test('messages of session and station', () => {
-  const texts = ['session/src/words', 'session/src/anomaly', 'session/src/error', 'session/src/observer', 'session/src/session', 'session/src/session/calibrating', 'session/src/session/commanding', 'session/src/observer/describe', 'station/src/session', 'station/src/tuning', 'station/src/web/tuning', 'cli/src/tune/dashboard', 'station/src/recordings', 'station/src/web/recordings', 'session/src/replay', 'log/src/bound', 'browser/src/lab', 'browser/src/following'].flatMap((name) => {
+  const texts = ['wire/src/words', 'session/src/words', 'session/src/anomaly', 'session/src/error', 'session/src/observer', 'session/src/session', 'session/src/session/calibrating', 'session/src/session/commanding', 'session/src/observer/describe', 'station/src/session', 'station/src/tuning', 'station/src/web/tuning', 'cli/src/tune/dashboard', 'station/src/recordings', 'station/src/web/recordings', 'session/src/replay', 'log/src/bound', 'browser/src/lab', 'browser/src/following'].flatMap((name) => {
     const source = (read(`../../crates/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '');
     return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => (found[1] ?? '').replace(/\{[^}]*\}/g, '{}'));
   }).map((text) => text.replace('allowed is {} to {} {}', 'allowed is {} to {}').replace(/^allowed is \{\} to \{\} (?:cm|rpm)$/, 'allowed is {} to {}'));
@@ -87,6 +88,19 @@ test('why nothing is tuned', () => {
   const texts = [...displays, read('../../crates/experiment/src/tune/over.rs').match(/"[^"]+ sets it itself[^"]*"/)?.[0] ?? ''].flatMap((part) => [...part.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped(found[1] ?? '').replace(/\{[^}]*\}/g, '{}')));
   assert.ok(texts.length > 9, String(texts.length));
   allSpanish(texts);
+});
+
+/** Parts of such messages, which have their Spanish with the rest of the sentence, or need none. */
+const WITHIN = ['not valid TOML: {}{}', '; write decimals with a point', 'must be a number{}, without quotes', ' in {}', ' or ', 'turn rate', ', or '];
+
+test('what is wrong with a scenario, a world or an image', () => {
+  const files = ['read', 'value', 'word', 'near', 'dropped', 'scenario', 'commands', 'fleet', 'mover', 'route', 'world', 'fit', 'start'].map((name) => `experiment/src/files/${name}`);
+  const texts = [...files, 'sim/src/fleet', 'lab/src/fleet', 'emulator/src/image/error', 'emulator/src/image/hex'].flatMap((name) => {
+    const source = (read(`../../crates/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '');
+    return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped((found[1] ?? '').replaceAll('{{', '').replace(/\{[^}]*\}+/g, '{}')));
+  });
+  assert.ok(texts.length > 150, String(texts.length));
+  allSpanish(texts.filter((text) => / /.test(text) && hasWords(text) && !text.includes('[[fleet]]') && !WITHIN.includes(text)));
 });
 
 test('titles and groups of the built-in scenarios', () => {
@@ -112,7 +126,9 @@ test('a text keeps its values in the other language, and stands in one table onl
   assert.deepEqual(keys.filter((key, index) => keys.indexOf(key) !== index), []);
 });
 
-test('Spanish has one word for one thing: lazo for a control loop, referencia, PWM a she', () => {
-  const wrong = Object.values(SPANISH).filter((spanish) => /\bbucles?\b|consigna|\bordenad[ao]s?\b|\b(?:el|del|los) PWM\b/i.test(spanish));
+test('Spanish has one word for one thing, lazo for a control loop, referencia, PWM a she, and says tú', () => {
+  const report = ['messages', 'words'].flatMap((name) => read(`../../crates/report/content/es/${name}.md`).split('\n- '));
+  const exercises = ['wall', 'speed', 'box'].flatMap((name) => read(`../../examples/assignments/${name}/assignment.toml`).split('\n'));
+  const wrong = [...Object.values(SPANISH), ...report, ...exercises].filter((spanish) => /\bbucles?\b|consigna|\bordenad[ao]s?\b|\b(?:el|del|los) PWM\b|\busted\b|\b(?:compruebe|pruebe|elija|pulse|ponga|conéctelo|cárguela)\b/i.test(spanish));
   assert.deepEqual(wrong, []);
 });

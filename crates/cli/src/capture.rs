@@ -82,8 +82,10 @@ pub(crate) fn import(
         );
     }
     output::line(&format!(
-        "{}: {rows} rows and {commands} commands in {duration_s:.1} s",
-        out.display()
+        "{}: {} and {} in {duration_s:.1} s",
+        out.display(),
+        output::counted(rows, "row"),
+        output::counted(commands, "command"),
     ))
 }
 

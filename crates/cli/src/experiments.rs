@@ -95,8 +95,8 @@ fn progress(args: &ExperimentsArgs, plan: &Plan) -> ProgressBar {
     };
     let expected_s = (plan.simulated_s() / speed / threads).ceil().max(1.0);
     let message = format!(
-        "{} runs, {:.0} s of driving, about {expected_s:.0} s",
-        plan.runs(),
+        "{}, {:.0} s of driving, about {expected_s:.0} s",
+        output::counted(plan.runs(), "run"),
         plan.simulated_s()
     );
     // Without a progress bar, a single note if the wait is long.

@@ -172,8 +172,9 @@ fn summary(recording: &Recording, out: &Path, as_json: bool) -> Result<(), Failu
         }));
     }
     output::line(&format!(
-        "{}: {modes} of the original program, {rows} rows in {} s, longest gap {} s",
+        "{}: {modes} of the original program, {} in {} s, longest gap {} s",
         out.display(),
+        output::counted(rows, "row"),
         figure(duration_s),
         figure(gap_s)
     ))?;

@@ -64,8 +64,8 @@ impl LeftOut {
             0 => return,
             1..=SHOWN => notes.push(sound.to_owned()),
             _ => notes.push(format!(
-                "{} more lines of {shown} are skipped, the last is line {}; {sound}",
-                all - SHOWN,
+                "skipped too: {} of {shown}, the last is line {}; {sound}",
+                output::counted(all - SHOWN, "more line"),
                 self.all().last().map_or(0, |(line, _)| line)
             )),
         }

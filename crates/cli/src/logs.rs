@@ -64,8 +64,11 @@ fn paths() -> Result<Vec<PathBuf>, Failure> {
 /// Total size, and how to reduce it.
 pub(crate) fn total(entries: &[Value]) -> String {
     let bytes = entries.iter().filter_map(|entry| entry["bytes"].as_u64());
-    let (count, size) = (entries.len(), megabytes(bytes.sum()));
-    format!("{count} logs, {size}; `rumbo prune --keep-days 30` removes those older than 30 days")
+    let (logs, size) = (
+        output::counted(entries.len(), "log"),
+        megabytes(bytes.sum()),
+    );
+    format!("{logs}, {size}; `rumbo prune --keep-days 30` removes those older than 30 days")
 }
 
 /// Removes the logs of the default folder beyond the given age, and lists them. Only logs of Rumbo are removed.
@@ -98,7 +101,11 @@ pub(crate) fn prune(args: &PruneArgs) -> Result<(), Failure> {
     } else {
         "removed"
     };
-    output::line(&format!("{count} logs {what}, {}", megabytes(bytes)))
+    output::line(&format!(
+        "{} {what}, {}",
+        output::counted(count, "log"),
+        megabytes(bytes)
+    ))
 }
 
 fn megabytes(bytes: u64) -> String {

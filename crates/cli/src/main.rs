@@ -49,12 +49,11 @@ mod tune;
 mod workshop;
 
 use args::{Cli, Command};
-use clap::Parser;
 use failure::Failure;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let outcome = match Cli::try_parse() {
+    let outcome = match Cli::of_process() {
         Ok(cli) => dispatch(cli),
         Err(error) => args::explain(&error),
     };

@@ -100,6 +100,12 @@ pub(crate) fn table(rows: &[Vec<String>]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// So many of a thing, by its singular: `1 log`, `2 logs`.
+pub(crate) fn counted(count: usize, of: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {of}{plural}")
+}
+
 /// A number as a person reads it: four significant digits, no trailing zeros.
 pub(crate) fn figure(value: f64) -> String {
     if !value.is_finite() || value == 0.0 {

@@ -93,7 +93,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     progress.finish_and_clear();
     kept.report();
     if matches!(ended, Err(Failure::Interrupted)) {
-        output::note(&format!("interrupted after {done} of {} runs", jobs.len()));
+        output::note(&format!(
+            "interrupted after {done} of {}",
+            output::counted(jobs.len(), "run")
+        ));
     }
     ended?;
     if passed {

@@ -98,9 +98,9 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     report(args, &sweep, &by)?;
     if sweep.rows.len() < sweep.plan.len() {
         output::note(&format!(
-            "{} of {} runs are done; the same command with --resume goes on",
+            "done: {} of {}; the same command with --resume goes on",
             sweep.rows.len(),
-            sweep.plan.len()
+            output::counted(sweep.plan.len(), "run")
         ));
     }
     ended

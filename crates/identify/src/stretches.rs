@@ -220,7 +220,7 @@ fn frames(path: &Path, log: &Log, notes: &mut Vec<String>) -> Vec<Frame> {
     if let Some(first) = damaged.first() {
         let count = damaged.len();
         notes.push(format!(
-            "{}: {count} frames without PWM and speeds are left out, the first at {first:.2} s",
+            "{}: frames without PWM and speeds, left out: {count}, the first at {first:.2} s",
             path.display()
         ));
     }

@@ -263,6 +263,10 @@ impl Target for FleetRobot {
         }
     }
 
+    fn run_program(&mut self, _name: String, _content: Vec<u8>) -> Result<(), TargetError> {
+        Err(TargetError::Several)
+    }
+
     fn reset(&mut self, choice: &Choice) -> Result<(), TargetError> {
         // The page chooses among names it was given; it opens no files.
         let scene = self.scene().unwrap_or_default();

@@ -1,13 +1,11 @@
 //! The page of a comparison: variants of a scenario, pair by pair, with box plots.
 
-use crate::judge;
-use crate::metric_names::bare;
+use crate::metric_names::shown;
 use crate::summary::{figure, heading, shell};
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, escape, put, word};
 use rumbo_experiment::compare::{Difference, Variant, differences};
 use rumbo_experiment::files::ScenarioFile;
-use rumbo_experiment::metrics;
 use rumbo_plot::Boxes;
 
 const FACTS: Text = word("compare-facts");
@@ -63,7 +61,7 @@ pub fn page(
         &mut body,
         format_args!("<p>{}</p>\n", escape(HOW.of(language))),
     );
-    let mut shown: Vec<String> = Vec::new();
+    let mut metrics: Vec<String> = Vec::new();
     for other in others {
         let values = [
             ("first", first.name.as_str()),
@@ -78,16 +76,16 @@ pub fn page(
                 format_args!("<p>{}</p>\n", escape(NONE.of(language))),
             );
         } else {
-            body += &table_of(language, &found, [&first.name, &other.name]);
+            body += &table_of(language, scenario, &found, [&first.name, &other.name]);
         }
         for one in found {
-            if !shown.contains(&one.metric) {
-                shown.push(one.metric.clone());
+            if !metrics.contains(&one.metric) {
+                metrics.push(one.metric.clone());
             }
         }
     }
-    for metric in &shown {
-        let (name, factor) = named(language, metric);
+    for metric in &metrics {
+        let (name, factor) = named(language, scenario, metric);
         let groups = variants.iter().map(|variant| {
             let values = variant.metrics.iter().filter_map(|run| run.get(metric));
             (
@@ -105,21 +103,20 @@ pub fn page(
 }
 
 /// The metric's name with its step and unit, and the factor to that unit.
-fn named(language: Language, metric: &str) -> (String, f64) {
-    let shown = bare(language, metrics::bare(metric)).unwrap_or_else(|| judge::plain(""));
-    let unit = match shown.unit {
-        "" => String::new(),
-        unit => format!(", {unit}"),
-    };
-    let name = match metric.split_once('.') {
-        _ if shown.name.is_empty() => metric.to_owned(),
-        Some((of, _)) => format!("{of}: {}{unit}", shown.name),
-        None => format!("{}{unit}", shown.name),
-    };
-    (name, shown.factor)
+fn named(language: Language, scenario: &ScenarioFile, metric: &str) -> (String, f64) {
+    match shown(language, scenario, metric) {
+        None => (metric.to_owned(), 1.0),
+        Some(known) if known.unit.is_empty() => (known.name, known.factor),
+        Some(known) => (format!("{}, {}", known.name, known.unit), known.factor),
+    }
 }
 
-fn table_of(language: Language, found: &[&Difference], names: [&str; 2]) -> String {
+fn table_of(
+    language: Language,
+    scenario: &ScenarioFile,
+    found: &[&Difference],
+    names: [&str; 2],
+) -> String {
     let header = [
         METRIC.of(language),
         names[0],
@@ -129,12 +126,15 @@ fn table_of(language: Language, found: &[&Difference], names: [&str; 2]) -> Stri
         EFFECT.of(language),
         BETTER.of(language),
     ];
-    let rows: Vec<Vec<Cell>> = found.iter().map(|one| row(language, one)).collect();
+    let rows: Vec<Vec<Cell>> = found
+        .iter()
+        .map(|one| row(language, scenario, one))
+        .collect();
     table(&header, &rows)
 }
 
-fn row(language: Language, one: &Difference) -> Vec<Cell> {
-    let (name, factor) = named(language, &one.metric);
+fn row(language: Language, scenario: &ScenarioFile, one: &Difference) -> Vec<Cell> {
+    let (name, factor) = named(language, scenario, &one.metric);
     let figure = |value: f64| language.significant(factor * value, 3);
     let [low, high] = one.interval;
     let tone = match (one.is_clear(), one.better >= one.worse) {

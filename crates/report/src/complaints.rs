@@ -17,6 +17,15 @@ pub(crate) struct Complaint {
 }
 
 impl Complaint {
+    /// As a line.
+    pub(crate) fn text(self) -> String {
+        match (self.own.is_empty(), self.english.is_empty()) {
+            (_, true) => self.own,
+            (true, false) => self.english,
+            (false, false) => format!("{} ({})", self.own, self.english),
+        }
+    }
+
     /// As HTML.
     pub(crate) fn html(&self) -> String {
         let english = escape(&self.english);
@@ -173,7 +182,7 @@ mod tests {
     fn faults_and_refusals_are_translated_whole_and_left_alone_in_english() {
         let faults = Fault::ALL.map(|fault| format!("at 1.20 s fault: {}", fault.explanation()));
         let refusals = Refusal::ALL
-            .map(|refusal| format!("at 0.50 s Arm was refused: {}", refusal.explanation()));
+            .map(|refusal| format!("at 0.50 s ON was refused: {}", refusal.explanation()));
         for line in faults.iter().chain(&refusals) {
             let spanish = complaint(Language::Spanish, line);
             assert!(

@@ -21,6 +21,7 @@ use rumbo_plot::{Curve, Ink, Panel, Plot, Points};
 use rumbo_wire::Command;
 
 const POINTS_OF: Text = word("points-of");
+const EARNED: Text = word("earned-by-line");
 const NOT_DRIVEN: Text = word("could-not-be-driven");
 const ENDED: Text = word("program-ended");
 const NOTES: Text = word("notes");
@@ -57,6 +58,49 @@ pub fn of(language: Language, words: &Words) -> &str {
         (Language::Spanish, Some(spanish)) => spanish,
         _ => &words.text,
     }
+}
+
+/// What is noted of a hand-in or of how its program ended, in a language.
+#[must_use]
+pub fn noted(language: Language, line: &str) -> String {
+    complaint(language, line).text()
+}
+
+/// Points and measurement of a line of the rubric, in a language.
+#[must_use]
+pub fn earned_in_words(assignment: &Assignment, line: &Line, language: Language) -> String {
+    let criterion = &assignment.criteria[line.criterion];
+    let shown = metric(assignment, line, language);
+    let in_words = |value| judge::value(language, &shown, value);
+    let values = [
+        ("points", language.number(line.points, 2)),
+        ("of", language.short(line.of, 2)),
+        ("metric", shown.name.clone()),
+        (
+            "value",
+            in_words(line.median(assignment).unwrap_or(f64::NAN)),
+        ),
+        ("full", full(language, assignment, line)),
+        ("none", in_words(criterion.none)),
+    ];
+    let values = values
+        .each_ref()
+        .map(|(name, value)| (*name, value.as_str()));
+    EARNED.with(language, &values)
+}
+
+/// From where on a line has all points.
+fn full(language: Language, assignment: &Assignment, line: &Line) -> String {
+    let criterion = &assignment.criteria[line.criterion];
+    let bound = match criterion.full < criterion.none {
+        true => AT_MOST,
+        false => AT_LEAST,
+    };
+    let shown = metric(assignment, line, language);
+    bound.with(
+        language,
+        &[("value", &judge::value(language, &shown, criterion.full))],
+    )
 }
 
 /// The page of one hand-in.
@@ -170,11 +214,8 @@ fn verdict(mark: &Mark, language: Language) -> String {
 /// A metric as displayed, for the plotted run or any other.
 fn metric(assignment: &Assignment, line: &Line, language: Language) -> Shown {
     let criterion = &assignment.criteria[line.criterion];
-    let outcome = Outcome {
-        setup: assignment.tests[line.test].setup.clone(),
-        result: Default::default(),
-    };
-    shown(language, &outcome, &criterion.metric).unwrap_or(Shown {
+    let scenario = &assignment.tests[line.test].setup.scenario;
+    shown(language, scenario, &criterion.metric).unwrap_or(Shown {
         name: criterion.metric.clone(),
         ..judge::plain("")
     })
@@ -203,12 +244,8 @@ fn points(assignment: &Assignment, mark: &Mark, language: Language) -> String {
         }
         put(&mut asked, format_args!("<br><small>{below}</small>"));
         let in_words = |value| judge::value(language, &shown, value);
-        let bound = match criterion.full < criterion.none {
-            true => AT_MOST,
-            false => AT_LEAST,
-        };
         let median = line.median(assignment).unwrap_or(f64::NAN);
-        let full = line
+        let all = line
             .values
             .iter()
             .filter(|value| criterion.share(**value) >= 1.0);
@@ -216,9 +253,9 @@ fn points(assignment: &Assignment, mark: &Mark, language: Language) -> String {
             Cell::html(asked),
             earned(language, line.points, line.of),
             Cell::text(&in_words(median)),
-            Cell::text(&bound.with(language, &[("value", &in_words(criterion.full))])),
+            Cell::text(&full(language, assignment, line)),
             Cell::text(&in_words(criterion.none)),
-            Cell::text(&format!("{} / {}", full.count(), line.values.len())),
+            Cell::text(&format!("{} / {}", all.count(), line.values.len())),
         ]);
     }
     if mark.penalty > 0.0 {

@@ -133,7 +133,7 @@ pub(crate) fn limits_together(language: Language, outcomes: &[&Outcome]) -> Stri
 /// A run's metrics that have a limit.
 fn rows(language: Language, outcome: &Outcome) -> Vec<Vec<Cell>> {
     let row = |(key, limit): (&String, &Bounds)| {
-        let shown = shown(language, outcome, key)?;
+        let shown = shown(language, &outcome.setup.scenario, key)?;
         let found = outcome.metric(key).unwrap_or(f64::NAN);
         let (verdict, tone) = if limit.admit(found) {
             (KEPT, Tone::Good)
@@ -202,7 +202,10 @@ mod tests {
                 let outcome = Outcome { setup, result };
                 for key in limits {
                     for language in [Language::English, Language::Spanish] {
-                        assert!(shown(language, &outcome, &key).is_some(), "{name}: {key}");
+                        assert!(
+                            shown(language, &outcome.setup.scenario, &key).is_some(),
+                            "{name}: {key}"
+                        );
                     }
                 }
             }

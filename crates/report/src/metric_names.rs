@@ -1,9 +1,10 @@
 //! What each metric is called in both languages, and in which unit people read it.
 
 use crate::judge::{capital, with_unit};
-use crate::signals::{CM, DEG, Outcome, RPM};
+use crate::signals::{CM, DEG, RPM};
 use crate::text::{Language, Text, same, word};
 use rumbo_control::mode::ReferenceKind;
+use rumbo_experiment::files::ScenarioFile;
 use rumbo_wire::Command;
 
 /// A metric's name, what its value is multiplied with to be shown, and the unit then.
@@ -123,15 +124,15 @@ pub(crate) struct Shown {
     pub(crate) unit: &'static str,
 }
 
-/// What a metric of a run is called; `None` for one that this table does not know.
-pub(crate) fn shown(language: Language, outcome: &Outcome, key: &str) -> Option<Shown> {
+/// What a metric of a scenario's run is called; `None` for one that this table does not know.
+pub(crate) fn shown(language: Language, scenario: &ScenarioFile, key: &str) -> Option<Shown> {
     let (prefix, stem) = key.split_once('.').unwrap_or(("", key));
     let number = |name: &str| -> Option<usize> { prefix.strip_prefix(name)?.parse().ok() };
     let turn = stem
         .strip_prefix("turn")
         .and_then(|rest| rest.strip_suffix("_rad"));
     let (of, stem) = if let Some(index) = number("step") {
-        let reference = step_references(language, outcome)
+        let reference = step_references(language, scenario)
             .into_iter()
             .nth(index - 1);
         (
@@ -163,7 +164,7 @@ pub(crate) fn shown(language: Language, outcome: &Outcome, key: &str) -> Option<
     } else if let Some(index) = turn.filter(|index| !index.is_empty()) {
         (TURN.with(language, &[("number", index)]), "turn_rad")
     } else {
-        (String::new(), stem)
+        (prefix.to_owned(), stem)
     };
     let shown = bare(language, stem)?;
     let name = match of.is_empty() {
@@ -186,8 +187,7 @@ pub(crate) fn bare(language: Language, stem: &str) -> Option<Shown> {
 }
 
 /// The reference of each step of a run, as its metrics count them: those in force while the robot is armed.
-fn step_references(language: Language, outcome: &Outcome) -> Vec<String> {
-    let scenario = &outcome.setup.scenario;
+fn step_references(language: Language, scenario: &ScenarioFile) -> Vec<String> {
     let (factor, unit) = match scenario.mode.takes_reference() {
         Some(ReferenceKind::WheelSpeed | ReferenceKind::Speed) => (RPM, "rpm"),
         _ => (CM, "cm"),

@@ -201,7 +201,7 @@ fn summary(data: &Data, language: Language) -> String {
 fn highlights(language: Language, data: &Data, experiment: &Experiment) -> Vec<[Cell; 3]> {
     let row = |highlight: &Highlight| {
         let outcome = data.outcome(highlight.scenario)?;
-        let shown = shown(language, outcome, highlight.metric)?;
+        let shown = shown(language, &outcome.setup.scenario, highlight.metric)?;
         let ours = judge::value(language, &shown, outcome.metric(highlight.metric)?);
         let real = highlight
             .real

@@ -25,6 +25,8 @@ pub enum TargetError {
     NoCompiler,
     /// It takes no program from a page.
     NoPrograms,
+    /// Several robots share the world, and a program from a page is for one.
+    Several,
     /// The name is not that of a program's file.
     NotAProgram,
     /// No ghost runs beside it.
@@ -57,6 +59,9 @@ impl fmt::Display for TargetError {
                 "compiling a sketch needs rumbo on a computer; drop the .elf or .hex that a compiler made",
             ),
             Self::NoPrograms => f.write_str("this robot takes no program from a page"),
+            Self::Several => f.write_str(
+                "here are several robots, and a program from the page runs on one alone; set robots to 1, or choose a scenario with one",
+            ),
             Self::NotAProgram => {
                 f.write_str("only an .ino, .elf or .hex file is a program for the Mega")
             }

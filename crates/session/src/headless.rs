@@ -5,7 +5,6 @@ use crate::event::Event;
 use crate::observer::Observer;
 use crate::observer::describe::{Around, describe};
 use crate::target::Shown;
-use crate::words;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::Params;
 use rumbo_log::{
@@ -230,7 +229,7 @@ impl RunRecorder {
                 self.observer.note(
                     to_ms(burst.t_us),
                     Level::Info,
-                    format!("sent: {}", words::command(&command, mode)),
+                    format!("sent: {}", command.in_words(mode)),
                 );
             }
         }

@@ -5,75 +5,15 @@ use crate::client::NotTaken;
 use crate::commands::{Fate, Outcome};
 use rumbo_control::Velocity;
 use rumbo_control::mode::twist::{MAX_FORWARD_M_S, MAX_YAW_RAD_S};
-use rumbo_control::mode::{ModeId, Movement, Reference, ReferenceKind, SetpointError};
-use rumbo_control::params::ParamId;
+use rumbo_control::mode::{ModeId, Reference, ReferenceKind, SetpointError};
 use rumbo_log::parameter;
 
 use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
-use rumbo_wire::message::Waypoint;
-use rumbo_wire::{Command, Level, PROTOCOL_VERSION, Refusal};
+use rumbo_wire::{Command, PROTOCOL_VERSION, Refusal};
 use std::f32::consts::TAU;
 
 fn rpm(speed_rad_s: f32) -> f32 {
     speed_rad_s * 60.0 / TAU
-}
-
-/// The command in words; `mode` gives a reference its unit.
-pub(crate) fn command(command: &Command, mode: ModeId) -> String {
-    match command {
-        Command::Stop => "STOP".into(),
-        Command::Arm => "ON".into(),
-        Command::Disarm => "OFF".into(),
-        Command::ClearFault => "clear the fault".into(),
-        Command::Mode(mode) => format!("mode {} {}", *mode as u8, mode.name()),
-        Command::Reference(value) => match mode.takes_reference() {
-            Some(ReferenceKind::WheelSpeed | ReferenceKind::Speed) => {
-                format!("setpoint {:.0} rpm", rpm(*value))
-            }
-            _ => format!("setpoint {:.1} cm", value * 100.0),
-        },
-        Command::WheelReference(wheels) => {
-            format!(
-                "setpoints left {:.0} rpm, right {:.0} rpm",
-                rpm(wheels.left),
-                rpm(wheels.right)
-            )
-        }
-        Command::Move {
-            movement,
-            level: Level::Duty(duty),
-        } => {
-            let movement = movement_words(*movement);
-            format!("movement {movement} with {:.0} % PWM", duty * 100.0)
-        }
-        Command::Move {
-            movement,
-            level: Level::Speed(speed_rad_s),
-        } => {
-            let movement = movement_words(*movement);
-            format!("movement {movement} at {:.0} rpm", rpm(*speed_rad_s))
-        }
-        Command::SetParam { id, value } => {
-            let kind = ParamId::from_number(*id).map(ParamId::kind);
-            match kind.and_then(|kind| kind.name_of(*value)) {
-                Some(name) => format!("{} = {name}", parameter_name(*id)),
-                None => format!("{} = {value}", parameter_name(*id)),
-            }
-        }
-        Command::GetParam { id } => format!("read {}", parameter_name(*id)),
-        Command::ResetParams => "all parameters to their defaults".into(),
-        Command::SaveParams => "save the parameters on the robot".into(),
-        Command::ResetPose => "the current position is the origin".into(),
-        Command::Goal { x_m, y_m } => format!("goal ({x_m:.2}, {y_m:.2}) m"),
-        Command::Lane => "follow the lane".into(),
-        Command::Route { repeat, .. } => {
-            let how = if *repeat { "again and again" } else { "once" };
-            format!("a new route, {how}")
-        }
-        Command::Waypoint(Waypoint { x_m, y_m, .. }) => {
-            format!("waypoint ({x_m:.2}, {y_m:.2}) m")
-        }
-    }
 }
 
 /// The velocity in words.
@@ -94,28 +34,9 @@ pub(crate) fn bad_velocity(why: SetpointError) -> String {
     format!("{what}: up to {MAX_FORWARD_M_S} m/s and {MAX_YAW_RAD_S} rad/s either way")
 }
 
-/// A movement by the name of its button.
-fn movement_words(movement: Movement) -> &'static str {
-    match movement {
-        Movement::Stop => "release both wheels",
-        Movement::Forward => "forward",
-        Movement::Backward => "backward",
-        Movement::TurnLeft => "turn left about the centre",
-        Movement::TurnRight => "turn right about the centre",
-        Movement::PivotLeftForward => "pivot on the left wheel, forward",
-        Movement::PivotLeftBackward => "pivot on the left wheel, backward",
-        Movement::PivotRightForward => "pivot on the right wheel, forward",
-        Movement::PivotRightBackward => "pivot on the right wheel, backward",
-        Movement::ArcLeft => "arc left",
-        Movement::ArcRight => "arc right",
-        Movement::ArcLeftBackward => "arc backward, centre on the left",
-        Movement::ArcRightBackward => "arc backward, centre on the right",
-    }
-}
-
 /// How a command ended, in words.
 pub(crate) fn outcome(outcome: &Outcome, mode: ModeId) -> String {
-    let asked = command(&outcome.command, mode);
+    let asked = outcome.command.in_words(mode);
     match outcome.fate {
         Fate::Applied(_) => format!("{asked}: acknowledged"),
         Fate::Refused(why) => {
@@ -190,13 +111,10 @@ fn allowed(mode: ModeId) -> Option<String> {
     })
 }
 
-fn parameter_name(id: u8) -> String {
-    parameter(id).map_or_else(|| format!("parameter {id}"), |entry| entry.name.into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rumbo_control::params::ParamId;
 
     #[test]
     fn a_parameter_that_is_a_choice_or_a_switch_is_named_with_its_value() {
@@ -206,7 +124,7 @@ mod tests {
                 value,
             };
             (
-                super::command(&command, ModeId::Manual),
+                command.in_words(ModeId::Manual).to_string(),
                 refusal(Refusal::OutOfRange, &command, ModeId::Manual),
             )
         };

@@ -79,6 +79,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/signals.js": SCRIPT,
     "src/site.js": SCRIPT,
     "src/sketch.js": SCRIPT,
+    "src/spanish/files.js": SCRIPT,
     "src/spanish/guide.js": SCRIPT,
     "src/spanish/page.js": SCRIPT,
     "src/spanish/parameters.js": SCRIPT,

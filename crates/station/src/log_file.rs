@@ -113,7 +113,7 @@ impl fmt::Display for Problem {
             ),
             Self::Dropped(entries) => write!(
                 f,
-                "recording: the disk is slow, {entries} entries are missing in the log"
+                "recording: the disk is slow; entries missing in the log: {entries}"
             ),
             Self::Broken => f.write_str("recording ended by a fault of its own; please report it"),
         }

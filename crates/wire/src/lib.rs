@@ -26,6 +26,8 @@ mod text_line;
 mod text_published;
 mod text_row;
 mod text_telemetry;
+#[cfg(feature = "names")]
+mod words;
 
 pub use codec::{Malformed, Message};
 pub use decoder::{Decoder, Received};

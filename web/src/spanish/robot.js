@@ -18,7 +18,7 @@ export const ROBOT = {
   'reach a goal by a learned network': 'llegar a un destino con una red aprendida',
   'a forward speed and a yaw rate from outside': 'una velocidad de avance y otra de giro, desde fuera',
   // Groups of parameters.
-  'arcs': 'arcos', 'approach to the wall': 'acercamiento a la pared', 'straightening': 'corrección del rumbo', 'angle to the wall': 'ángulo con la pared',
+  'end of a goal': 'final de un destino', 'arcs': 'arcos', 'approach to the wall': 'acercamiento a la pared', 'straightening': 'corrección del rumbo', 'angle to the wall': 'ángulo con la pared',
   'along the wall': 'a lo largo de la pared', 'distance to the wall': 'distancia a la pared', 'ramp': 'rampa', 'route': 'ruta', 'lane': 'carril',
   'speed loops': 'lazos de velocidad', 'feedforward': 'prealimentación', 'ramps of the wheels': 'rampas de las ruedas', 'turns on the spot': 'giros en el sitio',
   'straight lines': 'líneas rectas',
@@ -200,10 +200,12 @@ export const ROBOT = {
   'collision: the robot touches something': 'colisión: el robot toca algo', 'the changed program runs, from the start': 'el programa modificado está en marcha, desde el principio',
   'the changed program does not compile: the robot is switched off until it does': 'el programa modificado no compila: el robot está apagado hasta que compile',
   'compiler: {}': 'compilador: {}', 'program: refused, {}': 'programa: rechazado, {}', 'only an .ino, .elf or .hex file is a program for the Mega': 'solo un archivo .ino, .elf o .hex es un programa para el Mega',
+  'here are several robots, and a program from the page runs on one alone; set robots to 1, or choose a scenario with one':
+    'aquí hay varios robots, y un programa de la página va en uno solo; pon robots en 1 o elige un escenario con uno',
   'refused: a program is taken only where no other computer reaches the page': 'rechazado: solo se acepta un programa donde ningún otro ordenador alcanza la página',
   'the program does not compile; correct it and save': 'el programa no compila; corrígelo y guárdalo', 'this robot takes no program from a page': 'este robot no acepta programas desde una página',
   'recording to {}': 'grabando en {}', 'not recording: {}': 'no se graba: {}', 'recording ended: the log cannot be written ({}); is the disk full?': 'fin de la grabación: no se puede escribir ({}); ¿disco lleno?',
-  'recording: the disk is slow, {} entries are missing in the log': 'grabación: el disco es lento, faltan {} entradas',
+  'recording: the disk is slow; entries missing in the log: {}': 'grabación: el disco es lento; entradas que faltan: {}',
   'recording: more came in this second than a robot says; {} bytes of the link and {} samples and events are left out':
     'grabación: en este segundo llegó más de lo que un robot dice; se omiten {} bytes del enlace y {} muestras y eventos',
   'about the log: {}': 'sobre la grabación: {}',
@@ -235,6 +237,9 @@ export const ROBOT = {
   'not while a real robot is driven: go back to the lab first': 'no mientras se conduce un robot real: vuelve antes al laboratorio',
   'the recording is full: save it, and connect again for another one': 'la grabación está llena: guárdala y vuelve a conectar para empezar otra',
   'there are two of the kind: choose one again': 'hay dos iguales: elige uno otra vez', 'the browser does not offer it: plug it in, or choose it again': 'el navegador no lo ofrece: enchúfalo o elígelo otra vez',
+  'port {} closes as soon as it is open ({}): is the robot behind it on, and no other program connected to it? It is tried again every few seconds':
+    'el puerto {} se cierra nada más abrirse ({}): ¿está encendido el robot al otro lado, y ningún otro programa conectado a él? Se prueba otra vez cada pocos segundos',
+  'the other side closed it': 'lo cerró el otro extremo',
   'port {} is gone ({}); waiting for it': 'el puerto {} ya no está ({}); se espera a que vuelva', 'port {} is back': 'el puerto {} ha vuelto',
   'saved parameters': 'parámetros guardados', 'saved parameters: {}': 'parámetros guardados: {}', 'parameters saved on the robot': 'parámetros guardados en el robot',
   'in force since the start, from the first copy': 'en vigor desde el arranque, de la primera copia',
@@ -260,7 +265,7 @@ export const ROBOT = {
   '{}: scenario {} sets it itself, whatever a robot file says; take it out of the scenario': '{}: lo fija el propio escenario {}, diga lo que diga el archivo del robot; quítalo del escenario',
   '`{}`: write metrics and limits with commas between them, e.g. "settling_s, overshoot_m < 0.01"': '`{}`: escribe métricas y límites separados por comas, p. ej. "settling_s, overshoot_m < 0.01"',
   '`{}`: its limit is not a number': '`{}`: su límite no es un número',
-  'unknown {} `{}`; {}': 'no hay {} `{}`; {}', 'did you mean {}?': '¿quizá {}?', 'did you mean {} or {}?': '¿quizá {} o {}?', 'known are {}': 'hay {}', 'none is like it': 'ninguno se le parece',
+  'unknown {} `{}`; {}': 'no hay {} `{}`; {}', 'did you mean {}?': '¿quizá {}?', 'did you mean {} or {}?': '¿quizá {} o {}?', 'known are {}': 'hay {}', 'none is like it; see `rumbo list`': 'ninguno se le parece; mira `rumbo list`',
   'parameter of the control core': 'parámetro del programa de control',
   // Commands, and how they ended.
   'sent: {}': 'enviado: {}',

@@ -134,12 +134,7 @@ pub(crate) struct OverwriteArgs {
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct SeedArgs {
     /// Random seed, robot-to-robot variation included; run i uses seed + i
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
 }
 

@@ -26,7 +26,7 @@ pub(crate) use studies::{SweepArgs, TuneArgs};
 
 use crate::failure::Failure;
 use clap::error::{ContextKind, ContextValue};
-use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use rumbo_sim::boards::Board;
 use std::path::PathBuf;
 
@@ -237,8 +237,10 @@ pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
     let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     let message: Vec<&str> = lines
         .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"))
+        // An option that does not exist is no value.
+        .filter(|line| !line.starts_with("tip: to pass"))
         .collect();
-    let message = message.join("; ").replace(":; ", ": ");
+    let message = in_words(message.join("; ").replace(":; ", ": "));
     Err(Failure::Input(format!(
         "{}; see `{} --help`",
         message.trim_start_matches("error: "),
@@ -263,6 +265,53 @@ fn left_out(error: &clap::Error) -> Option<String> {
     Some(format!(
         "{word}: this rumbo is built without it; in a checkout, `cargo install --path crates/cli --features {feature}` builds one with it ({page})"
     ))
+}
+
+impl Cli {
+    /// The words that the process was started with.
+    pub(crate) fn of_process() -> Result<Self, clap::Error> {
+        let matches = with_negatives(Self::command()).try_get_matches()?;
+        Self::from_arg_matches(&matches)
+    }
+}
+
+/// The command, with `-1` as the value of any option before it: what is wrong with the value is then said.
+fn with_negatives(command: clap::Command) -> clap::Command {
+    command
+        .mut_args(|arg| {
+            let takes = arg.get_long().is_some() && arg.get_action().takes_values();
+            arg.allow_negative_numbers(takes)
+        })
+        .mut_subcommands(with_negatives)
+}
+
+/// What the parser of numbers and addresses says of a value, as people say it.
+fn in_words(message: String) -> String {
+    const WORDS: [(&str, &str); 3] = [
+        (
+            "invalid digit found in string",
+            "must be a whole number from 0 on",
+        ),
+        ("number too large to fit in target type", "is too large"),
+        (
+            "invalid IP address syntax",
+            "must be an IP address of this computer, e.g. 192.168.1.7",
+        ),
+    ];
+    let range = message
+        .rsplit_once(" is not in ")
+        .and_then(|(value, range)| {
+            let (least, most) = range.split_once("..=")?;
+            let (before, _) = value.rsplit_once(' ')?;
+            Some(format!(
+                "{before} must be a whole number within {least}..{most}"
+            ))
+        });
+    range.unwrap_or_else(|| {
+        WORDS
+            .iter()
+            .fold(message, |message, (from, to)| message.replace(from, to))
+    })
 }
 
 /// The command whose help to suggest.

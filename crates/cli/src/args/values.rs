@@ -15,7 +15,9 @@ pub(super) fn board(text: &str) -> Result<&'static Board, String> {
 pub(super) fn speed(text: &str) -> Result<f64, Failure> {
     match text.parse() {
         Ok(speed) if (0.0..=100.0).contains(&speed) => Ok(speed),
-        _ => Err(Failure::input("must be a number within 0..100")),
+        _ => Err(Failure::input(
+            "must be a number of times real time, within 0..100, e.g. 4 or 0.5",
+        )),
     }
 }
 
@@ -25,7 +27,9 @@ pub(super) fn positive_speed(text: &str) -> Result<f64, Failure> {
     let speed = speed(text)?;
     match speed >= 0.01 {
         true => Ok(speed),
-        false => Err(Failure::input("must be at least 0.01")),
+        false => Err(Failure::input(
+            "must be at least 0.01 times real time, e.g. 0.5",
+        )),
     }
 }
 

@@ -1,9 +1,10 @@
-//! Marks for other programs: a gradebook's CSV, JUnit XML for continuous integration, Gradescope's `results.json`.
+//! Marks for other programs: a gradebook's CSV, JUnit XML for continuous integration, Gradescope's `results.json`. Keys
+//! and what programs read are English; Gradescope shows students its texts, which are in the language of the pages.
 
 use crate::export::text_cell;
 use crate::failure::Failure;
-use rumbo_experiment::grade::{Assignment, Line, Mark};
-use rumbo_report::grade::of;
+use rumbo_experiment::grade::{Assignment, Mark};
+use rumbo_report::grade::{earned_in_words, noted, of};
 use rumbo_report::text::Language;
 use serde_json::json;
 use std::fmt::Write;
@@ -70,7 +71,7 @@ pub(super) fn junit(assignment: &Assignment, marks: &[Mark]) -> String {
             );
             let why = match mark.refused.first() {
                 Some(why) => why.clone(),
-                None => said(assignment, line),
+                None => earned_in_words(assignment, line, Language::English),
             };
             let _ = match line.is_full() {
                 true => writeln!(xml, "/>"),
@@ -86,20 +87,7 @@ pub(super) fn junit(assignment: &Assignment, marks: &[Mark]) -> String {
     xml + "</testsuites>\n"
 }
 
-/// Measurements and points of a line.
-fn said(assignment: &Assignment, line: &Line) -> String {
-    let criterion = &assignment.criteria[line.criterion];
-    let value = match line.median(assignment) {
-        Some(value) => crate::output::figure(value),
-        None => "never".into(),
-    };
-    format!(
-        "{:.2} of {:.2} points: {} = {value} in the median run; all points at {}, none at {}",
-        line.points, line.of, criterion.metric, criterion.full, criterion.none
-    )
-}
-
-/// A hand-in's `results.json`.
+/// A hand-in's `results.json`, its texts in a language.
 pub(super) fn gradescope(
     assignment: &Assignment,
     mark: &Mark,
@@ -115,16 +103,19 @@ pub(super) fn gradescope(
                 true => "",
                 false => of(language, &criterion.advice),
             };
+            let earned = earned_in_words(assignment, line, language);
             json!({
                 "name": of(language, &criterion.title),
                 "score": cents(line.points),
                 "max_score": cents(line.of),
                 "status": if line.is_full() { "passed" } else { "failed" },
-                "output": format!("{}\n{advice}", said(assignment, line)).trim_end(),
+                "extra_data": { "metric": criterion.metric },
+                "output": format!("{earned}\n{advice}").trim_end(),
             })
         })
         .collect();
     let text = [notes, &mark.notes, &mark.refused, &mark.ended].concat();
+    let text: Vec<_> = text.iter().map(|line| noted(language, line)).collect();
     let results = json!({
         "score": mark.points,
         "output": text.join("\n"),

@@ -135,10 +135,10 @@ fn end<T: Target>(mut driven: Driven<T>, done: Result<(), Failure>) -> Result<Pa
     }
 }
 
-/// Waits until the robot answers in frames.
+/// Waits until the robot answers in frames and takes orders.
 fn answer<T: Target>(driven: &mut Driven<T>, asked: &AtomicBool) -> Result<(), Failure> {
     let until_us = driven.now_us() + ANSWER_US;
-    while driven.signals(SILENT_US).is_none() {
+    while !driven.is_connected() || driven.signals(SILENT_US).is_none() {
         pass(driven, asked)?;
         if driven.now_us() >= until_us {
             return Err(Failure::Input(

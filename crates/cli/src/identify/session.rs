@@ -42,6 +42,8 @@ struct Recording {
     /// The newest signals, and whether they are newer than those that were looked at.
     newest: Option<Row>,
     is_new: bool,
+    /// The robot takes orders.
+    connected: bool,
     /// The last message of a fault, a refusal or a loss.
     trouble: Option<String>,
 }
@@ -74,6 +76,7 @@ impl Host for Recording {
                 self.is_new |= known.is_some();
                 self.newest = known.copied().or(self.newest);
             }
+            Entry::State(state) => self.connected = state.link.connected,
             Entry::Event(event) if matches!(event.level, Level::Warning | Level::Fault) => {
                 self.trouble = Some(event.text.clone());
             }
@@ -108,6 +111,7 @@ impl<T: Target> Driven<T> {
             failure: None,
             newest: None,
             is_new: false,
+            connected: false,
             trouble: None,
         };
         let mut driver = Driver::new(Box::new(target), recording, 1.0, Extras::default());
@@ -146,6 +150,11 @@ impl<T: Target> Driven<T> {
     pub(crate) fn signals(&mut self, age_us: u64) -> Option<Row> {
         let is_young = self.now_us() <= self.newest_us + age_us;
         self.driver.host().newest.filter(|_| is_young)
+    }
+
+    /// Whether the robot takes orders. Its telemetry comes without being asked for, and before that.
+    pub(crate) fn is_connected(&mut self) -> bool {
+        self.driver.host().connected
     }
 
     /// The last message of a fault, a refusal or a loss since it was last asked.

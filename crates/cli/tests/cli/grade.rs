@@ -120,9 +120,8 @@ fn model_solutions_get_full_marks_and_mistakes_lose_points_on_their_line() {
         assert_eq!(points("model"), 10.0, "{name}: {}", results["model"]);
         for (number, (what, _, loses)) in mistakes.iter().enumerate() {
             let result = &results[&format!("bug{number}")];
-            let of = format!(": {loses} = ");
             let mut lines = result["tests"].as_array().unwrap().iter();
-            let line = lines.find(|line| line["output"].as_str().unwrap().contains(&of));
+            let line = lines.find(|line| line["extra_data"]["metric"] == *loses);
             let lost = line.is_some_and(|line| line["score"].as_f64() < line["max_score"].as_f64());
             graded += 1;
             if !lost {
@@ -191,7 +190,7 @@ fn hand_ins_for_an_uno_are_compiled_and_driven_on_one() {
     let mark = |more: &[&str]| {
         let mut command = program();
         command.current_dir(&bench);
-        command.args(["grade", "assignment.toml", "in", "--language", "en"]);
+        command.args(["grade", "assignment.toml", "in", "--language", "es"]);
         command.args(more);
         command.env("RUMBO_CACHE", folder().join("sketches"));
         command.output().unwrap()
@@ -202,6 +201,14 @@ fn hand_ins_for_an_uno_are_compiled_and_driven_on_one() {
     let points = |hand_in: &str| results[hand_in]["score"].as_f64().unwrap();
     assert!(points("model") > 8.5, "{}", results["model"]);
     assert_eq!(points("lazy"), 0.0);
+    // What students read there is in their language, whole.
+    let lines = results["lazy"]["tests"].as_array().unwrap().iter();
+    for line in lines.map(|line| line["output"].as_str().unwrap()) {
+        assert!(
+            line.contains(" puntos: ") && !line.contains("median run"),
+            "{line}"
+        );
+    }
     // A Uno has one serial port.
     assert_eq!(points("mega"), 0.0);
     let said = results["mega"].to_string();

@@ -222,7 +222,9 @@ fn variants_are_compared_pair_by_pair() {
         said.contains("1: kv=0, ") && said.contains("2: kv=0.02, "),
         "{said}"
     );
-    assert!(read(&folder, "page.html").contains("Diferencia media"));
+    let shown = read(&folder, "page.html");
+    assert!(shown.contains("Diferencia media") && shown.contains("Escalón 1, a "));
+    assert!(!shown.contains("step1"));
     let json: Value = serde_json::from_slice(&run(&["--json"]).stdout).unwrap();
     let rise = json["differences"].as_array().unwrap();
     let rise = rise

@@ -1,6 +1,7 @@
 //! Why a calibration failed; the robot has been stopped.
 
 use rumbo_control::Fault;
+use rumbo_control::mode::ModeId;
 use rumbo_wire::{Command, Refusal};
 use std::fmt;
 
@@ -30,7 +31,8 @@ impl fmt::Display for CalibrateError {
         match self {
             Self::NoAnswer => write!(f, "the robot does not answer; check the link"),
             Self::Refused(command, refusal) => {
-                write!(f, "{command:?} was refused: {}", refusal.explanation())
+                let what = command.in_words(ModeId::Manual);
+                write!(f, "{what} was refused: {}", refusal.explanation())
             }
             Self::Faulted(fault) => write!(f, "the robot stopped: {}", fault.explanation()),
             Self::WrongRig => write!(

@@ -322,9 +322,8 @@ impl Setup {
     pub fn config(&self, seed: u64) -> Result<Config, FileError> {
         if !self.fleet.is_empty() {
             return Err(FileError::Setting(format!(
-                "scenario {}: has {} robots, and here one is driven; choose a scenario without [[fleet]]",
-                self.scenario.name,
-                self.fleet.len()
+                "scenario {}: has robots of its own, and here one is driven; choose a scenario without [[fleet]]",
+                self.scenario.name
             )));
         }
         let setup = &*self.of_seed(seed)?;

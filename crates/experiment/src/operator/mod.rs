@@ -302,8 +302,9 @@ impl<S: Deref<Target = Setup>> Operator<S> {
                     if let (Some((command, ..)), Err(refusal)) = (self.pending.take(), ack.result) {
                         let now_s = sim.now_us() as f64 * 1e-6;
                         let why = refusal.explanation();
+                        let what = command.in_words(self.setup.scenario.mode);
                         self.complaints
-                            .push(format!("at {now_s:.2} s {command:?} was refused: {why}"));
+                            .push(format!("at {now_s:.2} s {what} was refused: {why}"));
                     }
                 }
                 Ok(FromRobot::Event(event)) => {

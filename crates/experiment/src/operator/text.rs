@@ -71,7 +71,8 @@ impl Terminal {
         }
         if lines == [None; 2] {
             return Some(format!(
-                "the original's text has no words for {command:?}: not sent"
+                "the original's text has no words for this, which is not sent: {}",
+                command.in_words(self.mode)
             ));
         }
         for line in lines.into_iter().flatten() {

@@ -202,7 +202,7 @@ fn where_one_robot_is_driven_a_fleet_is_refused() {
     let setup = setup_of(&format!("{TO_THE_WALL}{THREE}")).unwrap();
     let error = setup.sim(1).map(drop).unwrap_err().to_string();
     assert!(
-        error.contains("has 3 robots, and here one is driven"),
+        error.contains("has robots of its own, and here one is driven"),
         "{error}"
     );
 }

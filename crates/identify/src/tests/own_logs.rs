@@ -147,7 +147,7 @@ fn a_frame_without_speeds_is_left_out_and_named() {
     let found = cut(rows, &[]);
     assert_eq!(found.logs.len(), 1);
     assert!(
-        found.notes[0].contains("1 frames") && found.notes[0].contains("2.00 s"),
+        found.notes[0].contains("left out: 1, ") && found.notes[0].contains("2.00 s"),
         "{:?}",
         found.notes
     );

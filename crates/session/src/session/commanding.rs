@@ -127,7 +127,7 @@ impl Session {
             return self.refuse(command, why, now);
         }
         self.observer.commanded(now.target_us, vec![*command]);
-        let said = words::command(command, self.client.mode());
+        let said = command.in_words(self.client.mode());
         let text = format!("{said}: sent, text is not acknowledged");
         self.note(rumbo_log::Level::Info, text, now);
         self.say(now);
@@ -209,7 +209,7 @@ impl Session {
     }
 
     fn refuse(&mut self, command: &Command, why: &str, now: Now) {
-        let asked = words::command(command, self.client.mode());
+        let asked = command.in_words(self.client.mode());
         self.observer
             .refuse(now.target_ms(), format!("{asked}: refused, {why}"));
     }

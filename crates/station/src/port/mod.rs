@@ -1,8 +1,9 @@
 //! A robot behind a real port: serial (USB, rfcomm, a PTY) or TCP.
 //!
 //! Two threads read and write, so that the session never waits for the port. When the port disappears, opening it is
-//! retried until it is back; bytes to be sent meanwhile are dropped, so that no old command takes effect afterwards.
-//! The robot has stopped by then, for lack of a heartbeat, and nothing here arms it.
+//! retried until it is back, ever more rarely if it only opens to close again; bytes to be sent meanwhile are dropped,
+//! so that no old command takes effect afterwards. The robot has stopped by then, for lack of a heartbeat, and nothing
+//! here arms it.
 
 mod error;
 #[cfg(unix)]
@@ -27,6 +28,10 @@ use std::time::{Duration, Instant};
 
 /// Opening a port that is gone is retried this often.
 const AGAIN: Duration = Duration::from_millis(250);
+/// One that closes as soon as it is open is retried half as often each time, down to this.
+const AGAIN_AT_MOST: Duration = Duration::from_secs(4);
+/// What is open for less time was closed as soon as it was open.
+const BRIEF: Duration = Duration::from_secs(1);
 /// A thread that waits for the port checks this often whether it is still needed.
 const LOOK: Duration = Duration::from_millis(100);
 /// Longest wait for a computer to answer.
@@ -218,37 +223,72 @@ struct Keeper {
 
 impl Keeper {
     fn keep(self, opened: (Reader, Writer)) {
-        let mut opened = Some(opened);
+        let (mut opened, mut pause) = (Some(opened), AGAIN);
+        // What is said of a port that opened again; nothing of the first one.
+        let mut back = None;
         loop {
             if let Some((reader, writer)) = opened.take() {
-                match self.transfer(reader, writer) {
-                    Ok(()) => return,
-                    Err(error) => self.shared.report(LinkNews::Lost(format!(
-                        "port {} is gone ({error}); waiting for it",
-                        self.address
-                    ))),
+                let (since, trusted) = (Instant::now(), pause == AGAIN);
+                let proof = if trusted { Duration::ZERO } else { BRIEF };
+                let Err(error) = self.transfer(reader, writer, proof, &mut back) else {
+                    return;
+                };
+                let brief = since.elapsed() < BRIEF;
+                // One that was not said to be back is not said to be gone again.
+                if back.is_none() {
+                    let lost = self.lost(&error, brief);
+                    self.shared.report(LinkNews::Lost(lost));
                 }
+                pause = if brief {
+                    (pause * 2).min(AGAIN_AT_MOST)
+                } else {
+                    AGAIN
+                };
             }
-            // Bytes for a robot that is not connected are dropped.
-            match self.commands.recv_timeout(AGAIN) {
-                Err(RecvTimeoutError::Disconnected) => return,
-                Ok(_) => {
-                    std::thread::sleep(AGAIN);
-                    while self.commands.try_recv().is_ok() {}
-                }
-                Err(RecvTimeoutError::Timeout) => {}
+            if !self.pause(pause) {
+                return;
             }
             if let Ok(again) = open(&self.address, self.baud) {
                 while self.commands.try_recv().is_ok() {}
-                self.shared
-                    .report(LinkNews::Back(format!("port {} is back", self.address)));
+                back = Some(LinkNews::Back(format!("port {} is back", self.address)));
                 opened = Some(again);
             }
         }
     }
 
-    /// Transfers bytes until the target is dropped or the port is gone.
-    fn transfer(&self, reader: Reader, mut writer: Writer) -> io::Result<()> {
+    fn lost(&self, error: &io::Error, brief: bool) -> String {
+        let address = &self.address;
+        if brief {
+            format!(
+                "port {address} closes as soon as it is open ({error}): is the robot behind it on, and no other program connected to it? It is tried again every few seconds"
+            )
+        } else {
+            format!("port {address} is gone ({error}); waiting for it")
+        }
+    }
+
+    /// Waits this long, and drops the bytes for a robot that is not connected; `false` once the target is dropped.
+    fn pause(&self, long: Duration) -> bool {
+        let until = Instant::now() + long;
+        loop {
+            let left = until.saturating_duration_since(Instant::now());
+            match self.commands.recv_timeout(left) {
+                Ok(_) => {}
+                Err(RecvTimeoutError::Timeout) => return true,
+                Err(RecvTimeoutError::Disconnected) => return false,
+            }
+        }
+    }
+
+    /// Transfers bytes until the target is dropped or the port is gone; reports that it is `back` after `proof`.
+    fn transfer(
+        &self,
+        reader: Reader,
+        mut writer: Writer,
+        proof: Duration,
+        back: &mut Option<LinkNews>,
+    ) -> io::Result<()> {
+        let since = Instant::now();
         let (lost, gone) = channel();
         let (bytes, ended) = (self.bytes.clone(), Arc::new(AtomicBool::new(false)));
         let over = Arc::clone(&ended);
@@ -263,6 +303,11 @@ impl Keeper {
         let outcome = loop {
             if let Ok(error) = gone.try_recv() {
                 break Err(error);
+            }
+            if since.elapsed() >= proof
+                && let Some(news) = back.take()
+            {
+                self.shared.report(news);
             }
             match self.commands.recv_timeout(LOOK) {
                 Ok(bytes) => match writer.write_all(&bytes).and_then(|()| writer.flush()) {
@@ -290,7 +335,10 @@ fn listen(mut reader: Reader, bytes: &SyncSender<Vec<u8>>, ended: &AtomicBool) -
             Ok(0) => {
                 empty += 1;
                 if empty >= EMPTY_READS {
-                    return Err(io::ErrorKind::UnexpectedEof.into());
+                    return Err(io::Error::new(
+                        io::ErrorKind::UnexpectedEof,
+                        "the other side closed it",
+                    ));
                 }
                 std::thread::sleep(Duration::from_millis(1));
             }

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::support;
-use rumbo_session::Target;
 use rumbo_session::client::{KnownTable, LinkEvent, NotTaken, RobotClient};
+use rumbo_session::{LinkNews, Target};
 use rumbo_station::port::{DEFAULT_BAUD, Port, Pty};
 use rumbo_wire::Command;
 use std::path::Path;
@@ -60,6 +60,7 @@ struct Station {
     port: Port,
     client: RobotClient,
     events: Vec<LinkEvent>,
+    news: Vec<LinkNews>,
 }
 
 impl Station {
@@ -79,6 +80,7 @@ impl Station {
             bytes.clear();
             self.client.poll(now_us, &mut bytes, &mut self.events);
             self.port.send(&bytes).unwrap();
+            self.news.extend(self.port.news());
             std::thread::sleep(Duration::from_millis(2));
         }
     }
@@ -97,6 +99,7 @@ fn a_port_that_is_unplugged_and_plugged_in_again_is_reopened_and_arms_nothing() 
         port: Port::open(name.to_str().unwrap(), DEFAULT_BAUD).unwrap(),
         client: RobotClient::new(7, false, KnownTable::OURS),
         events: Vec::new(),
+        news: Vec::new(),
     };
     station
         .run_until(|station| station.count(|event| matches!(event, LinkEvent::Telemetry(..))) > 3);
@@ -109,10 +112,7 @@ fn a_port_that_is_unplugged_and_plugged_in_again_is_reopened_and_arms_nothing() 
     });
     assert!(robot.pull(&name).contains(&Command::Arm));
     station.run_until(|station| !station.client.connected());
-    assert!(matches!(
-        station.port.news(),
-        Some(rumbo_session::LinkNews::Lost(_))
-    ));
+    station.run_until(|station| matches!(station.news[..], [LinkNews::Lost(_)]));
     // A command for a robot that is not connected.
     let now_us = station.port.now_us();
     let refused = station.client.submit(Command::Arm, now_us);
@@ -124,10 +124,7 @@ fn a_port_that_is_unplugged_and_plugged_in_again_is_reopened_and_arms_nothing() 
         station.client.connected()
             && station.count(|event| matches!(event, LinkEvent::Telemetry(..))) > before + 3
     });
-    assert!(matches!(
-        station.port.news(),
-        Some(rumbo_session::LinkNews::Back(_))
-    ));
+    station.run_until(|station| matches!(station.news[..], [LinkNews::Lost(_), LinkNews::Back(_)]));
     let applied = robot.pull(&name);
     assert!(!applied.contains(&Command::Arm), "{applied:?}");
 }
@@ -172,6 +169,33 @@ fn a_robot_behind_tcp_is_used_like_one_behind_a_wire() {
         port.receive(&mut received);
     }
     assert_eq!(received, b"from it");
+}
+
+#[test]
+fn a_port_that_closes_as_soon_as_it_is_open_is_reported_once_and_tried_ever_more_rarely() {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = format!("tcp:{}", listener.local_addr().unwrap());
+    let began = Instant::now();
+    let mut port = Port::open(&address, DEFAULT_BAUD).unwrap();
+    (0..4).for_each(|_| drop(listener.accept().unwrap()));
+    // Half a second, a second, two seconds.
+    assert!(began.elapsed() > Duration::from_secs(3));
+    let Some(LinkNews::Lost(said)) = port.news() else {
+        panic!("nothing said");
+    };
+    assert!(
+        said.contains("closes as soon as it is open") && said.contains("no other program"),
+        "{said}"
+    );
+    assert_eq!(port.news(), None);
+    // One that stays open is back.
+    let _robot = listener.accept().unwrap();
+    let until = Instant::now() + PATIENCE;
+    let back = std::iter::repeat_with(|| port.news())
+        .take_while(|_| Instant::now() < until)
+        .flatten()
+        .next();
+    assert!(matches!(back, Some(LinkNews::Back(_))), "{back:?}");
 }
 
 #[test]

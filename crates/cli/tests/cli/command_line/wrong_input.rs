@@ -32,7 +32,7 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         "comma.toml",
         "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 0,5\n",
     );
-    let cases: [(&[&str], &str); 28] = [
+    let cases: [(&[&str], &str); 31] = [
         (
             &["run", "typos.toml"],
             "error: typos.toml:5: mode = font_distance: unknown mode; did you mean `front_distance` (1)?",
@@ -122,7 +122,19 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         ),
         (
             &["lab", "--speed", "-1"],
-            "error: unexpected argument '-1' found; see `rumbo lab --help`",
+            "error: invalid value '-1' for '--speed <X>': must be a number of times real time, within 0..100, e.g. 4 or 0.5; see `rumbo lab --help`",
+        ),
+        (
+            &["lab", "--seed", "-1"],
+            "error: invalid value '-1' for '--seed <N>': must be a whole number from 0 on; see `rumbo lab --help`",
+        ),
+        (
+            &["run", "mode1", "--language", "es"],
+            "error: unexpected argument '--language' found; see `rumbo run --help`",
+        ),
+        (
+            &["run", "mode1", "--runs", "-1"],
+            "error: invalid value '-1' for '--runs <N>': must be a whole number within 1..1000000; see `rumbo run --help`",
         ),
         (
             &["identify", "no_number.csv", "--check", "memoria"],

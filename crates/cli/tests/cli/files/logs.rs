@@ -43,7 +43,7 @@ fn old_logs_go_when_that_is_asked_for_and_nothing_else_does() {
 
     let tried = rumbo_in(folder, &["prune", "--keep-days", "30", "--dry-run"]);
     assert!(
-        stdout(&tried).contains("1 logs would be removed"),
+        stdout(&tried).contains("1 log would be removed"),
         "{}",
         stdout(&tried)
     );

@@ -63,14 +63,10 @@ pub const DESCRIPTION: Description = Description {
     takes: Some(Takes::Lane),
     rigs: Rigs::of(&[Rig::Final]),
     parameters: &[
+        Group::new("goal", &[ParamId::MissionCruise, ParamId::MissionAround]),
         Group::new(
-            "goal",
-            &[
-                ParamId::MissionCruise,
-                ParamId::MissionAround,
-                ParamId::MissionGiveUp,
-                ParamId::MissionResetOrigin,
-            ],
+            "end of a goal",
+            &[ParamId::MissionGiveUp, ParamId::MissionResetOrigin],
         ),
         Group::new("lane", &[ParamId::LaneSafe]),
         TURNS,
