@@ -133,7 +133,7 @@ pub(crate) struct OverwriteArgs {
 /// The seed.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct SeedArgs {
-    /// Random seed, robot-to-robot variation included; run i uses seed + i
+    /// Random seed, robot-to-robot variation included
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
 }

@@ -97,6 +97,16 @@ impl<S: Simd> Discs<S> {
     }
 }
 
+/// Whether the robots can go in lanes.
+pub(super) fn are_alike(group: &[Lane<'_>; LANES]) -> bool {
+    let phase_us = group[0].1.now_us % STEP_US;
+    group.iter().all(|(plant, state)| {
+        state.now_us % STEP_US == phase_us
+            && !plant.wheels_in_air
+            && plant.world.bodies().is_empty()
+    })
+}
+
 /// Passes `for_us` for each robot, all at the same place within a millisecond.
 #[inline(always)]
 pub(super) fn advance<S: Simd>(

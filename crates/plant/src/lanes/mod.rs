@@ -30,7 +30,7 @@ mod vector;
 mod wander;
 
 use crate::event::Event;
-use crate::plant::{Plant, STEP_US, State};
+use crate::plant::{Plant, State};
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::{Avx2, Avx512, Level, Simd};
 
@@ -60,30 +60,13 @@ impl Lanes {
     /// All that this processor has, the widest last.
     #[must_use]
     pub fn all() -> Vec<Self> {
-        let mut all = vec![Self::SCALAR];
-        #[cfg(target_arch = "x86_64")]
-        {
-            let level = Level::new();
-            all.extend(level.as_avx2().map(|simd| Self(Kind::Avx2(simd))));
-            all.extend(level.as_avx512().map(|simd| Self(Kind::Avx512(simd))));
-        }
-        all
+        [Self::SCALAR].into_iter().chain(vectors()).collect()
     }
 
     /// The widest that this processor has.
     #[must_use]
     pub fn widest() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        {
-            let level = Level::new();
-            if let Some(simd) = level.as_avx512() {
-                return Self(Kind::Avx512(simd));
-            }
-            if let Some(simd) = level.as_avx2() {
-                return Self(Kind::Avx2(simd));
-            }
-        }
-        Self::SCALAR
+        vectors().last().unwrap_or(Self::SCALAR)
     }
 
     /// Their name: `scalar`, `AVX2` or `AVX-512`.
@@ -106,22 +89,16 @@ impl Lanes {
         for_us: u64,
         events: &mut impl FnMut(usize, Event),
     ) {
-        let phase_us = group[0].1.now_us % STEP_US;
-        let alike = |(plant, state): &Lane<'_>| {
-            state.now_us % STEP_US == phase_us
-                && !plant.wheels_in_air
-                && plant.world.bodies().is_empty()
-        };
         match self.0 {
             #[cfg(target_arch = "x86_64")]
-            Kind::Avx2(simd) if group.iter().all(alike) => {
+            Kind::Avx2(simd) if group::are_alike(group) => {
                 simd.vectorize(
                     #[inline(always)]
                     || group::advance(simd, group, for_us, events),
                 );
             }
             #[cfg(target_arch = "x86_64")]
-            Kind::Avx512(simd) if group.iter().all(alike) => {
+            Kind::Avx512(simd) if group::are_alike(group) => {
                 simd.vectorize(
                     #[inline(always)]
                     || group::advance(simd, group, for_us, events),
@@ -135,4 +112,18 @@ impl Lanes {
             }
         }
     }
+}
+
+/// Those of vector registers, the widest last.
+#[cfg(target_arch = "x86_64")]
+fn vectors() -> impl Iterator<Item = Lanes> {
+    let level = Level::new();
+    let avx2 = level.as_avx2().map(Kind::Avx2);
+    let avx512 = level.as_avx512().map(Kind::Avx512);
+    avx2.into_iter().chain(avx512).map(Lanes)
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn vectors() -> impl Iterator<Item = Lanes> {
+    core::iter::empty()
 }
