@@ -17,14 +17,15 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.vec_env import VecNormalize
 
-import rumbo.envs  # makes the environments known
+import rumbo.envs  # noqa: F401  # makes the environments known
 
 DECISIONS, ROBOTS = 200_000, 100
 # Seeds of episodes that learning does not see.
 UNSEEN = 1_000_000
 
 # %% [markdown]
-# Sixteen robots beside each other, for half a minute. Observations are in metres, radians and seconds: `VecNormalize` scales them.
+# Sixteen robots beside each other, for half a minute. Observations are in metres, radians and seconds: `VecNormalize`
+# scales them.
 
 # %%
 torch.set_num_threads(1)
@@ -53,5 +54,6 @@ def missed(seed: int) -> float:
 
 
 missed_m = np.array([missed(seed) for seed in range(UNSEEN, UNSEEN + ROBOTS)])
-print(f"{ROBOTS} unseen robots: half within {1e2 * np.median(missed_m):.1f} cm, {np.mean(missed_m < 0.05):.0%} within 5 cm")
-assert np.mean(missed_m < 0.05) >= 0.9
+half_m, near = np.median(missed_m), np.mean(missed_m < 0.05)
+print(f"{ROBOTS} unseen robots: half within {1e2 * half_m:.1f} cm, {near:.0%} within 5 cm")
+assert near >= 0.9

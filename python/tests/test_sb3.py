@@ -7,7 +7,7 @@ import warnings
 import gymnasium
 import pytest
 
-import rumbo.envs
+import rumbo.envs  # noqa: F401  # makes the environments known
 
 pytest.importorskip("stable_baselines3", reason="Stable-Baselines3 is not installed")
 

@@ -74,6 +74,7 @@ test('a program that is dropped where there are several robots says what to do i
 
 test('what is wrong with a dropped file is said in Spanish, with the words and numbers of the file', { skip }, async () => {
   const spanish = await open({ locale: 'es-ES' });
+  await spanish.page.waitForSelector('#connection.good');
   const says = (/** @type {string} */ text) => spanish.page.locator('#events li', { hasText: text }).first().waitFor();
   const scenario = 'title = "x"\nrobot = "memoria"\nrig = "front_single"\nworld = "open"\nmode = "front_dist"\nduration_s = 9000.5\nseconds = 1\n';
   await dropOn(spanish.page, [{ name: 'mine.toml', content: scenario }]);
