@@ -1,6 +1,6 @@
-"""Throughput of batches and environments, beside the bare batch in the same process: `python python/bench.py [robots]`.
+"""Throughput of batches and environments, beside the bare batch in the same process.
 
-Best of three, as on a machine that does other things too.
+`python python/benches/throughput.py [robots]`. Best of three, as on a machine that does other things too.
 """
 
 from __future__ import annotations
