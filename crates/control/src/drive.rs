@@ -25,7 +25,7 @@ use crate::speed::WheelMotion;
 use crate::types::Side;
 use crate::types::{Drive, Duty, SIDES, TICK_S, Wheels};
 
-/// References below this are a standstill [rad/s], half a turn per minute; so are duties, which move no wheel.
+/// References below this are a standstill [rad/s]: half a turn per minute. No wheel moves at a duty of that number.
 const STANDSTILL_RAD_S: f32 = 0.05;
 /// Growth of the kick of a wheel that still stands [1/s].
 const KICK_GROWTH: f32 = 1.5;

@@ -9,12 +9,8 @@ use rumbo_control::mode::{ModeId, Reference, ReferenceKind, SetpointError};
 use rumbo_log::parameter;
 
 use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
+use rumbo_wire::text::RAD_S_PER_RPM;
 use rumbo_wire::{Command, PROTOCOL_VERSION, Refusal};
-use std::f32::consts::TAU;
-
-fn rpm(speed_rad_s: f32) -> f32 {
-    speed_rad_s * 60.0 / TAU
-}
 
 /// The velocity in words.
 pub(crate) fn velocity(velocity: Velocity) -> String {
@@ -105,7 +101,8 @@ fn allowed(mode: ModeId) -> Option<String> {
             format!("allowed is {:.1} to {:.1} cm", min * 100.0, max * 100.0)
         }
         ReferenceKind::WheelSpeed | ReferenceKind::Speed => {
-            format!("allowed is {:.0} to {:.0} rpm", rpm(min), rpm(max))
+            let [min, max] = [min, max].map(|speed_rad_s| speed_rad_s / RAD_S_PER_RPM);
+            format!("allowed is {min:.0} to {max:.0} rpm")
         }
         ReferenceKind::Goal => format!("allowed is {min} to {max} m for each coordinate"),
     })

@@ -1,7 +1,7 @@
 //! Commands in words, for people: cm, rpm and % instead of SI.
 
 use crate::message::{Command, Level, Waypoint};
-use core::f32::consts::TAU;
+use crate::text::RAD_S_PER_RPM;
 use core::fmt;
 use rumbo_control::mode::{ModeId, Movement, ReferenceKind};
 use rumbo_control::params::ParamId;
@@ -83,7 +83,7 @@ impl fmt::Display for Parameter {
 }
 
 fn rpm(speed_rad_s: f32) -> f32 {
-    speed_rad_s * 60.0 / TAU
+    speed_rad_s / RAD_S_PER_RPM
 }
 
 /// A movement by the name of its button.
