@@ -221,6 +221,12 @@ impl Robot {
         self.apply(command)
     }
 
+    /// Acknowledges such a command as one that came over the link.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn acknowledge(&mut self, ack: Ack) {
+        self.reporter.acknowledge(ack);
+    }
+
     /// The one who gives orders without a link is there.
     #[cfg(not(target_arch = "avr"))]
     pub fn stay_alive(&mut self) {

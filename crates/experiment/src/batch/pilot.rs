@@ -3,11 +3,13 @@
 use crate::files::commands::read_one;
 use crate::files::{FileError, Setup, goal_seen_from};
 use crate::operator::Operator;
-use crate::run::prepare;
+use crate::run::{parameters, prepare};
 use rumbo_control::ServoAngle;
 use rumbo_control::mode::ModeId;
+use rumbo_control::params::{ParamId, Params};
 use rumbo_control::policy::{Known, Observation, observe};
 use rumbo_sim::Sim;
+use rumbo_sim::trace::TimedMessage;
 use rumbo_wire::{Command, Refusal};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -148,12 +150,37 @@ impl Pilot {
         self.operator.is_none()
     }
 
-    /// Has the scenario, if it commands the robot, send what is due.
-    pub(super) fn operate(&mut self, sim: &mut Sim) {
-        if let Some(operator) = &mut self.operator {
+    /// Has the scenario, if it commands the robot, send what is due; gives what it has received.
+    pub(super) fn operate(&mut self, sim: &mut Sim) -> impl Iterator<Item = TimedMessage> {
+        let operator = self.operator.as_mut().map(|operator| {
             operator.step(sim);
-            operator.received.clear();
+            operator.received.drain(..)
+        });
+        operator.into_iter().flatten()
+    }
+
+    /// The robot's parameters now, if the caller commands it, else those at its start; `None` where its program has no
+    /// table of them.
+    ///
+    /// # Errors
+    /// The setup's values do not fit together.
+    pub(super) fn parameters(&self, sim: &mut Sim) -> Result<Option<Params>, FileError> {
+        if let Some(operator) = &self.operator {
+            return parameters(operator.setup());
         }
+        let mut parameters = Params::default();
+        for id in ParamId::ALL {
+            if let Ok(value) = sim.instruct(&Command::GetParam { id: id as u8 }) {
+                // In range, since it is in force.
+                let _ = parameters.set(id, value);
+            }
+        }
+        Ok(Some(parameters))
+    }
+
+    /// Where the robot is to go, as seen from its start: ahead, left [m].
+    pub(super) fn goal_m(&self) -> Option<[f32; 2]> {
+        self.goal.map(|goal| goal.from_start_m)
     }
 
     /// Applies a command at once; gives the value in force, 0 where there is none.

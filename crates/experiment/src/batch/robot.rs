@@ -7,6 +7,7 @@ use rumbo_control::{ServoAngle, TICK_US};
 use rumbo_plant::lanes::{LANES, Lanes};
 use rumbo_plant::world::World;
 use rumbo_sim::Sim;
+use rumbo_sim::trace::Trace;
 use rumbo_wire::{Command, Refusal};
 use std::sync::{Arc, OnceLock};
 
@@ -16,6 +17,8 @@ pub struct Robot {
     seed: u64,
     sim: Sim,
     pilot: Pilot,
+    /// What was recorded of it, if it is.
+    trace: Option<Box<Trace>>,
 }
 
 impl Robot {
@@ -25,7 +28,12 @@ impl Robot {
     /// The setup's values do not fit together, its calibration failed, or its program takes no commands of a caller.
     pub fn new(setup: &Arc<Setup>, driver: Driver, seed: u64) -> Result<Self, FileError> {
         let (sim, pilot) = Pilot::new(setup, driver, seed)?;
-        Ok(Self { seed, sim, pilot })
+        Ok(Self {
+            seed,
+            sim,
+            pilot,
+            trace: None,
+        })
     }
 
     /// The seed it was drawn for.
@@ -43,6 +51,31 @@ impl Robot {
         self.sim.world()
     }
 
+    /// Records it from now on, as the log of a run has it, in place of what was recorded before. It goes on bit for bit as
+    /// without.
+    ///
+    /// # Errors
+    /// The setup's values do not fit together.
+    pub fn record(&mut self) -> Result<(), FileError> {
+        let parameters = self.pilot.parameters(&mut self.sim)?;
+        self.sim.tap_link();
+        self.trace = Some(Box::new(Trace {
+            parameters,
+            ..Trace::default()
+        }));
+        Ok(())
+    }
+
+    /// What was recorded since [`Robot::record`]; `None` without it.
+    pub fn trace(&self) -> Option<&Trace> {
+        self.trace.as_deref()
+    }
+
+    /// The goal of its world as seen from its start: ahead, left [m].
+    pub fn goal_m(&self) -> Option<[f32; 2]> {
+        self.pilot.goal_m()
+    }
+
     /// Keeps its world in common with others if it is the same.
     pub(super) fn share_world(&mut self, common: &OnceLock<Arc<World>>) {
         self.sim.share_world(common);
@@ -50,7 +83,7 @@ impl Robot {
 
     /// Advances by this many control ticks of 10 ms, or to the end of a program that cannot go on.
     pub fn advance(&mut self, ticks: u32) {
-        if self.pilot.is_caller() {
+        if !self.needs_every_tick() {
             let until_us = self.sim.now_us() + u64::from(ticks) * u64::from(TICK_US);
             return self.sim.advance(until_us);
         }
@@ -58,8 +91,32 @@ impl Robot {
             if self.sim.verdict().is_some() {
                 return;
             }
-            self.pilot.operate(&mut self.sim);
+            self.operate();
             self.sim.advance(self.sim.now_us() + u64::from(TICK_US));
+            self.sample();
+        }
+    }
+
+    /// An operator or a recorder looks at it at each tick.
+    fn needs_every_tick(&self) -> bool {
+        !self.pilot.is_caller() || self.trace.is_some()
+    }
+
+    /// Before a tick: what its operator sends.
+    fn operate(&mut self) {
+        let received = self.pilot.operate(&mut self.sim);
+        match &mut self.trace {
+            Some(trace) => trace.messages.extend(received),
+            None => drop(received),
+        }
+    }
+
+    /// After a tick, if it is recorded.
+    fn sample(&mut self) {
+        if let Some(trace) = &mut self.trace {
+            trace.sample(&self.sim);
+            trace.listen(&mut self.sim);
+            trace.link.append(&mut self.sim.take_tapped());
         }
     }
 
@@ -111,16 +168,14 @@ fn together(lanes: Lanes, mut robots: [&mut Robot; LANES], ticks: u32) {
     if robots.iter().any(|robot| robot.sim.mega().is_some()) {
         return robots.into_iter().for_each(|robot| robot.advance(ticks));
     }
-    // An operator looks at its robot at each tick.
-    let (strides, stride) = match robots.iter().all(|robot| robot.pilot.is_caller()) {
-        true => (1, ticks),
-        false => (ticks, 1),
+    let (strides, stride) = match robots.iter().any(|robot| robot.needs_every_tick()) {
+        true => (ticks, 1),
+        false => (1, ticks),
     };
     for _ in 0..strides {
-        for robot in &mut robots {
-            robot.pilot.operate(&mut robot.sim);
-        }
+        robots.iter_mut().for_each(|robot| robot.operate());
         let sims = robots.each_mut().map(|robot| &mut robot.sim);
         Sim::advance_together(lanes, sims, u64::from(stride) * u64::from(TICK_US));
+        robots.iter_mut().for_each(|robot| robot.sample());
     }
 }

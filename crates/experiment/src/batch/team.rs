@@ -76,7 +76,7 @@ impl Team {
                 return;
             }
             for (sim, pilot) in std::iter::zip(self.fleet.robots_mut(), &mut self.pilots) {
-                pilot.operate(sim);
+                drop(pilot.operate(sim));
             }
             let until_us = self.fleet.now_us() + u64::from(TICK_US);
             self.fleet.advance(until_us);

@@ -100,6 +100,11 @@ impl<S: Deref<Target = Setup>> Operator<S> {
         }
     }
 
+    /// What it was made with.
+    pub(crate) fn setup(&self) -> &Setup {
+        &self.setup
+    }
+
     /// Sends the parameters to an image that uses our frames. The clock of the run begins after that, since the native
     /// robot has them from the start.
     ///

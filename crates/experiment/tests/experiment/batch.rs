@@ -2,13 +2,15 @@
 
 #![allow(clippy::unwrap_used)]
 
+use rumbo_control::mode::ModeId;
+use rumbo_control::params::ParamId;
 use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Batch, Driver, OBSERVED, Robot, TRUE};
-use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup};
+use rumbo_experiment::files::{FileError, Kind, Library, NativeProgram, Overrides, Setup};
 use rumbo_experiment::run;
 use rumbo_plant::lanes::Lanes;
 use rumbo_sim::trace::Sample;
-use rumbo_wire::Command;
+use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, Refusal, ToRobot};
 
 const SEEDS: [u64; 3] = [1, 7, 1_000_003];
 /// Between two looks [ticks].
@@ -180,7 +182,7 @@ fn driven(batch: &mut Batch, steps: u32) -> Vec<(Vec<u32>, Vec<u64>)> {
 #[test]
 fn a_driven_robot_is_the_same_alone_and_among_others_on_any_threads() {
     let mut setup = setup("mode8-random");
-    setup.scenario.mode = rumbo_control::mode::ModeId::WheelSpeed;
+    setup.scenario.mode = ModeId::WheelSpeed;
     let make = |seeds: &[u64]| Batch::new(setup.clone(), Driver::Caller, seeds).unwrap();
     let together = [1, 2].map(|threads| on_threads(threads, || driven(&mut make(&SEEDS), 60)));
     assert!(together[0] == together[1]);
@@ -196,7 +198,7 @@ fn a_driven_robot_is_the_same_alone_and_among_others_on_any_threads() {
 #[test]
 fn driven_robots_of_any_age_share_lanes_with_the_bits_of_each_alone() {
     let mut setup = setup("mode8-random");
-    setup.scenario.mode = rumbo_control::mode::ModeId::WheelSpeed;
+    setup.scenario.mode = ModeId::WheelSpeed;
     let seeds: Vec<u64> = (1..=19).collect();
     let mut rows = Vec::new();
     for lanes in Lanes::all() {
@@ -280,4 +282,130 @@ fn a_command_in_words_is_checked_as_in_a_scenario() {
     assert!(said(robot.instruct("arm = true\nat_s = 3")).contains("at_s"));
     let mut scenario = Batch::new(setup("mode1"), Driver::Scenario, &[1]).unwrap();
     assert!(said(scenario.robots_mut()[0].instruct("arm = true")).contains("scenario"));
+}
+
+#[test]
+fn a_recorded_robot_has_the_trace_of_its_run() {
+    // Over the link, by the report's program without one, and after a calibration.
+    for (scenario, program) in [
+        ("mode8-random", NativeProgram::Rumbo),
+        ("mode4", NativeProgram::Baseline),
+        ("mode9-random", NativeProgram::Rumbo),
+    ] {
+        let overrides = Overrides {
+            program,
+            ..Overrides::default()
+        };
+        let setup = Library::new().setup(scenario, &overrides).unwrap();
+        let run = run::run(&setup, 7).unwrap();
+        let mut batch = Batch::new(setup, Driver::Scenario, &[7]).unwrap();
+        batch.robots_mut()[0].record().unwrap();
+        batch.advance(run.trace.samples.len() as u32);
+        assert_eq!(batch.robots()[0].trace(), Some(&run.trace), "{scenario}");
+    }
+}
+
+#[test]
+fn recording_changes_no_bit_of_a_driven_robot_alone_or_in_lanes() {
+    let mut setup = setup("mode8-random");
+    setup.scenario.mode = ModeId::WheelSpeed;
+    for seeds in [&[1][..], &[1, 2, 3, 4, 5, 6, 7, 8]] {
+        on_threads(1, || {
+            let make = || Batch::new(setup.clone(), Driver::Caller, seeds).unwrap();
+            let unrecorded = driven(&mut make(), 60);
+            let mut batch = make();
+            batch.robots_mut()[0].record().unwrap();
+            assert!(driven(&mut batch, 60) == unrecorded);
+            // From somewhere on, and once more.
+            let mut batch = make();
+            batch.advance(33);
+            let mut other = batch.clone();
+            batch.robots_mut()[0].record().unwrap();
+            batch.advance(20);
+            batch.robots_mut()[0].record().unwrap();
+            other.advance(20);
+            assert!(driven(&mut batch, 60) == driven(&mut other, 60));
+            let trace = batch.robots()[0].trace().unwrap();
+            assert_eq!(trace.samples.len(), 650);
+            assert!((trace.samples[0].t_s - 0.54).abs() < 1e-9);
+        });
+    }
+}
+
+#[test]
+fn a_driven_robot_says_to_the_tap_what_it_knows_and_what_it_was_commanded() {
+    let mut batch = Batch::new(setup("mode5"), Driver::Caller, &[3]).unwrap();
+    let robot = &mut batch.robots_mut()[0];
+    robot
+        .instruct("parameter = \"front_kp\"\nvalue = 5")
+        .unwrap();
+    robot.record().unwrap();
+    let parameters = robot.trace().unwrap().parameters.unwrap();
+    assert_eq!(parameters.get(ParamId::FrontKp), 5.0);
+    robot.instruct("arm = true").unwrap();
+    let (mut telemetry, mut known) = (Vec::new(), Vec::new());
+    for step in 0..60u8 {
+        let wheels = Wheels::both(f32::from(step) / 10.0);
+        robot.command(&Command::WheelReference(wheels)).unwrap();
+        robot.advance(1);
+        known.push(robot.sim().knowledge().unwrap());
+    }
+    assert!(robot.instruct("mode = \"manual\"").is_err());
+    robot.advance(1);
+    let mut commands = Vec::new();
+    let mut others = Vec::new();
+    let mut decoder = [Decoder::<160>::default(), Decoder::default()];
+    for burst in &robot.trace().unwrap().link {
+        for byte in &burst.bytes {
+            let decoder = &mut decoder[usize::from(burst.to_robot)];
+            let Some(Received::Frame(body)) = decoder.push(*byte) else {
+                continue;
+            };
+            if burst.to_robot {
+                if let Ok(ToRobot::Command { command, .. }) = ToRobot::from_body(&body) {
+                    commands.push(command);
+                }
+                continue;
+            }
+            match FromRobot::from_body(&body).unwrap() {
+                FromRobot::Telemetry(each) => telemetry.push(each),
+                other => others.push(other),
+            }
+        }
+    }
+    assert_eq!(commands, [Command::Arm, Command::Mode(ModeId::Manual)]);
+    let is_refused = |message: &FromRobot| matches!(message, FromRobot::Ack(ack) if ack.result == Err(Refusal::Armed));
+    assert!(matches!(others[1], FromRobot::Ack(_)) || matches!(others[0], FromRobot::Ack(_)));
+    assert!(others.iter().any(is_refused), "{others:?}");
+    assert!(
+        others
+            .iter()
+            .any(|each| matches!(each, FromRobot::Hello(_)))
+    );
+    assert!(
+        others
+            .iter()
+            .any(|each| matches!(each, FromRobot::Status(_)))
+    );
+    // Every 40 ms, with the speeds of its tick and of the second before it.
+    assert_eq!(telemetry.len(), 15);
+    for each in &telemetry {
+        let tick = usize::from(each.t_ms / 10);
+        let (before, now) = (&known[tick - 2], &known[tick]);
+        let near = |one: f32, other: f32| (one - other).abs() < 0.01;
+        assert!(
+            near(each.wheel_rad_s[0].left, before.wheel_rad_s[1].left),
+            "{tick}"
+        );
+        assert!(
+            near(each.wheel_rad_s[1].left, now.wheel_rad_s[1].left),
+            "{tick}"
+        );
+        assert!(
+            near(each.wheel_ref_rad_s.right, now.wheel_ref_rad_s.right),
+            "{tick}"
+        );
+        assert!(near(each.pose.x_m, now.pose.x_m) && each.armed && !each.faulted);
+    }
+    assert!(telemetry.last().unwrap().wheel_rad_s[1].left > 1.0);
 }

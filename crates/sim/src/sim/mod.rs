@@ -251,14 +251,21 @@ impl Sim {
         self.note(false, into.get(from..).unwrap_or_default());
     }
 
-    /// Records what crosses the link from now on.
+    /// Records what crosses the link from now on; of a robot without one, what it would say, and the commands that it is
+    /// given but for the setpoints of its wheels.
     pub fn tap_link(&mut self) {
+        self.greet_unlinked();
         self.tapped = Some(Vec::new());
     }
 
-    /// What crossed the link since it was tapped.
+    /// Drains what crossed the link since it was tapped.
     pub fn take_tapped(&mut self) -> Vec<Burst> {
-        self.tapped.take().unwrap_or_default()
+        let tapped = self.tapped.as_mut();
+        tapped.map(std::mem::take).unwrap_or_default()
+    }
+
+    fn is_tapped(&self) -> bool {
+        self.tapped.is_some()
     }
 
     fn note(&mut self, to_robot: bool, bytes: &[u8]) {

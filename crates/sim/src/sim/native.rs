@@ -11,11 +11,13 @@ use rumbo_control::params::ParamId;
 use rumbo_control::{Fault, Inputs, OUTPUT_DELAY_US, Outputs, ServoAngle, TICK_US};
 use rumbo_plant::plant::Event;
 use rumbo_robot::{Cell, Config, Loops, Robot, START_AT};
-use rumbo_wire::{Command, Refusal, ResetCause, Telemetry};
+use rumbo_wire::{Ack, Command, Message, Refusal, ResetCause, Telemetry, ToRobot};
 use std::sync::Arc;
 
 /// The converter's reference, the chip's supply [V].
 const CONVERTER_V: f64 = 5.0;
+/// Session of the commands of a caller without a link.
+pub(super) const SESSION: u8 = 0;
 
 /// The EEPROM's bytes; what has never been written is missing at the end.
 #[derive(Clone, Debug, Default)]
@@ -63,6 +65,8 @@ pub(super) struct Native {
     pub(super) is_unlinked: bool,
     /// Where that caller points the servo, in place of the mode.
     pub(super) aim: Option<ServoAngle>,
+    /// How many of that caller's commands were acknowledged, wrapping.
+    answered: u16,
 }
 
 /// What the robot is given at a tick.
@@ -112,6 +116,7 @@ impl Native {
             recorded: None,
             is_unlinked: false,
             aim: None,
+            answered: 0,
         })
     }
 
@@ -136,6 +141,30 @@ impl Native {
     /// Applies a command that did not come over the link.
     pub(super) fn order(&mut self, command: &Command) -> Result<f32, Refusal> {
         self.robot.order(command)
+    }
+
+    /// Acknowledges the last such command, and numbers it.
+    pub(super) fn answer(&mut self, result: Result<f32, Refusal>) -> u16 {
+        self.answered = self.answered.wrapping_add(1);
+        self.robot.acknowledge(Ack {
+            session: SESSION,
+            number: self.answered,
+            result,
+        });
+        self.answered
+    }
+
+    /// All that it has to say.
+    pub(super) fn said(&mut self) -> Vec<u8> {
+        std::iter::from_fn(|| self.robot.transmit()).collect()
+    }
+
+    /// Has it introduce itself; what it had to say before is dropped.
+    pub(super) fn greet(&mut self) {
+        self.said();
+        let hello = ToRobot::Hello.frame(0);
+        let bytes = hello.bytes().iter();
+        bytes.for_each(|byte| self.robot.receive(*byte));
     }
 
     pub(super) fn knowledge(&self) -> Telemetry {
@@ -264,7 +293,7 @@ impl Sim {
         if let Some(recorded) = &mut native.recorded {
             recorded.push(Latched { received, inputs });
         }
-        if native.is_unlinked {
+        if native.is_unlinked && !self.is_tapped() {
             native.robot.think();
         } else {
             native.robot.report();
@@ -277,6 +306,9 @@ impl Sim {
         native.pending = Some((now_us + u64::from(OUTPUT_DELAY_US), outputs));
         native.next_tick_us += u64::from(TICK_US);
         if native.is_unlinked {
+            if self.is_tapped() {
+                self.note(false, &native.said());
+            }
             return;
         }
         // The transmit interrupt hands a byte to the line whenever the line is free.

@@ -1,13 +1,14 @@
 //! Our native robot without its link: the caller commands it at once and looks at what its program knows.
 //!
 //! For callers that stand in for a program on the robot, such as a policy that learns: what they decide takes no way over
-//! a serial line. The robot sends nothing, which saves its time, and it misses no heartbeat.
+//! a serial line. The robot sends nothing, which saves its time, and it misses no heartbeat. Where its link is tapped it
+//! speaks as any other, to the tap alone, which changes nothing for it.
 
-use super::native::Native;
+use super::native::{Native, SESSION};
 use super::{Controller, Sim};
 use rumbo_control::{Fault, ServoAngle};
 use rumbo_robot::Loops;
-use rumbo_wire::{Command, Refusal, Telemetry};
+use rumbo_wire::{Command, Message, Refusal, RobotTime, Telemetry, ToRobot};
 
 impl Sim {
     /// Takes our native robot off its link: from now on it gets its commands by [`Sim::instruct`] and sends nothing. False
@@ -27,7 +28,34 @@ impl Sim {
     /// Why the robot refuses it; `None` if the program is not our native one.
     pub fn instruct(&mut self, command: &Command) -> Result<f32, Option<Refusal>> {
         let native = self.native_mut().ok_or(None)?;
-        native.order(command).map_err(Some)
+        let result = native.order(command);
+        if self.is_tapped() && is_told(command) {
+            self.tell(command, result);
+        }
+        result.map_err(Some)
+    }
+
+    /// Hands a command and its answer to the tap.
+    fn tell(&mut self, command: &Command, result: Result<f32, Refusal>) {
+        let Some(native) = self.native_mut() else {
+            return;
+        };
+        let (number, said) = (native.answer(result), native.said());
+        let message = ToRobot::Command {
+            session: SESSION,
+            number,
+            command: *command,
+            seen: RobotTime::default(),
+        };
+        self.note(true, message.frame(0).bytes());
+        self.note(false, &said);
+    }
+
+    /// Has a robot without a link introduce itself to the tap.
+    pub(super) fn greet_unlinked(&mut self) {
+        if let Some(native) = self.native_mut().filter(|native| native.is_unlinked) {
+            native.greet();
+        }
     }
 
     /// Points the servo of our native robot, whatever its mode requests; `None` leaves it to the mode again.
@@ -67,4 +95,12 @@ impl Sim {
             _ => None,
         }
     }
+}
+
+/// Whether a command is an event: neither the next of many setpoints nor a look at a parameter.
+fn is_told(command: &Command) -> bool {
+    !matches!(
+        command,
+        Command::WheelReference(_) | Command::GetParam { .. }
+    )
 }
