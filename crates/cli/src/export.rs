@@ -129,7 +129,7 @@ fn once_more(manifest: &Manifest) -> Option<String> {
     let command = match manifest.kind {
         Kind::Run => format!("run {}", manifest.scenario.as_ref()?),
         Kind::Calibration => "calibrate".into(),
-        Kind::Lab | Kind::Robot => return None,
+        Kind::Lab | Kind::Robot | Kind::Episode => return None,
     };
     Some(format!(
         "; `rumbo {command} --seed {seed}` makes such a run again"

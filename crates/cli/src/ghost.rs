@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use rumbo_control::Fault;
 use rumbo_experiment::files::Overrides;
 use rumbo_lab::SimulatedRobot;
-use rumbo_log::{Choice, Log, Manifest, Scene, Truth};
+use rumbo_log::{Choice, Kind, Log, Manifest, Scene, Truth};
 use rumbo_session::{Abilities, Ghost, LinkNews, Standing, Target, TargetError};
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
 use std::collections::VecDeque;
@@ -203,6 +203,11 @@ pub(crate) fn add_to(
             "{shown}: does not say which scenario it is of; name one, as in --ghost mode1"
         )));
     };
+    if recorded.is_some_and(|manifest| manifest.kind == Kind::Episode) {
+        return Err(Failure::Input(format!(
+            "{shown}: an episode, whose robot a program in Python drove without a link; a ghost takes its commands from a link"
+        )));
+    }
     let seed = recorded.and_then(|manifest| manifest.seed).unwrap_or(1);
     if log.link.is_empty() {
         return Err(Failure::Input(format!(

@@ -159,6 +159,11 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
                 "{shown}: is of a real robot; only simulated runs can be run again"
             )));
         }
+        Kind::Episode => {
+            return Err(Failure::Input(format!(
+                "{shown}: an episode, whose robot a program in Python drove; run that program again, its seed is {seed}"
+            )));
+        }
     };
     let from_robot: usize = log
         .link

@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use crate::mark::Mark;
 use crate::place::{self, Guard};
-use crate::run_log::Source;
+use crate::run_log::{self, Source};
 use rumbo_experiment::files::{ScenarioFile, Setup};
 use rumbo_experiment::run::RunResult;
 use rumbo_session::readable;
@@ -90,7 +90,7 @@ impl Results {
             Some(robot) => self.of_robot(robot).file(".mcap"),
             None => self.file(".mcap"),
         };
-        source.write(log, setup, result)
+        run_log::write(source, log, setup, result)
     }
 
     /// The files of one of several robots.

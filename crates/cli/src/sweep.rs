@@ -11,7 +11,7 @@ use crate::mark::Mark;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
 use crate::run::{progress_bar, set_threads};
-use crate::run_log::Source;
+use crate::run_log::{self, Source};
 use journal::{Header, Journal};
 use rumbo_control::params::ParamId;
 use rumbo_experiment::MODEL;
@@ -252,7 +252,7 @@ impl Writer<'_> {
             Some(other) if robot != first => path.with_extension(format!("{other}.mcap")),
             _ => path.to_owned(),
         };
-        source.write(log, &setup, &result)
+        run_log::write(&source, log, &setup, &result)
     }
 }
 

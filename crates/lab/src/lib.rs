@@ -11,6 +11,7 @@ pub mod manifest;
 mod prepare;
 mod program;
 mod robot;
+pub mod run_log;
 mod scene;
 mod sight;
 mod world;

@@ -16,6 +16,8 @@ pub enum Kind {
     Robot,
     /// The calibration of a simulated robot, without a window.
     Calibration,
+    /// A simulated robot that a caller stepped: a program in Python.
+    Episode,
 }
 
 /// What ran. Files are attached to the log under the names given here.
@@ -135,6 +137,7 @@ impl Manifest {
             Kind::Robot => "robot".into(),
             Kind::Lab | Kind::Run => "run".into(),
             Kind::Calibration => "calibration".into(),
+            Kind::Episode => "episode".into(),
         });
         let seed = self.seed.map(|seed| seed.to_string());
         let parts = [when, Some(what), seed, self.member.clone()];

@@ -5,7 +5,7 @@ use crate::event::Event;
 use crate::observer::Observer;
 use crate::observer::describe::{Around, describe};
 use crate::target::Shown;
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::{ModeId, ReferenceKind};
 use rumbo_control::params::Params;
 use rumbo_log::{
     Burst, Entry, Level, LogWriter, Manifest, Outcome, Said, Scene, Truth, WriteError,
@@ -25,6 +25,8 @@ pub struct Run<'a> {
     pub scene: Option<Scene>,
     /// The robot's parameters at the start; `None` if it has no table of them.
     pub parameters: Option<Params>,
+    /// A goal that the robot's own mode does not know, as seen from its start: ahead, left \[m\].
+    pub goal_m: Option<[f32; 2]>,
     /// Ground truth with its time \[us\], in order.
     pub truths: &'a [(u64, Truth)],
     /// What crossed the link, in order.
@@ -35,8 +37,8 @@ pub struct Run<'a> {
     pub shown: &'a [(u64, Shown)],
     /// Messages of a program that does not use our link, with their time \[us\], in order.
     pub messages: &'a [(u64, FromRobot)],
-    /// How it ended.
-    pub outcome: Outcome,
+    /// How it ended, if it was judged.
+    pub outcome: Option<Outcome>,
 }
 
 /// Writes the log of a run.
@@ -59,6 +61,7 @@ pub fn record_run<W: Write + Seek>(
         sent: None,
         baud,
         battery_v: None,
+        goal_m: run.goal_m,
     };
     recorder.observer.show_scene(run.scene.clone());
     if let Some(parameters) = run.parameters {
@@ -68,6 +71,8 @@ pub fn record_run<W: Write + Seek>(
     let (mut said, mut shown) = (run.said.iter().peekable(), run.shown.iter().peekable());
     let mut state_due_us = 0;
     for (t_us, truth) in run.truths {
+        // Before what is said at its instant: a robot without a link does not wait for one.
+        recorder.observer.truth(to_ms(*t_us), *truth);
         while let Some(burst) = link.next_if(|burst| burst.t_us <= *t_us) {
             recorder.burst(burst);
         }
@@ -83,7 +88,6 @@ pub fn record_run<W: Write + Seek>(
                 .handle(*message, *at_us, &mut recorder.link_events);
             recorder.digest(*at_us);
         }
-        recorder.observer.truth(to_ms(*t_us), *truth);
         recorder.battery_v = Some(truth.battery_v);
         recorder.observer.publish(0);
         if *t_us >= state_due_us {
@@ -96,7 +100,9 @@ pub fn record_run<W: Write + Seek>(
         recorder.observer.said(said.clone());
     }
     recorder.keep(&mut log)?;
-    log.record(&Entry::Outcome(run.outcome))?;
+    if let Some(outcome) = run.outcome {
+        log.record(&Entry::Outcome(outcome))?;
+    }
     log.finish()
 }
 
@@ -178,6 +184,7 @@ struct RunRecorder {
     sent: Option<Sent>,
     baud: u32,
     battery_v: Option<f64>,
+    goal_m: Option<[f32; 2]>,
 }
 
 impl RunRecorder {
@@ -235,7 +242,7 @@ impl RunRecorder {
         }
     }
 
-    /// Notes the values of parameters that the robot acknowledges.
+    /// Notes what the robot acknowledges: values of parameters, and its task.
     fn answered(&mut self, burst: &Burst) {
         for byte in &burst.bytes {
             let Some(Received::Frame(body)) = self.answers.push(*byte) else {
@@ -252,8 +259,10 @@ impl RunRecorder {
             let sent = self
                 .sent
                 .filter(|sent| (sent.session, sent.number) == (session, number));
-            if let Some(Command::SetParam { id, .. }) = sent.map(|sent| sent.command) {
-                self.observer.know_parameter(id, value);
+            match sent.map(|sent| sent.command) {
+                Some(Command::SetParam { id, .. }) => self.observer.know_parameter(id, value),
+                Some(command) => self.observer.take_on(&command, self.client.mode()),
+                None => {}
             }
         }
     }
@@ -274,7 +283,11 @@ impl RunRecorder {
             baud: self.baud,
             true_battery_v: self.battery_v,
         };
-        let state = describe(&around, &mut self.client, &self.observer);
+        let mut state = describe(&around, &mut self.client, &self.observer);
+        let reference = self.client.mode().description().reference;
+        if reference.is_none_or(|reference| reference.kind != ReferenceKind::Goal) {
+            state.robot.task.goal = state.robot.task.goal.or(self.goal_m);
+        }
         self.observer.show_state(state);
     }
 }

@@ -14,6 +14,7 @@ use crate::terminal;
 use crate::truth_log::TruthLog;
 use crate::words;
 use rumbo_control::Pose;
+use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_log::{
@@ -139,6 +140,11 @@ impl Observer {
     /// The robot's task and its outcome.
     pub(crate) fn task(&self) -> &Task {
         &self.task
+    }
+
+    /// The robot has applied a command in this mode.
+    pub(crate) fn take_on(&mut self, command: &Command, mode: ModeId) {
+        task::applied(&mut self.task, command, mode);
     }
 
     /// The rig the robot reports, once it has.

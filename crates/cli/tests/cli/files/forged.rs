@@ -75,11 +75,11 @@ fn texts_of_a_log_are_shown_and_not_interpreted() {
     let run = Run {
         truths: &[(10_000, rumbo_log::Truth::default())],
         link: &link,
-        outcome: Outcome {
+        outcome: Some(Outcome {
             metrics: [(hostile.to_owned(), 1.0)].into(),
             failures: vec![hostile.into()],
             pass: false,
-        },
+        }),
         ..Run::default()
     };
     let logs = folder.join("logs");

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod damage;
+mod episode;
 mod forged;
 mod kept;
 mod limits;

@@ -28,7 +28,7 @@ fn a_run_of_another_model_that_differs_reports_the_model_first() {
             truths: &[(200_000, Truth::default())],
             link: &log.link,
             said: &log.said,
-            outcome,
+            outcome: Some(outcome),
             ..Run::default()
         };
         record_run(&folder.join("x.mcap"), &manifest, run).unwrap();
