@@ -4,7 +4,7 @@
 # `rumbo/StopAtWall-v0` by the proximal policy optimisation of
 # [Stable-Baselines3](https://stable-baselines3.readthedocs.io): each episode another robot, and another distance from
 # the wall at which it should stand. Rumbo's environments are those of Gymnasium, so nothing here is Rumbo's own but the
-# name of the environment and the seeds.
+# name of the environment, the seeds, and a log of one episode.
 #
 # Each `# %%` is a cell: Visual Studio Code, Spyder, PyCharm and Jupytext open this file as a notebook. It needs
 # `pip install ".[gym]" stable-baselines3`, which brings PyTorch, 5 GB with all that it needs on Linux.
@@ -17,7 +17,7 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.vec_env import VecNormalize
 
-import rumbo.envs  # noqa: F401  # makes the environments known
+import rumbo.envs
 
 DECISIONS, ROBOTS = 200_000, 100
 # Seeds of episodes that learning does not see.
@@ -34,11 +34,14 @@ model = PPO("MlpPolicy", envs, n_steps=128, batch_size=512, gamma=0.98, seed=1, 
 model.learn(DECISIONS)
 
 # %% [markdown]
-# How far each of them stands from where it should, at the end of an episode of 10 s.
+# How far each of them stands from where it should, at the end of an episode of 10 s. The first episode is written as a
+# log: `rumbo replay logs/rumbo-episode-0.mcap` shows it on the dashboard.
 
 # %%
 envs.training = False
-env = gymnasium.make("rumbo/StopAtWall-v0")
+env = rumbo.envs.RecordLog(
+    gymnasium.make("rumbo/StopAtWall-v0"), "logs", episode_trigger=lambda number: number == 0, overwrite=True
+)
 
 
 def missed(seed: int) -> float:

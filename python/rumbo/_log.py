@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 from dataclasses import dataclass
@@ -53,3 +54,17 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         parts["manifest"] = json.loads(parts["manifest"])
     parts["notes"] = tuple(parts["notes"])
     return Log(**parts)
+
+
+def write_file(path: str | os.PathLike[str], content: bytes, *, overwrite: bool) -> None:
+    """Writes a file; one that is there stays as it is, unless `overwrite` is true."""
+    try:
+        with open(path, "wb" if overwrite else "xb") as file:
+            file.write(content)
+    except FileExistsError:
+        raise is_there(path) from None
+
+
+def is_there(path: str | os.PathLike[str]) -> FileExistsError:
+    """A file that stands where another one is to be written."""
+    return FileExistsError(errno.EEXIST, "a file is there already, and overwrite=True replaces it", os.fspath(path))

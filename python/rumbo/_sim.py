@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _rumbo
+from ._log import write_file
 from ._setup import Program, Source, make_seeds, make_setup, to_ticks, to_toml
 
 #: Names of what a robot's program knows, in the order of the columns of `Batch.observe_rows`.
@@ -187,6 +188,29 @@ class Batch:
         rows = self.truth_rows()
         return {name: rows[:, column] for column, name in enumerate(TRUE)}
 
+    def record(self, indices: Sequence[int] | None = None) -> None:
+        """Records these robots from now on, all by default, in place of what was recorded of them: see `write_log`.
+
+        They go on bit for bit as without. A recorded one takes 16 KB for each second of its time, and is advanced tick
+        by tick. `renew` ends it for the robots that it replaces; snapshots have it with them.
+        """
+        for index in range(len(self)) if indices is None else indices:
+            self._batch.record(int(index))
+
+    def write_log(self, index: int, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Writes what was recorded of one robot since `record` as a log, an ``.mcap``.
+
+        ``rumbo replay`` shows it on the dashboard, `rumbo.read_log` reads it, ``rumbo export`` makes tables of it: the
+        telemetry that the robot would send, ground truth beside it, the goal of its world, and commands as events. The
+        setpoints of its wheels are among the telemetry. The robot stays recorded.
+
+        Raises:
+            ValueError: Nothing is recorded of this robot.
+            FileExistsError: There is a file at `path`, which stays as it is without `overwrite`.
+            OSError: It cannot be written there.
+        """
+        write_file(path, self._batch.log(index), overwrite=overwrite)
+
     def obstacles(self, index: int) -> list[NDArray[np.float64]]:
         """The corners of each wall and box in the world of one robot, shape (corners, 2) each [m]."""
         return [np.array(corners) for corners in self._batch.obstacles(index)]
@@ -299,6 +323,14 @@ class Sim:
     def truth(self) -> dict[str, float]:
         """Ground truth now: see `Batch.truth_rows`."""
         return {name: float(value) for name, value in zip(TRUE, self._batch.truth_rows()[0])}
+
+    def record(self) -> None:
+        """Records the robot from now on: see `Batch.record`."""
+        self._batch.record()
+
+    def write_log(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Writes what was recorded as a log, which ``rumbo replay`` shows: see `Batch.write_log`."""
+        self._batch.write_log(0, path, overwrite=overwrite)
 
     def obstacles(self) -> list[NDArray[np.float64]]:
         """The corners of each wall and box, shape (corners, 2) each [m]."""

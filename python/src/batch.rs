@@ -8,13 +8,18 @@ use numpy::{
 };
 use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use rumbo_control::mode::{MAX_WHEEL_RAD_S, ModeId};
 use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Batch as Robots, Driver, OBSERVED, Robot, TRUE};
 use rumbo_experiment::files::FileError;
+use rumbo_lab::run_log::Source;
+use rumbo_log::Kind;
 use rumbo_plant::world::World;
+use rumbo_session::headless::record_run;
 use rumbo_wire::Command;
 use std::f32::consts::FRAC_PI_2;
+use std::io::Cursor;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
 /// Between two looks for Ctrl-C [ticks]: a second of simulated time.
@@ -25,6 +30,7 @@ pub(crate) const ACTION: usize = 3;
 /// Robots of one setup.
 #[pyclass(frozen, module = "rumbo._rumbo")]
 pub(crate) struct Batch {
+    setup: Py<Setup>,
     robots: Mutex<Robots>,
     count: usize,
     threads: usize,
@@ -43,7 +49,7 @@ impl Batch {
     #[pyo3(signature = (setup, seeds, *, caller, threads))]
     fn new(
         py: Python<'_>,
-        setup: &Setup,
+        setup: Py<Setup>,
         seeds: Vec<u64>,
         caller: bool,
         threads: Option<i64>,
@@ -53,10 +59,12 @@ impl Batch {
             true => Driver::Caller,
             false => Driver::Scenario,
         };
+        let files = setup.get().files.clone();
         let robots = on_threads(py, seeds.len(), threads, || {
-            Robots::new(setup.files.clone(), driver, &seeds)
+            Robots::new(files, driver, &seeds)
         })?;
         Ok(Self {
+            setup,
             robots: Mutex::new(robots.map_err(|error| exception(&error))?),
             count: seeds.len(),
             threads,
@@ -164,6 +172,42 @@ impl Batch {
             check_actions(&[[0.0, 0.0, servo_rad]])?;
         }
         self.with(index, |robot| robot.aim(servo_rad.map(ServoAngle)))
+    }
+
+    /// Records one robot from now on.
+    fn record(&self, index: usize) -> PyResult<()> {
+        self.with(index, Robot::record)?
+            .map_err(|error| exception(&error))
+    }
+
+    /// The log of one robot: the bytes of its file.
+    fn log<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyBytes>> {
+        let held = self.lock()?;
+        let robot = held.robots().get(index);
+        let robot = robot.ok_or_else(|| beyond(index, self.count))?;
+        let Setup {
+            files,
+            library,
+            overrides,
+            ..
+        } = self.setup.get();
+        let source = Source {
+            kind: Kind::Episode,
+            library,
+            overrides,
+        };
+        let written = detached(py, || {
+            source.episode(files, robot, |manifest, run| {
+                record_run(Cursor::new(Vec::new()), manifest, run)
+            })
+        })?;
+        let log = written.map_err(|error| exception(&error))?.ok_or_else(|| {
+            PyValueError::new_err(format!(
+                "nothing is recorded of robot {index}: record() it, then step it"
+            ))
+        })?;
+        let log = log.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        Ok(PyBytes::new(py, log.get_ref()))
     }
 
     /// Corners of each obstacle in the world of one robot [m].

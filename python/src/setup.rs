@@ -15,9 +15,11 @@ use std::path::PathBuf;
 #[pyclass(frozen, module = "rumbo._rumbo")]
 pub(crate) struct Setup {
     pub(crate) files: Files,
+    /// The files it was chosen from.
+    pub(crate) library: Library,
     /// The scenario as its file has it.
     pub(crate) own: ScenarioFile,
-    overrides: Overrides,
+    pub(crate) overrides: Overrides,
     randomize: Option<bool>,
 }
 
@@ -72,6 +74,7 @@ impl Setup {
         }
         Ok(Self {
             files,
+            library,
             own,
             overrides,
             randomize,

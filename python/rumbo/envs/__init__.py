@@ -14,6 +14,8 @@ knows, by the names of `rumbo.OBSERVED`, its last two numbers being the task's: 
 Each episode has a seed, in ``info["seed"]``: it draws the robot from the spread in its file, the world, the task and
 all noise. ``reset(seed=s)`` begins the episode of seed s (of s + i in the i-th of a vector); those after it follow from
 s. An episode is bit for bit the same alone, in a vector, and on any number of threads.
+
+`RecordLog` writes episodes of a single environment as logs, which the dashboard replays.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from __future__ import annotations
 import gymnasium
 
 from ._env import FollowWallEnv, GoalEnv, RumboEnv, StopAtWallEnv, WheelSpeedEnv
+from ._record import RecordLog
 from ._vector import (
     FollowWallVectorEnv,
     GoalVectorEnv,
@@ -34,6 +37,7 @@ __all__ = [
     "FollowWallVectorEnv",
     "GoalEnv",
     "GoalVectorEnv",
+    "RecordLog",
     "RumboEnv",
     "RumboVectorEnv",
     "StopAtWallEnv",

@@ -81,6 +81,8 @@ class Core:
         self.seeds = np.zeros(count, np.int64)
         self._targets = np.zeros((count, 2))
         self._has_targets = task.targets(0) is not None
+        #: Episodes that begin from now on are recorded.
+        self.recorded = False
         #: The columns of the ground truth that infos have: without a goal where the task has none.
         self._names = [
             (column, name) for column, name in enumerate(TRUE) if not (self._has_targets and name.startswith("goal_"))
@@ -115,6 +117,8 @@ class Core:
             self._batch = self._make()
         else:
             self._batch.renew(chosen, seeds)
+        if self.recorded:
+            self._batch.record(chosen)
         self._batch.begin_wheel_speed(chosen, STAND_S)
         for index, seed in zip(chosen, seeds):
             self._targets[index] = self.task.targets(seed) or (0.0, 0.0)

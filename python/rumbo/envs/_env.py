@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
@@ -79,6 +80,14 @@ class RumboEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     def render(self) -> NDArray[np.uint8] | None:
         """The world from above; ``None`` without a render mode."""
         return None if self.render_mode is None else self._core.render(0)
+
+    def record(self, wanted: bool = True) -> None:
+        """Whether episodes that begin from now on are recorded, for `write_log`; `RecordLog` does both."""
+        self._core.recorded = wanted
+
+    def write_log(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Writes the episode so far, from the robot's start on, as a log: see `rumbo.Sim.write_log`."""
+        self._core.batch.write_log(0, path, overwrite=overwrite)
 
     def close(self) -> None:
         """Lets go of the robot."""

@@ -46,7 +46,7 @@ const ARROWS: [(&str, &[&str]); 25] = [
             "rumbo-ros",
         ],
     ),
-    ("rumbo-python", &["rumbo-experiment", "rumbo-identify"]),
+    ("rumbo-python", &["rumbo-lab", "rumbo-identify"]),
     ("rumbo-firmware", &["rumbo-robot"]),
     ("rumbo-firmware-tests", &["rumbo-experiment"]),
     (
