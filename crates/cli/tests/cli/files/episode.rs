@@ -81,3 +81,18 @@ fn an_episode_s_log_has_the_robot_the_goal_and_the_truth_and_is_not_run_again() 
         assert!(stderr(&output).contains(why), "{}", stderr(&output));
     }
 }
+
+#[test]
+fn a_run_s_log_has_the_goal_that_its_robot_was_given_until_it_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    rumbo_in(folder, &["run", "mode8-goals", "--seed", "1", "--out", "o"]);
+    let log = log_file::read(&folder.join("o/mode8-goals-1.mcap")).unwrap();
+    let goals: Vec<_> = log
+        .states
+        .iter()
+        .map(|state| state.robot.task.goal)
+        .collect();
+    assert!(goals.contains(&None) && goals.iter().any(Option::is_some));
+    assert!(goals.last().unwrap().is_none(), "{goals:?}");
+}
