@@ -307,7 +307,7 @@ impl Sim {
         native.next_tick_us += u64::from(TICK_US);
         if native.is_unlinked {
             if self.is_tapped() {
-                self.note(false, &native.said());
+                self.overhear(native);
             }
             return;
         }
@@ -318,6 +318,12 @@ impl Sim {
             };
             self.downlink.send(now_us, &[byte]);
         }
+    }
+
+    /// Hands what a robot without a link says to the tap. Out of the way of the robots that nobody listens to.
+    #[cold]
+    fn overhear(&mut self, native: &mut Native) {
+        self.note(false, &native.said());
     }
 
     fn apply(&mut self, native: &mut Native, outputs: &Outputs) {
