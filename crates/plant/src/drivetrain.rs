@@ -67,6 +67,8 @@ pub struct WheelState {
     pub current_a: f64,
     /// Low-passed speed on which the friction depends, rad/s, never negative: see [`params::Wheel::friction_memory_s`].
     pub remembered_rad_s: f64,
+    /// How far the dry friction has grown since the wheel last stood, 0 to 1: see [`params::Wheel::onset_ratio`].
+    pub grown: f64,
     /// Share of the rolled distance lost to slip at this place.
     pub slip: f64,
     pub(crate) command: Command,
@@ -103,6 +105,8 @@ pub(crate) struct WheelModel {
     pub(crate) torque_n_m_a: f64,
     pub(crate) inverse_stribeck: f64,
     pub(crate) forgetting_per_s: f64,
+    pub(crate) lacking_at_onset: f64,
+    pub(crate) growth_per_rad: f64,
     pub(crate) floor_knots_per_rad: f64,
     pub(crate) slip_knots_per_rad: f64,
 }
@@ -118,6 +122,8 @@ impl Drivetrain {
             torque_n_m_a: motor.back_emf_v_s * wheel.strength * motor.gear_efficiency,
             inverse_stribeck: 1.0 / wheel.stribeck_rad_s,
             forgetting_per_s: 1.0 / wheel.friction_memory_s,
+            lacking_at_onset: 1.0 - wheel.onset_ratio,
+            growth_per_rad: 1.0 / wheel.onset_rad,
             floor_knots_per_rad: wheel.radius_m / params.floor.roughness_length_m,
             slip_knots_per_rad: wheel.radius_m / params.floor.slip_length_m,
         };
@@ -147,6 +153,7 @@ impl Drivetrain {
             speed_rad_s: 0.0,
             current_a: 0.0,
             remembered_rad_s: 0.0,
+            grown: 0.0,
             slip: 0.0,
             command: RELEASED,
             floor: Wander::start(&self.noise, source::DRIVETRAIN + 2 + index),
@@ -246,7 +253,8 @@ impl Drivetrain {
         };
         let relative = wheel.remembered_rad_s * model.inverse_stribeck;
         let breakaway = 1.0 + (model.params.static_ratio - 1.0) / (1.0 + relative * relative);
-        (own + self.floor_n_m(wheel, turning)) * breakaway
+        let onset = 1.0 - model.lacking_at_onset * (1.0 - wheel.grown);
+        (own + self.floor_n_m(wheel, turning)) * breakaway * onset
     }
 
     fn floor_n_m(&self, wheel: &WheelState, turning: f64) -> f64 {
@@ -266,6 +274,13 @@ impl Drivetrain {
         let share = dt_s * model.forgetting_per_s;
         let share = if share < 1.0 { share } else { 1.0 };
         wheel.remembered_rad_s += share * (speed_rad_s.abs() - wheel.remembered_rad_s);
+        let growth = rolled_rad.abs() * model.growth_per_rad;
+        let growth = if growth < 1.0 { growth } else { 1.0 };
+        wheel.grown = if speed_rad_s == 0.0 {
+            0.0
+        } else {
+            wheel.grown + growth * (1.0 - wheel.grown)
+        };
         if self.on_floor && rolled_rad != 0.0 {
             let (way, index) = (rolled_rad.abs(), i as u32);
             wheel.floor.advance(

@@ -326,3 +326,60 @@ fn yaw_damping_slows_a_turn_on_the_floor_and_nothing_else() {
     let straight = [Bridge::Forward(0.5); 2];
     assert_eq!(after(0.0, straight, true), after(0.05, straight, true));
 }
+
+#[test]
+fn friction_grows_over_an_angle_after_a_wheel_stood_and_begins_anew_when_it_stands() {
+    let of = |onset_ratio: f64| {
+        let mut params = Params::default();
+        smooth(&mut params);
+        for wheel in [&mut params.wheels.left, &mut params.wheels.right] {
+            wheel.onset_ratio = onset_ratio;
+            // Nothing else of its friction depends on what was before.
+            wheel.static_ratio = 1.0;
+        }
+        Drivetrain::new(&params, Noise::new(1, 0), true)
+    };
+    let (growing, constant) = (of(0.5), of(1.0));
+    let run = |drivetrain: &Drivetrain, seconds: f64| {
+        let mut state = drivetrain.start();
+        drive(drivetrain, &mut state, [Bridge::Forward(0.4); 2], seconds);
+        state
+    };
+    let [early, late] = [0.2, 4.0].map(|seconds| {
+        let (growing, constant) = (run(&growing, seconds), run(&constant, seconds));
+        speeds(&growing)[0] / speeds(&constant)[0]
+    });
+    assert!(early > 1.05, "{early}");
+    assert!((late - 1.0).abs() < 0.01, "{late}");
+
+    // Half the friction: less duty breaks it away.
+    let starts = |drivetrain: &Drivetrain, duty: f64| {
+        let mut state = drivetrain.start();
+        drive(drivetrain, &mut state, [Bridge::Forward(duty); 2], 0.01);
+        speeds(&state)[0] > 0.0
+    };
+    let duty = (1..255).map(|duty| f64::from(duty) / 255.0);
+    let [of_growing, of_constant] = [&growing, &constant].map(|drivetrain| {
+        let mut duty = duty.clone();
+        duty.find(|duty| starts(drivetrain, *duty)).unwrap()
+    });
+    assert!(
+        of_growing < 0.85 * of_constant,
+        "{of_growing} {of_constant}"
+    );
+
+    let mut state = run(&growing, 4.0);
+    let grown = |state: &State| state.wheels[0].grown;
+    assert!(grown(&state) > 0.99);
+    drive(&growing, &mut state, [Bridge::Released; 2], 2.0);
+    assert_eq!((speeds(&state), grown(&state)), ([0.0; 2], 0.0));
+    // Reversed without a rest, it passes through one.
+    drive(&growing, &mut state, [Bridge::Backward(0.4); 2], 4.0);
+    assert!(speeds(&state)[0] < 0.0 && grown(&state) > 0.99);
+    let mut least_grown = 1.0_f64;
+    for _ in 0..1_000 {
+        drive(&growing, &mut state, [Bridge::Forward(0.4); 2], MS);
+        least_grown = least_grown.min(grown(&state));
+    }
+    assert_eq!(least_grown, 0.0);
+}

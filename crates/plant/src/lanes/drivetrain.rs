@@ -24,6 +24,8 @@ pub(super) struct Wheels<S: Simd> {
     torque_n_m_a: V<S>,
     inverse_stribeck: V<S>,
     forgetting_per_s: V<S>,
+    lacking_at_onset: V<S>,
+    growth_per_rad: V<S>,
     floor_knots_per_rad: V<S>,
     slip_knots_per_rad: V<S>,
     /// Own and shared entry of the inverse inertia.
@@ -38,6 +40,7 @@ pub(super) struct Wheels<S: Simd> {
     speed_rad_s: V<S>,
     current_a: V<S>,
     remembered_rad_s: V<S>,
+    grown: V<S>,
     slip: V<S>,
     floor: Wanders<S>,
     slipping: Wanders<S>,
@@ -65,6 +68,8 @@ impl<S: Simd> Wheels<S> {
             torque_n_m_a: gather(simd, |lane| model(lane).torque_n_m_a),
             inverse_stribeck: gather(simd, |lane| model(lane).inverse_stribeck),
             forgetting_per_s: gather(simd, |lane| model(lane).forgetting_per_s),
+            lacking_at_onset: gather(simd, |lane| model(lane).lacking_at_onset),
+            growth_per_rad: gather(simd, |lane| model(lane).growth_per_rad),
             floor_knots_per_rad: gather(simd, |lane| model(lane).floor_knots_per_rad),
             slip_knots_per_rad: gather(simd, |lane| model(lane).slip_knots_per_rad),
             own: gather(simd, |lane| match side {
@@ -81,6 +86,7 @@ impl<S: Simd> Wheels<S> {
             speed_rad_s: gather(simd, |lane| state(lane).speed_rad_s),
             current_a: gather(simd, |lane| state(lane).current_a),
             remembered_rad_s: gather(simd, |lane| state(lane).remembered_rad_s),
+            grown: gather(simd, |lane| state(lane).grown),
             slip: gather(simd, |lane| state(lane).slip),
             floor: Wanders::gather(simd, 2 + side as u32, |lane| state(lane).floor),
             slipping: Wanders::gather(simd, 4 + side as u32, |lane| state(lane).slipping),
@@ -93,6 +99,7 @@ impl<S: Simd> Wheels<S> {
         state.speed_rad_s = self.speed_rad_s[lane];
         state.current_a = self.current_a[lane];
         state.remembered_rad_s = self.remembered_rad_s[lane];
+        state.grown = self.grown[lane];
         state.slip = self.slip[lane];
         self.floor.scatter(lane, &mut state.floor);
         self.slipping.scatter(lane, &mut state.slipping);
@@ -103,7 +110,7 @@ impl<S: Simd> Wheels<S> {
     /// `Drivetrain::roll`, but for passing knots and the slip; gives the angle turned.
     #[inline(always)]
     fn roll(&mut self, simd: S, speed_rad_s: V<S>, dt_s: f64) -> V<S> {
-        let one = splat(simd, 1.0);
+        let (zero, one) = (splat(simd, 0.0), splat(simd, 1.0));
         let rolled_rad = (self.speed_rad_s + speed_rad_s) * 0.5 * dt_s;
         self.speed_rad_s = speed_rad_s;
         self.angle_rad += rolled_rad;
@@ -111,6 +118,10 @@ impl<S: Simd> Wheels<S> {
         let share = share.simd_lt(one).select(share, one);
         self.remembered_rad_s += share * (speed_rad_s.abs() - self.remembered_rad_s);
         let way = rolled_rad.abs();
+        let growth = way * self.growth_per_rad;
+        let growth = growth.simd_lt(one).select(growth, one);
+        let grown = self.grown + growth * (one - self.grown);
+        self.grown = speed_rad_s.simd_eq(zero).select(zero, grown);
         self.floor.advance(way * self.floor_knots_per_rad);
         self.slipping.advance(way * self.slip_knots_per_rad);
         rolled_rad
@@ -325,7 +336,8 @@ impl<S: Simd> Drivetrains<S> {
         let here = one + self.roughness * wheels.floor.value();
         let here = positive(simd, here);
         let floor_n_m = self.friction_scale * here * (self.rolling_n_m + self.scrub_n_m * turning);
-        positive(simd, (own + floor_n_m) * breakaway + resist_n_m)
+        let onset = one - wheels.lacking_at_onset * (one - wheels.grown);
+        positive(simd, (own + floor_n_m) * breakaway * onset + resist_n_m)
     }
 
     /// `Coupling::speeds_after`; wheels that stop or stand go robot by robot.

@@ -121,12 +121,17 @@ fn robot(seed: u64, odd: Odd) -> (Plant, State) {
         thrown: 0,
     };
     let mut params = Params::default().draw(seed, 0);
-    match dice.below(6) {
+    match dice.below(7) {
         0 => params.floor.yaw_damping_n_m_s = 0.0,
         1 => params.floor.yaw_damping_n_m_s = 0.02,
         2 => params.floor.slip_length_m = 0.0005,
         3 => params.floor.roughness = 0.5,
         4 => params.battery.open_circuit_v = 7.001,
+        5 => {
+            let [left, right] = [&mut params.wheels.left, &mut params.wheels.right];
+            (left.onset_ratio, right.onset_ratio) = (0.4, 0.7);
+            (left.onset_rad, right.onset_rad) = (1.4, 0.05);
+        }
         _ => {}
     }
     let mut world = match dice.below(3) {
