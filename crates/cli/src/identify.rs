@@ -59,7 +59,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let shown = |share: f64| bar.set_position((100.0 * share) as u64);
     let progress = Progress::to(&shown);
     let outcome = match args.check {
-        Some(_) if args.leave_one_out => logs.leave_one_out(&robot.plant, &progress),
+        _ if args.leave_one_out => logs.leave_one_out(&robot.plant, &progress),
         Some(_) => logs.check(&robot.plant),
         None => logs.identify(&robot.plant, &progress),
     }
@@ -140,9 +140,9 @@ fn drive(args: &IdentifyArgs, robot: &str) -> Result<Option<Driving>, Failure> {
 /// What is being done, and how much of it is.
 fn bar(args: &IdentifyArgs) -> ProgressBar {
     let doing = match (&args.check, args.leave_one_out) {
+        (_, true) => "fitting without each run in turn",
         (Some(_), false) => "comparing with the plant",
-        (Some(_), true) => "fitting without each run in turn",
-        (None, _) => {
+        (None, false) => {
             "searching for the plant that repeats the runs; CSVs take two cores some three minutes"
         }
     };

@@ -38,6 +38,8 @@ pub enum IdentifyError {
     Sonar(SonarLogError),
     /// No log shows speeds or a distance ahead.
     NothingToFit,
+    /// There is one log only, and it is to be left out.
+    NothingLeft,
     /// No common plant explains these logs.
     Contradiction {
         /// The one that the common fit explains worst.
@@ -81,6 +83,9 @@ impl fmt::Display for IdentifyError {
                     f,
                     "no log shows wheel speeds (modes 5 to 7) or a wall ahead (modes 1, 2); add one that does"
                 )
+            }
+            Self::NothingLeft => {
+                write!(f, "there is one log only; add others to fit it without")
             }
             Self::Contradiction { one, other, ratio } => write!(
                 f,

@@ -189,7 +189,7 @@ pub fn check(logs: &[DriveLog], params: &Params) -> Result<Check, IdentifyError>
 /// predicts of a run that it has not seen.
 ///
 /// # Errors
-/// As [`identify`].
+/// As [`identify`], or a single run.
 pub fn leave_one_out(
     logs: &[DriveLog],
     start: &Params,
@@ -201,11 +201,15 @@ pub fn leave_one_out(
         (progress.report)(done as f64 / logs.len() as f64);
         let source = &left_out[0].source;
         let others = logs.iter().filter(|log| log.source != *source);
+        let others: Vec<DriveLog> = others.cloned().collect();
+        if others.is_empty() {
+            return Err(IdentifyError::NothingLeft);
+        }
         let quietly = Progress {
             report: &|_| {},
             ..*progress
         };
-        let found = identify(&others.cloned().collect::<Vec<_>>(), start, 0, &quietly)?;
+        let found = identify(&others, start, 0, &quietly)?;
         scores.extend(check_source(left_out, &found.params)?);
     }
     Ok(scores)

@@ -108,6 +108,17 @@ fn a_drive_is_an_ordinary_log_that_is_identified_again_and_written_into_a_robot_
             .unwrap()
             .contains("# Identified by `rumbo identify`")
     );
+
+    // Not taken for a fit: the robot file stays as it is.
+    let before = std::fs::read(&file).unwrap();
+    let output = support::program()
+        .args(["identify", log, "--leave-one-out", "--robot"])
+        .arg(&file)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("there is one log only"), "{said}");
+    assert_eq!(std::fs::read(&file).unwrap(), before);
 }
 
 /// The only log of a folder.
