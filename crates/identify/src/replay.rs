@@ -140,7 +140,6 @@ impl<'a> Replay<'a> {
             for (wheel, speed_rad_s) in state.wheels.iter_mut().zip(first.speed_rad_s) {
                 wheel.speed_rad_s = speed_rad_s;
                 wheel.remembered_rad_s = speed_rad_s.abs();
-                wheel.grown = if speed_rad_s == 0.0 { 0.0 } else { 1.0 };
             }
         }
         // The first row reports the time since a pass that is not in the log and had applied nearly the same: wheels

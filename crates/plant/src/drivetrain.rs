@@ -67,7 +67,8 @@ pub struct WheelState {
     pub current_a: f64,
     /// Low-passed speed on which the friction depends, rad/s, never negative: see [`params::Wheel::friction_memory_s`].
     pub remembered_rad_s: f64,
-    /// How far the dry friction has grown since the wheel last stood, 0 to 1: see [`params::Wheel::onset_ratio`].
+    /// How far the dry friction has grown since the wheel last stopped or broke loose, 0 to 1: see
+    /// [`params::Wheel::onset_ratio`].
     pub grown: f64,
     /// Share of the rolled distance lost to slip at this place.
     pub slip: f64,
@@ -107,6 +108,7 @@ pub(crate) struct WheelModel {
     pub(crate) forgetting_per_s: f64,
     pub(crate) lacking_at_onset: f64,
     pub(crate) growth_per_rad: f64,
+    pub(crate) growth_per_s: f64,
     pub(crate) floor_knots_per_rad: f64,
     pub(crate) slip_knots_per_rad: f64,
 }
@@ -124,6 +126,7 @@ impl Drivetrain {
             forgetting_per_s: 1.0 / wheel.friction_memory_s,
             lacking_at_onset: 1.0 - wheel.onset_ratio,
             growth_per_rad: 1.0 / wheel.onset_rad,
+            growth_per_s: 1.0 / wheel.onset_rest_s,
             floor_knots_per_rad: wheel.radius_m / params.floor.roughness_length_m,
             slip_knots_per_rad: wheel.radius_m / params.floor.slip_length_m,
         };
@@ -153,7 +156,7 @@ impl Drivetrain {
             speed_rad_s: 0.0,
             current_a: 0.0,
             remembered_rad_s: 0.0,
-            grown: 0.0,
+            grown: 1.0,
             slip: 0.0,
             command: RELEASED,
             floor: Wander::start(&self.noise, source::DRIVETRAIN + 2 + index),
@@ -269,18 +272,20 @@ impl Drivetrain {
     /// Advances one wheel, with the floor and slip at its new position.
     fn roll(&self, i: usize, wheel: &mut WheelState, speed_rad_s: f64, rolled_rad: f64, dt_s: f64) {
         let model = &self.wheels[i];
+        let (stood, stands) = (wheel.speed_rad_s == 0.0, speed_rad_s == 0.0);
         wheel.speed_rad_s = speed_rad_s;
         wheel.angle_rad += rolled_rad;
         let share = dt_s * model.forgetting_per_s;
         let share = if share < 1.0 { share } else { 1.0 };
         wheel.remembered_rad_s += share * (speed_rad_s.abs() - wheel.remembered_rad_s);
-        let growth = rolled_rad.abs() * model.growth_per_rad;
-        let growth = if growth < 1.0 { growth } else { 1.0 };
-        wheel.grown = if speed_rad_s == 0.0 {
-            0.0
+        let growth = if stands {
+            dt_s * model.growth_per_s
         } else {
-            wheel.grown + growth * (1.0 - wheel.grown)
+            rolled_rad.abs() * model.growth_per_rad
         };
+        let growth = if growth < 1.0 { growth } else { 1.0 };
+        let before = if stands == stood { wheel.grown } else { 0.0 };
+        wheel.grown = before + growth * (1.0 - before);
         if self.on_floor && rolled_rad != 0.0 {
             let (way, index) = (rolled_rad.abs(), i as u32);
             wheel.floor.advance(

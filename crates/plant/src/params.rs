@@ -205,10 +205,12 @@ section! {
         stribeck_rad_s = 10.0, 0.05 => 50.0, "rad/s";
         /// Time over which the friction follows the speed: lubricant and tyres remember how fast they went.
         friction_memory_s = 1.5, 0.001 => 30.0, "s";
-        /// Dry friction of a wheel that stood, relative to that once it has rolled on.
+        /// Dry friction of a wheel that has just broken loose or just stopped, relative to the whole.
         onset_ratio = 1.0, 0.1 => 1.0, "1";
-        /// Angle over which it grows to that, as a first-order lag that begins anew whenever the wheel stands.
+        /// Angle rolled over which it grows to the whole: a first-order lag.
         onset_rad = 1.5, 0.05 => 50.0, "rad";
+        /// Time at rest over which it grows to the whole: a first-order lag.
+        onset_rest_s = 0.5, 0.001 => 30.0, "s";
     }
 }
 

@@ -26,6 +26,7 @@ pub(super) struct Wheels<S: Simd> {
     forgetting_per_s: V<S>,
     lacking_at_onset: V<S>,
     growth_per_rad: V<S>,
+    growth_per_s: V<S>,
     floor_knots_per_rad: V<S>,
     slip_knots_per_rad: V<S>,
     /// Own and shared entry of the inverse inertia.
@@ -70,6 +71,7 @@ impl<S: Simd> Wheels<S> {
             forgetting_per_s: gather(simd, |lane| model(lane).forgetting_per_s),
             lacking_at_onset: gather(simd, |lane| model(lane).lacking_at_onset),
             growth_per_rad: gather(simd, |lane| model(lane).growth_per_rad),
+            growth_per_s: gather(simd, |lane| model(lane).growth_per_s),
             floor_knots_per_rad: gather(simd, |lane| model(lane).floor_knots_per_rad),
             slip_knots_per_rad: gather(simd, |lane| model(lane).slip_knots_per_rad),
             own: gather(simd, |lane| match side {
@@ -112,16 +114,17 @@ impl<S: Simd> Wheels<S> {
     fn roll(&mut self, simd: S, speed_rad_s: V<S>, dt_s: f64) -> V<S> {
         let (zero, one) = (splat(simd, 0.0), splat(simd, 1.0));
         let rolled_rad = (self.speed_rad_s + speed_rad_s) * 0.5 * dt_s;
+        let (stood, stands) = (self.speed_rad_s.simd_eq(zero), speed_rad_s.simd_eq(zero));
         self.speed_rad_s = speed_rad_s;
         self.angle_rad += rolled_rad;
         let share = self.forgetting_per_s * dt_s;
         let share = share.simd_lt(one).select(share, one);
         self.remembered_rad_s += share * (speed_rad_s.abs() - self.remembered_rad_s);
         let way = rolled_rad.abs();
-        let growth = way * self.growth_per_rad;
+        let growth = stands.select(self.growth_per_s * dt_s, way * self.growth_per_rad);
         let growth = growth.simd_lt(one).select(growth, one);
-        let grown = self.grown + growth * (one - self.grown);
-        self.grown = speed_rad_s.simd_eq(zero).select(zero, grown);
+        let before = (stands ^ stood).select(zero, self.grown);
+        self.grown = before + growth * (one - before);
         self.floor.advance(way * self.floor_knots_per_rad);
         self.slipping.advance(way * self.slip_knots_per_rad);
         rolled_rad

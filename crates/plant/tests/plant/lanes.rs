@@ -131,6 +131,7 @@ fn robot(seed: u64, odd: Odd) -> (Plant, State) {
             let [left, right] = [&mut params.wheels.left, &mut params.wheels.right];
             (left.onset_ratio, right.onset_ratio) = (0.4, 0.7);
             (left.onset_rad, right.onset_rad) = (1.4, 0.05);
+            (left.onset_rest_s, right.onset_rest_s) = (0.001, 0.3);
         }
         _ => {}
     }
