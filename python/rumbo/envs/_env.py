@@ -104,8 +104,9 @@ def check_render_mode(render_mode: str | None) -> None:
 class WheelSpeedEnv(RumboEnv):
     """``rumbo/WheelSpeed-v0``: both wheels at speeds of their own, on an open floor, for 5 s.
 
-    The last two numbers of an observation are the speeds to reach, left and right [rad/s], -10 to 10. The reward is
-    minus the sum of both wheels' errors, divided by 10 rad/s.
+    The last two numbers of an observation are the speeds to reach, left and right [rad/s], -10 to 10. The reward is 1
+    minus the mean of both wheels' errors divided by 20 rad/s, at least 0. A contact above 0.1 m/s, or a fault of the
+    robot, costs 10 and ends the episode.
     """
 
     _task = _tasks.WHEEL_SPEED
@@ -115,7 +116,8 @@ class StopAtWallEnv(RumboEnv):
     """``rumbo/StopAtWall-v0``: stand at a distance from the wall ahead, for 10 s.
 
     The second last number of an observation is the distance [m] from sonar to wall, 0.2 to 0.8; the last is 0. The
-    reward is minus the error [m]. A contact above 0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
+    reward is 1 minus the error divided by 1 m, at least 0. A contact above 0.1 m/s, or a fault of the robot, costs 10
+    and ends the episode.
     """
 
     _task = _tasks.STOP_AT_WALL
@@ -125,8 +127,8 @@ class FollowWallEnv(RumboEnv):
     """``rumbo/FollowWall-v0``: drive along the wall on the left at a distance from it, for 20 s.
 
     The second last number of an observation is the distance [m] from the pair of sonars to the wall, 0.3 to 0.6; the
-    last is 0. The reward is the forward speed divided by 0.3 m/s, 0 to 1, minus the error divided by 0.1 m. A contact
-    above 0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
+    last is 0. The reward is the forward speed divided by 0.3 m/s, 0 to 1, times 1 minus the error divided by 0.5 m, at
+    least 0. A contact above 0.1 m/s, or a fault of the robot, costs 10 and ends the episode.
     """
 
     _task = _tasks.FOLLOW_WALL

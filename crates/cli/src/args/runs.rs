@@ -232,7 +232,7 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_name = "ROBOT")]
     pub(crate) check: Option<String>,
     /// Fit it to all runs but one and evaluate that one, for each run in turn
-    #[arg(long, conflicts_with = "write")]
+    #[arg(long, conflicts_with_all = ["write", "drive"])]
     pub(crate) leave_one_out: bool,
     /// The result as JSON on stdout
     #[arg(long)]
