@@ -13,10 +13,10 @@ use rumbo_control::params::SCHEMA;
 use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_experiment::{MODEL, calibration_run};
-use rumbo_log::{Burst, Kind, Log, Manifest, Said, Sent};
+use rumbo_log::{Burst, Kind, Log, Manifest, Row, Said, Sample, Sent};
 use rumbo_sim::{Config, Sim};
 use rumbo_station::log_file;
-use rumbo_wire::{Decoder, FromRobot, Message, PROTOCOL_VERSION, Received};
+use rumbo_wire::{Decoder, FromRobot, Message, PROTOCOL_VERSION, Received, Telemetry};
 use serde_json::json;
 
 /// Longest line of text from a robot that is put together.
@@ -310,6 +310,10 @@ trait Recorded: PartialEq {
     fn t_us(&self) -> u64;
     /// What, for people.
     fn words(&self) -> String;
+    /// In what another one differs, for people.
+    fn difference(&self, other: &Self) -> String {
+        format!("was {}, is {}", self.words(), other.words())
+    }
 }
 
 impl Recorded for Burst {
@@ -319,6 +323,25 @@ impl Recorded for Burst {
 
     fn words(&self) -> String {
         words(self)
+    }
+
+    fn difference(&self, other: &Self) -> String {
+        let differing = match (completed(self), completed(other)) {
+            (Some(FromRobot::Telemetry(was)), Some(FromRobot::Telemetry(is)))
+                if self.t_us == other.t_us =>
+            {
+                differing_signals(was, is)
+            }
+            _ => Vec::new(),
+        };
+        match differing.is_empty() {
+            true => format!("was {}, is {}", words(self), words(other)),
+            false => format!(
+                "telemetry at {:.3} s: {}",
+                self.t_us as f64 / 1e6,
+                differing.join("; ")
+            ),
+        }
     }
 }
 
@@ -338,10 +361,7 @@ fn first_difference<T: Recorded>(was: &[T], is: &[T], cut: bool) -> Option<Verdi
     let parted = was.iter().zip(is).find(|(was, is)| was != is);
     if let Some((was, is)) = parted {
         let t_s = was.t_us().min(is.t_us()) as f64 / 1e6;
-        return Some(Verdict::Differs(
-            t_s,
-            format!("was {}, is {}", was.words(), is.words()),
-        ));
+        return Some(Verdict::Differs(t_s, was.difference(is)));
     }
     if was.len() > is.len() || (was.len() < is.len() && !cut) {
         let longer = if was.len() > is.len() { was } else { is };
@@ -366,16 +386,7 @@ fn words(burst: &Burst) -> String {
     } else {
         "from the robot"
     };
-    let mut decoder = Decoder::<LINE>::default();
-    let message = burst
-        .bytes
-        .iter()
-        .find_map(|byte| match decoder.push(*byte) {
-            Some(Received::Frame(body)) => FromRobot::from_body(&body)
-                .ok()
-                .map(|message| format!("{message:?}")),
-            Some(Received::Line(_)) | None => None,
-        });
+    let message = completed(burst).map(|message| format!("{message:?}"));
     let content = message.unwrap_or_else(|| {
         burst
             .bytes
@@ -386,9 +397,50 @@ fn words(burst: &Burst) -> String {
     format!("{who} at {:.3} s {content}", burst.t_us as f64 / 1e6)
 }
 
+/// The message from the robot that a burst completes.
+fn completed(burst: &Burst) -> Option<FromRobot> {
+    let mut decoder = Decoder::<LINE>::default();
+    burst
+        .bytes
+        .iter()
+        .find_map(|byte| match decoder.push(*byte) {
+            Some(Received::Frame(body)) => FromRobot::from_body(&body).ok(),
+            Some(Received::Line(_)) | None => None,
+        })
+}
+
+/// The signals in which two frames of telemetry differ, as in a log's table.
+fn differing_signals(was: Telemetry, is: Telemetry) -> Vec<String> {
+    let [was, is] = [was, is].map(|telemetry| Sample::of(telemetry).row());
+    let shown =
+        |value: Option<f64>| value.map_or_else(|| "unknown".to_owned(), |it| it.to_string());
+    let differing = Row::names().enumerate().filter_map(|(column, name)| {
+        let (was, is) = (was.get(column), is.get(column));
+        (was != is).then(|| format!("{name} was {}, is {}", shown(was), shown(is)))
+    });
+    differing.collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn telemetry_differs_by_named_signals() {
+        let frame = |left_rad_s: f32| {
+            let mut telemetry = Telemetry::default();
+            telemetry.wheel_rad_s[1].left = left_rad_s;
+            Burst {
+                t_us: 1_240_000,
+                to_robot: false,
+                bytes: FromRobot::Telemetry(telemetry).frame(7).bytes().to_vec(),
+            }
+        };
+        assert_eq!(
+            frame(3.0).difference(&frame(3.5)),
+            "telemetry at 1.240 s: left_rad_s was 3, is 3.5"
+        );
+    }
 
     fn link(bytes: &[u8]) -> Vec<Burst> {
         let burst = |(index, byte): (usize, &u8)| Burst {

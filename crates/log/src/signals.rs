@@ -175,6 +175,15 @@ impl Sample {
         Row::new(self.t_ms, self.named_row().map(|(_, value)| value))
     }
 
+    /// A sample of which only the telemetry is known.
+    #[must_use]
+    pub fn of(telemetry: Telemetry) -> Self {
+        Self {
+            telemetry,
+            ..Self::empty()
+        }
+    }
+
     /// A sample without known values.
     pub(crate) fn empty() -> Self {
         Self {

@@ -210,13 +210,18 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_name = "FILE.toml", conflicts_with = "check")]
     pub(crate) write: Option<PathBuf>,
     /// Voltage of the battery with the wheels at rest, by a multimeter: the motors are known no better than it
-    #[arg(long, value_name = "VOLTS", requires = "drive")]
+    #[arg(
+        long,
+        value_name = "VOLTS",
+        requires = "drive",
+        conflicts_with = "check"
+    )]
     pub(crate) battery: Option<f64>,
     /// Speed of the port [baud]
     #[arg(long, value_name = "BAUD", default_value_t = rumbo_session::DEFAULT_BAUD)]
     pub(crate) baud: u32,
     /// Folder for the log of the drive [default: that of sessions]
-    #[arg(long, value_name = "DIR", requires = "drive")]
+    #[arg(long, value_name = "DIR", requires = "drive", conflicts_with = "check")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) seed: SeedArgs,
