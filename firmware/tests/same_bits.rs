@@ -26,7 +26,7 @@ const RECORDED: [(&str, u64); 16] = [
     ("manual-arc-left-speed", 1),
     ("manual-straight", 1),
     ("mode1-final", 1),
-    ("mode2", 21),
+    ("mode2", 13),
     ("mode2-final", 1),
     ("mode3-final", 1),
     ("mode4", 1),

@@ -160,7 +160,7 @@ table! {
     /// Duty per wheel speed.
     Velocity = "kv", "s/rad", 0.018, 0.0 => 0.2;
     /// Duty per wheel acceleration.
-    Acceleration = "ka", "s2/rad", 0.008, 0.0 => 0.1;
+    Acceleration = "ka", "s2/rad", 0.012, 0.0 => 0.1;
     /// Duty that a standing wheel gets at first when asked to turn; it grows until edges come.
     Kick = "kick", "1", 0.30, 0.0 => 1.0;
     /// Speed loop of the left wheel, proportional gain.

@@ -9,8 +9,8 @@
 
 use crate::contradiction;
 use crate::error::IdentifyError;
-use crate::log::{DriveLog, Seen};
-use crate::problem::{Problem, UNKNOWNS, dead_zone_pwm};
+use crate::log::{DriveLog, Row, Seen};
+use crate::problem::{NUISANCES, Problem, UNKNOWNS, dead_zone_pwm};
 use crate::progress::Progress;
 use crate::replay::Nuisance;
 use crate::score::{RunScore, score};
@@ -76,6 +76,8 @@ pub struct Identification {
     pub dead_zone_floor_pwm: f64,
     /// How well each run is repeated.
     pub runs: Vec<RunScore>,
+    /// Half the sum of squares of all errors and beliefs, each in standard deviations: what the fit makes least.
+    pub cost: f64,
     /// The largest misfit of a run's file under the common fit, beside a fit of its own: 1 if they agree, or it is the only one.
     pub disagreement: f64,
 }
@@ -100,7 +102,7 @@ impl Identification {
     }
 }
 
-/// The outcome of a check: nothing fitted but two nuisance values per run.
+/// The outcome of a check: nothing fitted but three nuisance values per run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Check {
     /// How well each run is repeated.
@@ -167,12 +169,13 @@ pub fn identify(
             .enumerate()
             .map(|(i, log)| score(log, &params, problem.nuisance(i, &z)))
             .collect(),
+        cost: problem.cost(&z),
         disagreement,
         params,
     })
 }
 
-/// Repeats each run on the plant `params`, fitting only its battery voltage and floor friction.
+/// Repeats each run on the plant `params`, fitting only its battery voltage, floor friction and scrubbing.
 ///
 /// # Errors
 /// As [`identify`].
@@ -218,13 +221,25 @@ pub fn leave_one_out(
 /// Repeats the runs of one source, which share battery and floor.
 fn check_source(logs: &[DriveLog], params: &Params) -> Result<Vec<RunScore>, IdentifyError> {
     let problem = Problem::new(&[], logs, params);
-    // A coarse grid first: a battery too low is a robot that never moves, and no slope leads away from that.
-    let grid = [-2.0, -1.0, 0.0, 1.0, 2.0]
-        .map(|volts| [-2.0, 0.0, 2.0].map(|floor| [volts, floor]))
-        .concat();
-    let points = grid.iter().map(|point| DVector::from_row_slice(point));
-    let best = points.min_by(|a, b| problem.cost(a).total_cmp(&problem.cost(b)));
-    let (problem, z) = descend(problem, &best.unwrap_or_else(|| DVector::zeros(2)))?;
+    // A coarse grid first: a battery too low, or a floor too hard to turn on, is a robot that never moves, and no slope leads
+    // away from that.
+    let scrubs: &[f64] = match logs.iter().any(|log| log.rows.iter().any(Row::is_turning)) {
+        true => &[-1.0, 0.0, 1.0],
+        false => &[0.0],
+    };
+    let mut best = (f64::INFINITY, DVector::zeros(NUISANCES));
+    for volts in [-2.0, -1.0, 0.0, 1.0, 2.0] {
+        for floor in [-2.0, 0.0, 2.0] {
+            for scrub in scrubs {
+                let point = DVector::from_row_slice(&[volts, floor, *scrub]);
+                let cost = problem.cost(&point);
+                if cost < best.0 {
+                    best = (cost, point);
+                }
+            }
+        }
+    }
+    let (problem, z) = descend(problem, &best.1)?;
     let scores = logs.iter().enumerate();
     Ok(scores
         .map(|(i, log)| score(log, params, problem.nuisance(i, &z)))

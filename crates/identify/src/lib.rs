@@ -10,7 +10,7 @@
 //!            └─► sonar_stats: noise, outliers and losses, beside those of the plant's sonars
 //! ```
 //!
-//! What differs from run to run, the battery's voltage and the floor's friction, is fitted per run as a nuisance;
+//! What differs from run to run, the battery's voltage, the floor's friction and scrubbing, is a nuisance per run;
 //! [`check`] fits nothing else. Derivation and choice of the unknowns: [`problem`].
 //!
 //! It knows the plant, and the texts it is given: no scenario, no simulator, no files of the project.

@@ -65,28 +65,32 @@ pub const UNKNOWNS: [Unknown; 17] = [
         0.7,
         LEVELS,
     ),
+    Unknown {
+        believed: Some(0.8),
+        ..unknown(
+            &["wheels.left.onset_ratio", "wheels.right.onset_ratio"],
+            0.5,
+            STARTS,
+        )
+    },
     unknown(
-        &["wheels.left.static_ratio", "wheels.right.static_ratio"],
+        &["wheels.left.onset_rad", "wheels.right.onset_rad"],
         0.7,
-        FAST,
+        STARTS,
     ),
     unknown(
-        &["wheels.left.stribeck_rad_s", "wheels.right.stribeck_rad_s"],
-        0.5,
-        FAST,
-    ),
-    unknown(
-        &[
-            "wheels.left.friction_memory_s",
-            "wheels.right.friction_memory_s",
-        ],
+        &["wheels.left.onset_rest_s", "wheels.right.onset_rest_s"],
         0.7,
-        FAST,
+        STARTS,
     ),
-    // 10 % of the whole: the logarithm counts from the lower limit, 0.5.
-    unknown(&["wheels.right.strength"], 0.2, LEVELS),
+    // Two motors of a kind, 2.5 % of the whole: the logarithm counts from the lower limit, 0.5.
+    unknown(&["wheels.right.strength"], 0.05, LEVELS),
     unknown(&["floor.rolling_n_m"], 0.5, STRAIGHT),
-    unknown(&["floor.scrub_n_m"], 0.7, TURNS),
+    // One day's: the recorded turns of mode 8 began at a PWM of about 78.
+    Unknown {
+        believed: Some(0.005),
+        ..unknown(&["floor.scrub_n_m"], SCRUB_SD, TURNS)
+    },
     // Nominal floors have none.
     Unknown {
         believed: Some(0.01),
@@ -96,26 +100,31 @@ pub const UNKNOWNS: [Unknown; 17] = [
 
 /// Standard deviations from what is believed at which a fit begins at most.
 const FARTHEST: f64 = 5.0;
-/// Battery voltage believed beforehand and its standard deviation, V; floor scale: standard deviation of its logarithm.
+/// Battery voltage believed beforehand and its standard deviation, V; of the floor's scale and that of its scrubbing, which
+/// dust and the castor's play change more: standard deviations of their logarithms from day to day.
 const BATTERY_V: (f64, f64) = (7.4, 0.4);
 const FLOOR_SD: f64 = 0.2;
+const SCRUB_SD: f64 = 0.7;
+/// Of each source.
+pub(crate) const NUISANCES: usize = 3;
 
 /// By how much another robot of the same kind differs: standard deviation in the logarithm.
 const SAME_KIND_SD: f64 = 0.3;
 /// Logs of our program: standard deviations are larger by this than their residuals tell, which are few where a wheel
 /// breaks away; and those of what turns show by that: on a rough floor scrubbing comes out too small and the yaw's inertia
 /// too large. Chosen on simulated robots, measured on others (docs/theory/plant.md).
-const TIMED_MODEL_ERROR: f64 = 1.2;
-const TURNS_MODEL_ERROR: f64 = 1.8;
+const TIMED_MODEL_ERROR: f64 = 2.0;
+const TURNS_MODEL_ERROR: f64 = 2.2;
 /// PWM at which wheels start, in the air and on the floor, each with its standard deviation.
 const DEAD_ZONES: [(bool, f64, f64); 2] = [(false, 35.0, 2.0), (true, 65.0, 4.0)];
 
 /// What is believed beforehand of a source's battery and floor: mean and standard deviation, V, and the standard
-/// deviation of the logarithm of the floor's scale.
+/// deviations of the logarithms of the floor's scales.
 #[derive(Clone, Copy, Debug)]
 struct Day {
     battery_v: (f64, f64),
     floor_sd: f64,
+    scrub_sd: f64,
 }
 
 /// Unknowns, runs, and a point among the unknowns.
@@ -139,7 +148,7 @@ pub struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    /// All of `unknowns` around their nominal values, the rest as in `start`, and two nuisance values per source. With
+    /// All of `unknowns` around what is believed, the rest as in `start`, and three nuisance values per source. With
     /// logs of our program the unknowns are believed to be near `start`: it is a robot of that kind.
     #[must_use]
     pub fn new(unknowns: &'a [Unknown], logs: &'a [DriveLog], start: &Params) -> Self {
@@ -161,6 +170,8 @@ impl<'a> Problem<'a> {
             None if !is_the_reports => SAME_KIND_SD,
             _ => unknown.prior_sd,
         });
+        // Our own runs are long enough to tell it: it is an unknown of theirs, the same one on all days.
+        let fits_ours = !is_the_reports && !unknowns.is_empty();
         let mut paths: Vec<&Path> = Vec::new();
         let mut days = Vec::new();
         let mut sources = Vec::new();
@@ -169,11 +180,12 @@ impl<'a> Problem<'a> {
             sources.push(known.unwrap_or(paths.len()));
             if known.is_none() {
                 // Without runs on other floors the first one is the floor of the robot file.
-                let is_the_floor = paths.is_empty() && !is_the_reports && !unknowns.is_empty();
+                let is_the_floor = paths.is_empty() && fits_ours;
                 paths.push(&log.source);
                 days.push(Day {
                     battery_v: log.battery_v.unwrap_or(BATTERY_V),
                     floor_sd: if is_the_floor { 1e-3 } else { FLOOR_SD },
+                    scrub_sd: if fits_ours { 1e-3 } else { SCRUB_SD },
                 });
             }
         }
@@ -186,7 +198,7 @@ impl<'a> Problem<'a> {
             prior_sd: prior_sd.collect(),
             is_the_reports,
             stop: None,
-            z: DVector::zeros(unknowns.len() + 2 * days.len()),
+            z: DVector::zeros(unknowns.len() + NUISANCES * days.len()),
             days,
         }
     }
@@ -261,8 +273,8 @@ impl<'a> Problem<'a> {
         self.limits[index].unit
     }
 
-    /// The point with the values in `params` and these nuisance values, one pair per log; those of a source are the
-    /// first of its logs'.
+    /// The point with the values in `params` and these nuisance values, one per log; those of a source are the first of
+    /// its logs'.
     #[must_use]
     pub fn point(&self, params: &Params, nuisances: &[Nuisance]) -> DVector<f64> {
         let unknowns = self.limits.iter().enumerate().map(|(index, limit)| {
@@ -276,10 +288,11 @@ impl<'a> Problem<'a> {
             let of = self.sources.iter().position(|&each| each == source);
             let nuisance = of.and_then(|log| nuisances.get(log));
             let (mean_v, sd_v) = day.battery_v;
-            nuisance.map_or([0.0; 2], |nuisance| {
+            nuisance.map_or([0.0; NUISANCES], |nuisance| {
                 let battery = (nuisance.battery_v - mean_v) / sd_v;
                 let floor = nuisance.floor_scale.ln() / day.floor_sd;
-                [battery, floor].map(|z| z.clamp(-FARTHEST, FARTHEST))
+                let scrub = nuisance.scrub_scale.ln() / day.scrub_sd;
+                [battery, floor, scrub].map(|z| z.clamp(-FARTHEST, FARTHEST))
             })
         });
         DVector::from_iterator(self.dimension(), unknowns.chain(nuisances))
@@ -302,14 +315,16 @@ impl<'a> Problem<'a> {
     #[must_use]
     pub fn nuisance(&self, run: usize, z: &DVector<f64>) -> Nuisance {
         let source = self.sources[run];
-        let at = self.unknowns.len() + 2 * source;
+        let at = self.unknowns.len() + NUISANCES * source;
         let Day {
             battery_v: (mean_v, sd_v),
             floor_sd,
+            scrub_sd,
         } = self.days[source];
         Nuisance {
             battery_v: (mean_v + sd_v * z[at]).clamp(6.0, 8.6),
             floor_scale: (floor_sd * z[at + 1]).exp().clamp(0.5, 2.0),
+            scrub_scale: (scrub_sd * z[at + 2]).exp().clamp(0.1, 10.0),
         }
     }
 

@@ -62,6 +62,8 @@ pub struct Nuisance {
     pub battery_v: f64,
     /// Friction of the floor relative to the robot file's.
     pub floor_scale: f64,
+    /// What it adds when turning on the spot relative to the robot file's, beside that.
+    pub scrub_scale: f64,
 }
 
 /// The plant of one run.
@@ -89,6 +91,7 @@ impl<'a> Replay<'a> {
         let mut params = *params;
         params.battery.open_circuit_v = nuisance.battery_v;
         params.floor.friction_scale *= nuisance.floor_scale;
+        params.floor.scrub_n_m *= nuisance.scrub_scale;
         params.floor.roughness = 0.0;
         params.floor.slip = 0.0;
         let drivetrain = Drivetrain::new(&params, Noise::new(0, 0), log.on_floor);

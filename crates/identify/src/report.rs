@@ -1,6 +1,7 @@
 //! Identification in words: tables for a terminal.
 
 use crate::fit::{Check, Identification, SDS_95};
+use crate::replay::Nuisance;
 use crate::score::{RunScore, WheelError};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -36,8 +37,8 @@ impl fmt::Display for Identification {
         self.write_hardly_shown(f)?;
         writeln!(
             f,
-            "wheels start to turn at PWM {:.0} in the air, {:.0} on the floor",
-            self.dead_zone_air_pwm, self.dead_zone_floor_pwm
+            "wheels start to turn at PWM {:.0} in the air, {:.0} on the floor; cost of the fit {:.1}",
+            self.dead_zone_air_pwm, self.dead_zone_floor_pwm, self.cost
         )?;
         self.runs.iter().try_for_each(|run| write!(f, "{run}"))
     }
@@ -68,11 +69,20 @@ impl fmt::Display for Check {
 
 impl fmt::Display for RunScore {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
+        let Nuisance {
+            battery_v,
+            floor_scale,
+            scrub_scale,
+        } = self.nuisance;
+        let name = &self.name;
+        write!(
             f,
-            "\n{}: battery {:.2} V, floor friction x {:.2}",
-            self.name, self.nuisance.battery_v, self.nuisance.floor_scale
+            "\n{name}: battery {battery_v:.2} V, floor friction x {floor_scale:.2}"
         )?;
+        if self.whole_turning.is_some() {
+            write!(f, ", scrubbing x {scrub_scale:.2}")?;
+        }
+        writeln!(f)?;
         if let Some(range_rmse_m) = self.range_rmse_m {
             writeln!(
                 f,

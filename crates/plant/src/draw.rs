@@ -21,9 +21,10 @@ impl Params {
         drawn.wheels.left.radius_m *= within(0, spread.radius);
         drawn.wheels.right.radius_m *= within(1, spread.radius);
         drawn.body.base_m *= within(2, spread.base);
-        let (static_ratio, memory) = (
+        let (static_ratio, memory, onset_ratio) = (
             within(10, spread.static_ratio),
             within(11, spread.friction_memory),
+            within(15, spread.onset_ratio),
         );
         for (wheel, index) in [(&mut drawn.wheels.left, 3), (&mut drawn.wheels.right, 4)] {
             let friction = within(index, spread.friction);
@@ -31,6 +32,7 @@ impl Params {
             wheel.coulomb_backward_n_m *= friction;
             wheel.static_ratio = (wheel.static_ratio * static_ratio).max(1.0);
             wheel.friction_memory_s *= memory;
+            wheel.onset_ratio = (wheel.onset_ratio * onset_ratio).clamp(0.1, 1.0);
         }
         drawn.floor.friction_scale *= within(5, spread.floor);
         drawn.battery.open_circuit_v =

@@ -242,6 +242,7 @@ impl Drivetrain {
     }
 
     /// Largest dry friction on a wheel, N m: its own in the direction it turns (or would), plus the floor's.
+    /// [`params::Wheel::onset_ratio`] says how it grows; a standing tyre scrubs by that ratio however long it stood.
     fn dry_n_m(&self, i: usize, wheel: &WheelState, torque_n_m: f64, turning: f64) -> f64 {
         let model = &self.wheels[i];
         let towards = if wheel.speed_rad_s == 0.0 {
@@ -257,16 +258,24 @@ impl Drivetrain {
         let relative = wheel.remembered_rad_s * model.inverse_stribeck;
         let breakaway = 1.0 + (model.params.static_ratio - 1.0) / (1.0 + relative * relative);
         let onset = 1.0 - model.lacking_at_onset * (1.0 - wheel.grown);
-        (own + self.floor_n_m(wheel, turning)) * breakaway * onset
+        let scrub_onset = if wheel.speed_rad_s == 0.0 {
+            1.0 - model.lacking_at_onset
+        } else {
+            onset
+        };
+        let rolling_n_m = self.floor.rolling_n_m * onset;
+        let scrub_n_m = self.floor.scrub_n_m * turning * scrub_onset;
+        (own * onset + self.floor_scale(wheel) * (rolling_n_m + scrub_n_m)) * breakaway
     }
 
-    fn floor_n_m(&self, wheel: &WheelState, turning: f64) -> f64 {
+    /// The floor's friction at this place relative to the parameters'; 0 with the wheels in the air.
+    fn floor_scale(&self, wheel: &WheelState) -> f64 {
         if !self.on_floor {
             return 0.0;
         }
         let here = 1.0 + self.floor.roughness * wheel.floor.value();
         let here = if here > 0.0 { here } else { 0.0 };
-        self.floor.friction_scale * here * (self.floor.rolling_n_m + self.floor.scrub_n_m * turning)
+        self.floor.friction_scale * here
     }
 
     /// Advances one wheel, with the floor and slip at its new position.

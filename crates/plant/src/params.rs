@@ -200,7 +200,7 @@ section! {
         /// Viscous friction, referred to the wheel.
         viscous_n_m_s = 0.0015, 0.0 => 0.1, "N m s/rad";
         /// Dry friction after rest, relative to that at speed.
-        static_ratio = 1.8, 1.0 => 3.0, "1";
+        static_ratio = 1.0, 1.0 => 3.0, "1";
         /// Speed at which half of that excess is gone (Stribeck).
         stribeck_rad_s = 10.0, 0.05 => 50.0, "rad/s";
         /// Time over which the friction follows the speed: lubricant and tyres remember how fast they went.
@@ -231,7 +231,7 @@ section! {
         friction_scale = 1.0, 0.0 => 5.0, "1";
         /// Dry resistance per wheel when rolling straight: tyres and castor.
         rolling_n_m = 0.01, 0.0 => 1.0, "N m";
-        /// Dry resistance per wheel added when turning on the spot: scrubbing tyres and castor.
+        /// Dry resistance per wheel added when turning on the spot: scrubbing tyres, castor. At rest `onset_ratio` of it.
         scrub_n_m = 0.01, 0.0 => 1.0, "N m";
         /// Moment against turning, per rad/s of yaw: tyres that spin while they roll, and the castor.
         yaw_damping_n_m_s = 0.0, 0.0 => 1.0, "N m s";
@@ -348,6 +348,8 @@ section! {
         static_ratio = 0.0, 0.0 => 0.5, "1";
         /// Time over which friction remembers the speed, relative.
         friction_memory = 0.0, 0.0 => 0.9, "1";
+        /// Dry friction of a wheel that has just broken loose or just stopped, relative.
+        onset_ratio = 0.0, 0.0 => 0.9, "1";
         /// Resistance added when turning on the spot, relative.
         scrub = 0.0, 0.0 => 0.9, "1";
         /// Yaw inertia, relative.

@@ -43,8 +43,8 @@ fn a_brown_out_releases_the_wheels_and_is_reported() {
 fn a_supply_that_falls_while_it_drives_resets_it_and_it_stays_released() {
     let setup = setup("manual-straight", |setup| {
         let battery = [
-            ("battery.open_circuit_v", 6.1),
-            ("battery.resistance_ohm", 2.9),
+            ("battery.open_circuit_v", 5.5),
+            ("battery.resistance_ohm", 3.0),
         ];
         for (key, value) in battery {
             setup.scenario.plant.insert(key.into(), value);

@@ -192,8 +192,9 @@ Examples:
 
 Whole run: the recorded duty replayed, from the first row to the last. 0.5 s ahead: from the state that the rows
 up to then tell (wheel speeds, the floor's resistance), no later speed used. Of each run only the battery's
-voltage and the floor's friction are fitted with --check. Beside a wall, and ahead of one, distances are compared over
-3 s at a time. Without --check a fit to CSVs takes some three minutes, one to logs of Rumbo half a minute.
+voltage, the floor's friction and its scrubbing are fitted with --check. Beside a wall, and ahead of one, distances
+are compared over 3 s at a time. Without --check a fit to CSVs takes some three minutes, one to logs of Rumbo half a
+minute.
 
 Logs of Rumbo are cut into stretches: where frames are lost, the robot started again or the mode changed, and where it is
 OFF. The robot is believed to be of the kind of --robot, each value within some 30 %. Logs that no one robot explains are

@@ -48,6 +48,7 @@ fn the_last_speed_of_a_prediction_changes_as_the_one_before() {
     let nuisance = Nuisance {
         battery_v: 7.4,
         floor_scale: 1.0,
+        scrub_scale: 1.0,
     };
     let replay = Replay::new(&log, &Params::default(), nuisance);
     let observed = replay.observe(Correct::Speeds);

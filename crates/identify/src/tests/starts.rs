@@ -32,15 +32,15 @@ fn two_fits_from_far_apart_end_at_the_same_values() {
 fn an_unknown_near_its_limit_still_has_a_slope() {
     let run = [log(&recorded(&Params::default(), exercise, 3.0))];
     let problem = Problem::new(&UNKNOWNS, &run, &Params::default());
-    let ratio = |unknown: &crate::problem::Unknown| unknown.keys[0].ends_with("static_ratio");
+    let ratio = |unknown: &crate::problem::Unknown| unknown.keys[0].ends_with("onset_ratio");
     let index = UNKNOWNS.iter().position(ratio).unwrap();
     let value = |z| problem.value(index, z);
-    // As believed: a logarithmic standard deviation of 0.7 about 0.8 above the limit 1.
-    assert!((value(0.0) - 1.8).abs() < 1e-9 && (problem.slope(index, 0.0) - 0.56).abs() < 1e-9);
+    // As believed: a logarithmic standard deviation of 0.5 about 0.7 above the limit 0.1.
+    assert!((value(0.0) - 0.8).abs() < 1e-9 && (problem.slope(index, 0.0) - 0.35).abs() < 1e-9);
     for z in [-3.0, 0.0, 1.5, 3.0] {
         let slope = (value(z + 1e-5) - value(z - 1e-5)) / 2e-5;
         assert!((problem.slope(index, z) - slope).abs() < 1e-6, "at {z}");
-        assert!(slope > 0.0 && (1.0..3.0).contains(&value(z)), "at {z}");
+        assert!(slope > 0.0 && (0.1..1.0).contains(&value(z)), "at {z}");
     }
-    assert!(value(1e3) <= 3.0 && value(-1e3) >= 1.0);
+    assert!(value(1e3) <= 1.0 && value(-1e3) >= 0.1);
 }

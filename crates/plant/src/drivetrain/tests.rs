@@ -334,8 +334,6 @@ fn friction_is_less_where_a_wheel_breaks_loose_and_grows_with_the_angle_and_at_r
         smooth(&mut params);
         for wheel in [&mut params.wheels.left, &mut params.wheels.right] {
             wheel.onset_ratio = onset_ratio;
-            // Nothing else of its friction depends on what was before.
-            wheel.static_ratio = 1.0;
         }
         Drivetrain::new(&params, Noise::new(1, 0), true)
     };
@@ -376,4 +374,33 @@ fn friction_is_less_where_a_wheel_breaks_loose_and_grows_with_the_angle_and_at_r
         speeds(&state)[0] > 0.0
     });
     assert_eq!(fresh, Some(later));
+}
+
+#[test]
+fn a_standing_tyre_scrubs_as_one_that_has_just_broken_loose() {
+    let mut params = Params::default();
+    smooth(&mut params);
+    params.floor.scrub_n_m = 0.03;
+    for wheel in [&mut params.wheels.left, &mut params.wheels.right] {
+        wheel.onset_ratio = 0.5;
+    }
+    let drivetrain = Drivetrain::new(&params, Noise::new(1, 0), true);
+    let scrub = |speed_rad_s: f64, grown: f64| {
+        let wheel = WheelState {
+            speed_rad_s,
+            grown,
+            ..drivetrain.start().wheels[0]
+        };
+        let of = |turning: f64| drivetrain.dry_n_m(0, &wheel, 1.0, turning);
+        of(1.0) - of(0.0)
+    };
+    for (speed_rad_s, grown, expected) in [
+        (0.0, 1.0, 0.015),
+        (0.0, 0.0, 0.015),
+        (1.0, 0.0, 0.015),
+        (1.0, 1.0, 0.03),
+    ] {
+        let found = scrub(speed_rad_s, grown);
+        assert!((found - expected).abs() < 1e-12, "{found} at {speed_rad_s}");
+    }
 }

@@ -330,7 +330,8 @@ impl<S: Simd> Drivetrains<S> {
         let (zero, one) = (splat(simd, 0.0), splat(simd, 1.0));
         let wheels = &self.wheels[i];
         let speed_rad_s = wheels.speed_rad_s;
-        let towards = speed_rad_s.simd_eq(zero).select(torque_n_m, speed_rad_s);
+        let stands = speed_rad_s.simd_eq(zero);
+        let towards = stands.select(torque_n_m, speed_rad_s);
         let own = towards
             .simd_lt(zero)
             .select(wheels.coulomb_backward_n_m, wheels.coulomb_forward_n_m);
@@ -338,9 +339,13 @@ impl<S: Simd> Drivetrains<S> {
         let breakaway = one + wheels.sticking / (one + relative * relative);
         let here = one + self.roughness * wheels.floor.value();
         let here = positive(simd, here);
-        let floor_n_m = self.friction_scale * here * (self.rolling_n_m + self.scrub_n_m * turning);
+        let floor_scale = self.friction_scale * here;
         let onset = one - wheels.lacking_at_onset * (one - wheels.grown);
-        positive(simd, (own + floor_n_m) * breakaway * onset + resist_n_m)
+        let scrub_onset = stands.select(one - wheels.lacking_at_onset, onset);
+        let rolling_n_m = self.rolling_n_m * onset;
+        let scrub_n_m = self.scrub_n_m * turning * scrub_onset;
+        let dry_n_m = (own * onset + floor_scale * (rolling_n_m + scrub_n_m)) * breakaway;
+        positive(simd, dry_n_m + resist_n_m)
     }
 
     /// `Coupling::speeds_after`; wheels that stop or stand go robot by robot.

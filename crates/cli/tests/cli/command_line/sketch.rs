@@ -88,7 +88,8 @@ fn the_log_of_a_headless_run_shows_what_a_sketch_does_and_prints() {
     let [first, last] = [&rows[0], &rows[rows.len() - 1]];
     let driven_m = last[x] - first[x];
     assert!(driven_m > 0.5, "{driven_m}");
-    assert!((first[front] - last[front] - driven_m).abs() < 0.02);
+    let nearer_m = first[front] - last[front];
+    assert!((nearer_m - driven_m).abs() < 0.03, "{nearer_m} {driven_m}");
     assert!(csv("mode1-1.printed0.csv").lines().count() > 50);
 }
 

@@ -45,7 +45,7 @@ const SWEEP_M_S: f32 = 0.1;
 /// Nearer than this the robot turns slowly on the spot: its corners reach 0.15 m [m].
 const TIGHT_M: f32 = 0.155;
 /// Yaw rate there [rad/s].
-const TIGHT_RAD_S: f32 = 0.6;
+const TIGHT_RAD_S: f32 = 0.55;
 /// Yaw rate per distance beyond [rad/s/m].
 const TIGHT_SLOPE: f32 = 15.0;
 

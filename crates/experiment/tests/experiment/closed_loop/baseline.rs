@@ -40,7 +40,7 @@ fn the_baseline_keeps_to_its_wall_within_5_cm() {
     // Recorded: 1.2 cm rms, 4.6 cm at worst; 70.7 ms a pass.
     assert_within(median(&runs, "control_period_s"), 0.070_4..=0.071_0);
     assert_within(median(&runs, "distance_rms_m"), 0.008..=0.03);
-    assert_within(median(&runs, "distance_worst_m"), 0.03..=0.07);
+    assert_within(median(&runs, "distance_worst_m"), 0.02..=0.07);
 }
 
 #[test]

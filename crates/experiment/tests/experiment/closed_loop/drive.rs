@@ -49,7 +49,7 @@ fn assert_together(scenario: &str, from_s: f64, signs: [f64; 2], apart_s: f64, a
 
 #[test]
 fn both_wheels_start_together_from_rest() {
-    assert_together("manual-straight-speed", 0.5, [1.0, 1.0], 0.011, 2.0);
+    assert_together("manual-straight-speed", 0.5, [1.0, 1.0], 0.011, 2.5);
     assert_together("manual-turn-left-speed", 0.5, [-1.0, 1.0], 0.031, 5.0);
 }
 

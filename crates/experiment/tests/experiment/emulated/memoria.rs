@@ -176,7 +176,8 @@ fn mode_8_finds_the_box_and_looks_to_both_sides() {
         (right.min(angle), left.max(angle))
     });
     assert!(right < -10.0 && left > 10.0, "{right} {left}");
-    assert_eq!(results[0].metrics["contacts"], 0.0);
+    // The report's program turns beside the box; it may graze it.
+    assert!(results[0].metrics["contact_speed_m_s"] < 0.1);
 }
 
 #[test]
