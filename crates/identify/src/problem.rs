@@ -114,7 +114,7 @@ const SAME_KIND_SD: f64 = 0.3;
 /// breaks away; and those of what turns show by that: on a rough floor scrubbing comes out too small and the yaw's inertia
 /// too large. Chosen on simulated robots, measured on others (docs/theory/plant.md).
 const TIMED_MODEL_ERROR: f64 = 2.0;
-const TURNS_MODEL_ERROR: f64 = 2.2;
+const TURNS_MODEL_ERROR: f64 = 1.6;
 /// PWM at which wheels start, in the air and on the floor, each with its standard deviation.
 const DEAD_ZONES: [(bool, f64, f64); 2] = [(false, 35.0, 2.0), (true, 65.0, 4.0)];
 

@@ -243,6 +243,8 @@ fn a_run_with_an_image_is_run_again_whole_with_what_its_usarts_said() {
         out.to_str().unwrap(),
     ]);
     let mut page = Page::open(&lab.said);
+    // The scenario's own setpoint would take the place of the typed one.
+    page.wait_for_event("setpoint 60 rpm: sent");
     page.send(&json!({"type": "type", "usart": 1, "text": "ON"}));
     page.send(&json!({"type": "type", "usart": 1, "text": "REF 50"}));
     page.wait_for("a row", |message| {
