@@ -11,7 +11,7 @@ use nalgebra::DVector;
 use rumbo_plant::params::Params;
 
 /// Two runs of one robot differ less: root mean square under the common fit over that under a fit of its own. The
-/// recorded runs reach 1.13 (docs/theory/plant.md).
+/// recorded runs reach 1.09 (docs/theory/plant.md).
 const MOST: f64 = 1.6;
 /// The same of logs of our program, whose speeds tell more: two days of one simulated robot reach 2.12, two robots are
 /// 4.0 to 8.4 apart.

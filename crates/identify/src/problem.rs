@@ -100,8 +100,8 @@ pub const UNKNOWNS: [Unknown; 17] = [
 
 /// Standard deviations from what is believed at which a fit begins at most.
 const FARTHEST: f64 = 5.0;
-/// Battery voltage believed beforehand and its standard deviation, V; of the floor's scale and that of its scrubbing, which
-/// dust and the castor's play change more: standard deviations of their logarithms from day to day.
+/// Battery voltage believed beforehand and its standard deviation, V; of the floor's scale and that of its scrubbing:
+/// standard deviations of their logarithms from day to day. Modes 7 and 8 ask for a scrubbing five times apart.
 const BATTERY_V: (f64, f64) = (7.4, 0.4);
 const FLOOR_SD: f64 = 0.2;
 const SCRUB_SD: f64 = 0.7;
@@ -111,8 +111,8 @@ pub(crate) const NUISANCES: usize = 3;
 /// By how much another robot of the same kind differs: standard deviation in the logarithm.
 const SAME_KIND_SD: f64 = 0.3;
 /// Logs of our program: standard deviations are larger by this than their residuals tell, which are few where a wheel
-/// breaks away; and those of what turns show by that: on a rough floor scrubbing comes out too small and the yaw's inertia
-/// too large. Chosen on simulated robots, measured on others (docs/theory/plant.md).
+/// breaks away; and those of what turns show by that: on a rough floor the yaw's inertia comes out too large. Chosen on
+/// simulated robots (docs/theory/plant.md).
 const TIMED_MODEL_ERROR: f64 = 2.0;
 const TURNS_MODEL_ERROR: f64 = 1.6;
 /// PWM at which wheels start, in the air and on the floor, each with its standard deviation.
