@@ -21,25 +21,27 @@ const IN_TIME: u64 = 48_000;
 /// Most cycles from the inputs to the outputs, in any mode.
 const MOST: u64 = 45_000;
 
-/// Experiments whose inputs are recorded, and of which robots; the one of mode 2 turns on the spot.
-const RECORDED: [(&str, u64); 16] = [
-    ("manual-arc-left-speed", 1),
-    ("manual-straight", 1),
-    ("mode1-final", 1),
-    ("mode2", 13),
-    ("mode2-final", 1),
-    ("mode3-final", 1),
-    ("mode4", 1),
-    ("mode5", 1),
-    ("mode5-reversal", 1),
-    ("mode6", 1),
-    ("mode7", 1),
-    ("pursuit-curve", 1),
-    ("mode8-goals", 1),
-    ("mode8-lane", 1),
-    ("mode8-obstacles", 1),
-    ("mode9-random", 1),
+/// Experiments whose inputs are recorded.
+const RECORDED: [&str; 15] = [
+    "manual-arc-left-speed",
+    "manual-straight",
+    "mode1-final",
+    "mode2-final",
+    "mode3-final",
+    "mode4",
+    "mode5",
+    "mode5-reversal",
+    "mode6",
+    "mode7",
+    "pursuit-curve",
+    "mode8-goals",
+    "mode8-lane",
+    "mode8-obstacles",
+    "mode9-random",
 ];
+/// Mode 2 turns on the spot with few robots: its state, and how many are tried.
+const TURN: (ModeId, u8) = (ModeId::FrontAlign, 3);
+const TRIED: u64 = 100;
 /// A sonar in doubt, beside a wall.
 const NOISE: TimedWireFault = TimedWireFault {
     at_s: 2.0,
@@ -106,12 +108,21 @@ const CROSSING: &str = concat!(
     "/../../examples/crossing/mode8-crossing.toml"
 );
 
-/// The native robot's inputs in each of [`RECORDED`], and with [`NOISE`], and in [`CROSSING`].
+/// The first robot that turns on the spot in mode 2.
+fn turning() -> u64 {
+    let (mode, state) = TURN;
+    let turns = |seed: &u64| {
+        let tape = Tape::of("mode2", *seed, &[], &[]);
+        visited(Given::Recorded(tape)).contains(&(mode as u8, state))
+    };
+    (1..=TRIED).find(turns).expect("no robot turns in mode 2")
+}
+
+/// The native robot's inputs in each of [`RECORDED`], of one that is [`turning`], with [`NOISE`], and in [`CROSSING`].
 fn recorded() -> impl Iterator<Item = (String, Given)> {
-    let tapes = RECORDED
-        .into_iter()
-        .map(|(scenario, seed)| (scenario, seed, None));
+    let tapes = RECORDED.into_iter().map(|scenario| (scenario, 1, None));
     let tapes = tapes.chain([
+        ("mode2", turning(), None),
         ("mode3-final", 1, Some(NOISE)),
         ("mode4-final", 1, Some(NOISE)),
         (CROSSING, 1, None),

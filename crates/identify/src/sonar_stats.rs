@@ -1,8 +1,9 @@
 //! How noisy the sonars are: the same figures from a recorded run and from the plant's sonars repeating it.
 //!
 //! ```text
-//! log ──► smooth motion ──► residuals ──► sd at rest, sd in motion, outliers, losses   (measured)
+//! log ──► smooth motion ──► residuals ──► sd at rest and in motion, outliers, losses   (measured)
 //!              └──► the plant's sonars, pinged at the log's times ──► the same figures (simulated, mean of many seeds)
+//!                        with the growth of the noise over the range, which differs by wall, fitted to the run
 //! ```
 //!
 //! A reading is *lost* if it is no possible range. The residual of another is its distance from a Theil-Sen line
@@ -30,6 +31,12 @@ const MOVING_M_S: f64 = 0.2;
 const NEXT_PING_US: u64 = 100;
 /// Seeds that a simulated figure is the mean of.
 const SEEDS: u64 = 50;
+/// Growths that are tried of a run whose wall was far enough to show one.
+const GROWTHS: [f64; 6] = [0.0, 0.6, 1.2, 1.9, 2.5, 3.2];
+/// Readings beyond [`params::Sonar::noise_full_m`] that show it.
+const SEEN_FAR: usize = 5;
+/// Fewer readings at rest say nothing.
+const LEAST_AT_REST: f64 = 10.0;
 
 /// One sonar of one run: what was measured and what the plant's sonars give in its place.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -40,18 +47,23 @@ pub struct Comparison {
     pub measured: SonarStats,
     /// Mean over many seeds of the plant.
     pub simulated: SonarStats,
+    /// [`params::Sonar::noise_growth`] of the run; `None` where the wall was too near to show it.
+    pub noise_growth: Option<f64>,
 }
 
 /// Compares every sonar of a run with the plant's.
 #[must_use]
 pub fn compare(log: &SonarLog, sonar: &params::Sonar) -> Vec<Comparison> {
-    let runs: Vec<Vec<SonarStats>> = (0..SEEDS)
-        .map(|seed| statistics(&repeat(log, sonar, seed)))
-        .collect();
-    statistics(log)
-        .into_iter()
-        .enumerate()
-        .map(|(index, measured)| {
+    let measured = statistics(log);
+    let noise_growth = noise_growth(log, sonar, &measured);
+    let sonar = params::Sonar {
+        noise_growth: noise_growth.unwrap_or(sonar.noise_growth),
+        ..*sonar
+    };
+    let simulated = simulated(log, &sonar);
+    let both = measured.into_iter().zip(simulated);
+    both.enumerate()
+        .map(|(index, (measured, simulated))| {
             let side = if log.range_m.len() == 1 {
                 ""
             } else {
@@ -60,48 +72,98 @@ pub fn compare(log: &SonarLog, sonar: &params::Sonar) -> Vec<Comparison> {
             Comparison {
                 name: format!("{}{side}", log.name),
                 measured,
-                simulated: mean(runs.iter().map(|run| run[index])),
+                simulated,
+                noise_growth,
             }
         })
         .collect()
+}
+
+/// The figures of each sonar, mean over [`SEEDS`] of the plant.
+fn simulated(log: &SonarLog, sonar: &params::Sonar) -> Vec<SonarStats> {
+    let runs: Vec<_> = (0..SEEDS)
+        .map(|seed| statistics(&repeat(log, sonar, seed)))
+        .collect();
+    let sonars = 0..log.range_m.len();
+    sonars
+        .map(|index| mean(runs.iter().map(|run| run[index])))
+        .collect()
+}
+
+/// Of [`GROWTHS`] the one with which the plant's figures come nearest to those of the run.
+fn noise_growth(log: &SonarLog, sonar: &params::Sonar, measured: &[SonarStats]) -> Option<f64> {
+    let readings = log.range_m.iter().flatten();
+    let far = readings.filter(|&&range_m| range_m > sonar.noise_full_m);
+    if far.count() < SEEN_FAR {
+        return None;
+    }
+    let distance = |noise_growth: f64| {
+        let sonar = params::Sonar {
+            noise_growth,
+            ..*sonar
+        };
+        let simulated = simulated(log, &sonar);
+        let both = measured.iter().zip(&simulated);
+        both.map(|(one, other)| distance(one, other)).sum::<f64>()
+    };
+    let tried = GROWTHS.into_iter().map(|growth| (distance(growth), growth));
+    tried
+        .min_by(|one, other| one.0.total_cmp(&other.0))
+        .map(|(_, growth)| growth)
+}
+
+/// Between the figures of a sonar: squares of the logarithms of their ratios, in quarters. Outliers are counted: few say
+/// little, and one more on both sides makes no ratio of none.
+fn distance(measured: &SonarStats, simulated: &SonarStats) -> f64 {
+    const QUARTER: f64 = 0.25 * 0.25;
+    let ratio = |value: fn(&SonarStats) -> f64| (value(simulated) / value(measured)).ln().powi(2);
+    let readings = measured.rest_n + measured.motion_n;
+    let [many, most] = [simulated, measured].map(|stats| stats.outlier_rate * readings + 1.0);
+    let mut sum = (ratio(|s| s.motion_sd_m) + ratio(|s| s.second_sd_m)) / QUARTER;
+    if measured.rest_n >= LEAST_AT_REST {
+        sum += ratio(|s| s.rest_sd_m) / QUARTER;
+    }
+    let sum = sum + (many / most).ln().powi(2) / (QUARTER + 1.0 / most);
+    if sum.is_finite() { sum } else { f64::MAX }
 }
 
 /// A table of comparisons, measured and simulated side by side.
 #[must_use]
 pub fn table(comparisons: &[Comparison]) -> String {
     let mut text = format!(
-        "{:<32} {:>18} {:>18} {:>18} {:>18}\n{:<32}{}\n",
+        "{:<32} {:>18} {:>18} {:>18} {:>18} {:>18} {:>7}\n{:<32}{}\n",
         "sonar, measured | simulated",
         "sd at rest, cm",
         "sd in motion, cm",
+        "second diff., cm",
         "outliers, %",
         "lost, %",
+        "growth",
         "",
-        format!("{:>9} {:>9}", "measured", "simulated").repeat(4)
+        format!("{:>9} {:>9}", "measured", "simulated").repeat(5)
     );
     for Comparison {
         name,
         measured,
         simulated,
+        noise_growth,
     } in comparisons
     {
-        let pair = |n: f64, value: fn(&SonarStats) -> f64| {
-            if n == 0.0 {
-                format!("{:>9} {:>9}", "-", "-")
-            } else {
-                format!(
-                    "{:>9.3} {:>9.3}",
-                    100.0 * value(measured),
-                    100.0 * value(simulated)
-                )
+        let pair = |says: bool, value: fn(&SonarStats) -> f64| match says {
+            true => {
+                let [measured, simulated] = [measured, simulated].map(|s| 100.0 * value(s));
+                format!("{measured:>9.3} {simulated:>9.3}")
             }
+            false => format!("{:>9} {:>9}", "-", "-"),
         };
+        let growth = noise_growth.map_or("-".to_owned(), |growth| format!("{growth:.1}"));
         text += &format!(
-            "{name:<32}{}{}{}{}\n",
-            pair(measured.rest_n, |s| s.rest_sd_m),
-            pair(measured.motion_n, |s| s.motion_sd_m),
-            pair(1.0, |s| s.outlier_rate),
-            pair(1.0, |s| s.loss_rate),
+            "{name:<32}{}{}{}{}{} {growth:>7}\n",
+            pair(measured.rest_n >= LEAST_AT_REST, |s| s.rest_sd_m),
+            pair(measured.motion_n > 0.0, |s| s.motion_sd_m),
+            pair(measured.motion_n > 0.0, |s| s.second_sd_m),
+            pair(true, |s| s.outlier_rate),
+            pair(true, |s| s.loss_rate),
         );
     }
     text
@@ -115,6 +177,7 @@ fn mean(runs: impl Iterator<Item = SonarStats>) -> SonarStats {
         sum.rest_sd_m += run.rest_sd_m;
         sum.motion_n += run.motion_n;
         sum.motion_sd_m += run.motion_sd_m;
+        sum.second_sd_m += run.second_sd_m;
         sum.outlier_rate += run.outlier_rate;
         sum.loss_rate += run.loss_rate;
     }
@@ -123,6 +186,7 @@ fn mean(runs: impl Iterator<Item = SonarStats>) -> SonarStats {
         rest_sd_m: sum.rest_sd_m / n,
         motion_n: sum.motion_n / n,
         motion_sd_m: sum.motion_sd_m / n,
+        second_sd_m: sum.second_sd_m / n,
         outlier_rate: sum.outlier_rate / n,
         loss_rate: sum.loss_rate / n,
     }
@@ -268,6 +332,26 @@ mod tests {
     }
 
     #[test]
+    fn the_growth_of_a_run_is_found_where_its_wall_is_far_enough() {
+        let of = |noise_growth: f64, log: &SonarLog| {
+            let sonar = params::Sonar {
+                noise_growth,
+                ..params::Sonar::default()
+            };
+            let run = repeat(log, &sonar, 2);
+            compare(&run, &params::Sonar::default())[0].noise_growth
+        };
+        let far = log(|_, _| 0.5);
+        // One run tells it to one step of those that are tried.
+        for growth in [0.6, 1.9, 3.2] {
+            let found = of(growth, &far).unwrap();
+            assert!((found - growth).abs() < 0.75, "{found} for {growth}");
+        }
+        let near = log(|_, _| -0.15);
+        assert_eq!(of(3.2, &near), None);
+    }
+
+    #[test]
     fn a_malformed_log_is_refused_with_line_and_column() {
         let path = Path::new("run.csv");
         let header = "dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b\n";
@@ -293,34 +377,51 @@ mod tests {
         assert!((log.t_s[1] - 0.141).abs() < 1e-12);
     }
 
-    /// With the recorded runs at hand (`RUMBO_DATA`): each figure of the nominal sonars within 25 % of the data.
+    /// With the recorded runs at hand (`RUMBO_DATA`): each figure of their sonars within 25 % of the data, with the growth
+    /// of each run; of outliers also by no more than chance gives.
     #[test]
-    fn the_nominal_sonars_are_as_noisy_as_the_recorded_ones() {
+    fn the_sonars_are_as_noisy_as_the_recorded_ones() {
         let Some(folder) = std::env::var_os("RUMBO_DATA") else {
             return;
         };
-        for file in ["mode1_stop_at_wall.csv", "mode3_follow_wall.csv"] {
+        let recorded = params::Sonar {
+            bounce_reach_m: 0.65,
+            ..params::Sonar::default()
+        };
+        for file in [
+            "mode1_stop_at_wall.csv",
+            "mode2_square_to_wall.csv",
+            "mode3_follow_wall.csv",
+        ] {
             let log = SonarLog::read(&Path::new(&folder).join(file)).unwrap();
-            let compared = compare(&log, &params::Sonar::default());
+            let compared = compare(&log, &recorded);
             println!("{}", table(&compared));
             for Comparison {
                 name,
                 measured,
                 simulated,
+                ..
             } in compared
             {
-                let figures = |s: &SonarStats| [s.rest_sd_m, s.motion_sd_m, s.outlier_rate];
+                let rest = measured.rest_n >= LEAST_AT_REST;
+                let figures = |s: &SonarStats| {
+                    let at_rest = if rest { s.rest_sd_m } else { 0.0 };
+                    [at_rest, s.motion_sd_m, s.second_sd_m]
+                };
                 for (data, plant) in figures(&measured).into_iter().zip(figures(&simulated)) {
                     assert!(
                         (plant - data).abs() <= 0.25 * data,
                         "{name}: {plant} for {data}"
                     );
                 }
-                // The runs lost nothing in 921 pings: the plant loses less than one in a run.
+                let readings = measured.rest_n + measured.motion_n;
+                let [data, plant] = [&measured, &simulated].map(|s| s.outlier_rate * readings);
                 assert!(
-                    measured.loss_rate == 0.0 && simulated.loss_rate < 1e-3,
-                    "{name}: {simulated:?}"
+                    (plant - data).abs() <= (0.25 * data).max(plant.sqrt()),
+                    "{name}: {plant} outliers for {data}"
                 );
+                // 3 of 1,716 pings were lost, all of the second sonar in one run: the plant loses fewer.
+                assert!(simulated.loss_rate < 1e-3, "{name}: {simulated:?}");
             }
         }
     }

@@ -44,6 +44,7 @@ impl Params {
         drawn.body.yaw_inertia_kg_m2 *= within(12, spread.yaw_inertia);
         drawn.floor.yaw_damping_n_m_s *= within(13, spread.yaw_damping);
         drawn.floor.scrub_n_m *= within(14, spread.scrub);
+        drawn.sonar.noise_growth *= within(16, spread.noise_growth);
         drawn
     }
 }

@@ -278,15 +278,15 @@ section! {
         /// Frequency of the burst: a weak echo is timed whole cycles early or late.
         carrier_hz = 40000.0, 1000.0 => 500000.0, "Hz";
         /// Standard deviation, before rounding to whole cycles, in motion and at `noise_range_m`: weakness 1.
-        noise_m = 0.0021, 0.0 => 0.3, "m";
+        noise_m = 0.002, 0.0 => 0.3, "m";
         /// Weakness of an echo at rest relative to motion.
         rest_weakness = 0.7, 0.0 => 1.0, "1";
         /// Weakness of an echo while the second echo of another sonar is still to come.
-        disturbed_weakness = 1.8, 1.0 => 10.0, "1";
+        disturbed_weakness = 1.6, 1.0 => 10.0, "1";
         /// Range at which the weakness is 1 in motion.
         noise_range_m = 0.57, 0.05 => 5.0, "m";
-        /// Power of the range with which the weakness grows.
-        noise_growth = 3.2, 0.0 => 6.0, "1";
+        /// Power of the range with which the weakness grows: it differs from wall to wall.
+        noise_growth = 1.9, 0.0 => 6.0, "1";
         /// Range beyond which it grows no more.
         noise_full_m = 0.9, 0.05 => 6.0, "m";
         /// Share of readings that are outliers at weakness 1.
@@ -300,7 +300,7 @@ section! {
         /// Chance that a sonar takes the echo of another, looking the same way, for its own.
         crosstalk = 0.5, 0.0 => 1.0, "1";
         /// The same for the other's second echo: obstacle, body, obstacle.
-        crosstalk_bounce = 0.08, 0.0 => 1.0, "1";
+        crosstalk_bounce = 0.07, 0.0 => 1.0, "1";
         /// Longest range from which that second echo is strong enough to disturb or to be taken.
         bounce_reach_m = 2.5, 0.0 => 6.0, "m";
         /// How far behind the transducers the body reflects that second echo.
@@ -356,6 +356,8 @@ section! {
         yaw_inertia = 0.0, 0.0 => 0.9, "1";
         /// Damping of the yaw, relative.
         yaw_damping = 0.0, 0.0 => 0.9, "1";
+        /// Growth of the sonars' noise with the range, relative: what they look at.
+        noise_growth = 0.0, 0.0 => 0.9, "1";
     }
 }
 

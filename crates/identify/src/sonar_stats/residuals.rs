@@ -22,8 +22,10 @@ pub struct SonarStats {
     pub rest_sd_m: f64,
     /// Readings in motion that are not lost.
     pub motion_n: f64,
-    /// Standard deviation in motion without outliers.
+    /// Standard deviation in motion without outliers: how the motion bends is in it.
     pub motion_sd_m: f64,
+    /// The same from second differences of rows that follow each other, which hardly show the motion.
+    pub second_sd_m: f64,
     /// Share of outliers among the readings that are not lost.
     pub outlier_rate: f64,
     /// Share of readings lost.
@@ -40,7 +42,7 @@ pub fn statistics(log: &SonarLog) -> Vec<SonarStats> {
 }
 
 fn one_sonar(log: &SonarLog, range_m: &[f64]) -> SonarStats {
-    let (mut rest, mut motion) = (Vec::new(), Vec::new());
+    let (mut rest, mut motion) = (Class::default(), Class::default());
     let mut lost = 0.0;
     for (row, &reading_m) in range_m.iter().enumerate() {
         if !POSSIBLE_M.contains(&reading_m) {
@@ -51,39 +53,57 @@ fn one_sonar(log: &SonarLog, range_m: &[f64]) -> SonarStats {
             } else {
                 &mut motion
             };
-            class.push(reading_m - line.at_row_m);
+            class.rows.push(row);
+            class.residuals_m.push(reading_m - line.at_row_m);
         }
     }
-    let [(rest_sd_m, rest_outliers), (motion_sd_m, motion_outliers)] =
-        [&rest, &motion].map(|class| spread(class));
-    let readings = (rest.len() + motion.len()) as f64;
+    let readings = (rest.rows.len() + motion.rows.len()) as f64;
+    let [rest_inner, motion_inner] = [&rest, &motion].map(Class::without_outliers);
+    let inner = (rest_inner.rows.len() + motion_inner.rows.len()) as f64;
     SonarStats {
-        rest_n: rest.len() as f64,
-        rest_sd_m,
-        motion_n: motion.len() as f64,
-        motion_sd_m,
-        outlier_rate: if readings > 0.0 {
-            (rest_outliers + motion_outliers) / readings
-        } else {
-            0.0
-        },
+        rest_n: rest.rows.len() as f64,
+        rest_sd_m: sd(&rest_inner.residuals_m),
+        motion_n: motion.rows.len() as f64,
+        motion_sd_m: sd(&motion_inner.residuals_m),
+        second_sd_m: sd(&second_differences(range_m, &motion_inner.rows)),
+        outlier_rate: (readings - inner) / readings.max(1.0),
         loss_rate: lost / (range_m.len() as f64).max(1.0),
     }
 }
 
-/// Standard deviation without outliers, and the number of outliers.
-fn spread(residuals: &[f64]) -> (f64, f64) {
-    let robust_sd = 1.4826 * median(residuals.iter().map(|r| r.abs()).collect());
-    let limit = (OUTLIER_SDS * robust_sd).max(OUTLIER_LEAST_M);
-    let inner: Vec<f64> = residuals
-        .iter()
-        .copied()
-        .filter(|r| r.abs() <= limit)
-        .collect();
-    let n = (inner.len() as f64).max(1.0);
-    let mean = inner.iter().sum::<f64>() / n;
-    let variance = inner.iter().map(|r| (r - mean) * (r - mean)).sum::<f64>() / n;
-    (variance.sqrt(), (residuals.len() - inner.len()) as f64)
+/// Rows at rest or in motion, and their residuals.
+#[derive(Default)]
+struct Class {
+    rows: Vec<usize>,
+    residuals_m: Vec<f64>,
+}
+
+impl Class {
+    fn without_outliers(&self) -> Class {
+        let robust_sd = 1.4826 * median(self.residuals_m.iter().map(|r| r.abs()).collect());
+        let limit = (OUTLIER_SDS * robust_sd).max(OUTLIER_LEAST_M);
+        let inner = self.rows.iter().zip(&self.residuals_m);
+        let inner = inner.filter(|(_, residual_m)| residual_m.abs() <= limit);
+        let (rows, residuals_m) = inner.unzip();
+        Class { rows, residuals_m }
+    }
+}
+
+/// Of each three of these rows that follow each other, with the standard deviation of one reading if it is white.
+fn second_differences(range_m: &[f64], rows: &[usize]) -> Vec<f64> {
+    let threes = rows.windows(3).filter(|three| three[2] == three[0] + 2);
+    let difference = |three: &[usize]| {
+        let [before, here, after] = [0, 1, 2].map(|i| range_m[three[i]]);
+        (before - 2.0 * here + after) / 6f64.sqrt()
+    };
+    threes.map(difference).collect()
+}
+
+fn sd(values: &[f64]) -> f64 {
+    let n = (values.len() as f64).max(1.0);
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n;
+    variance.sqrt()
 }
 
 /// A local line: its value at the row it was fitted around, and its slope.

@@ -211,6 +211,7 @@ fn second_of_a_pair(params: &params::Sonar, gap_us: u64, second_axis_rad: f64) -
 fn outliers_are_rare_until_the_echo_is_weak() {
     let params = params::Sonar {
         outlier_rate: 0.01,
+        noise_growth: 3.2,
         ..clean()
     };
     let share = |at_m: f64| {

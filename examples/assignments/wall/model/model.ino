@@ -4,7 +4,7 @@ const int ENABLE[] = {5, 6}, FORWARD[] = {4, 7}, BACKWARD[] = {2, 8};
 const int TRIGGER = 12, ECHO = 13;
 const float CM_PER_US = 0.0343 / 2;
 const float GAIN = 1.5;      // PWM per cm
-const float DAMPING = 18;    // PWM per cm that the last round brought nearer
+const float DAMPING = 26;    // PWM per cm that the last round brought nearer
 const int DEAD_ZONE = 66;    // PWM below which the wheels stand
 const int MOST = 110;        // PWM
 const float NEAR_CM = 0.8;   // near enough to stand

@@ -6,6 +6,8 @@ use std::process::{Command, Stdio};
 
 /// Steps of 5 ms, as in the lab.
 const STEP_US: u64 = 5_000;
+/// And of 1 ms, far apart, until the debugger has come, however long it takes to start: the robot must not reach a wall.
+const WAITING_US: u64 = 1_000;
 
 #[test]
 fn while_a_debugger_holds_the_program_robot_and_world_stand() {
@@ -39,13 +41,17 @@ fn while_a_debugger_holds_the_program_robot_and_world_stand() {
     let (mut stood, mut waited) = (0, 0);
     while !news.iter().any(|line: &String| line.contains("left")) {
         let before = person.sim.now_us();
-        debugging.advance(&mut person.sim, (before / STEP_US + 1) * STEP_US);
+        let (step_us, pause_ms) = match news.is_empty() {
+            true => (WAITING_US, 20),
+            false => (STEP_US, 1),
+        };
+        debugging.advance(&mut person.sim, (before / step_us + 1) * step_us);
         news.extend(debugging.take_news());
         let came = !news.is_empty();
         stood += u32::from(came && person.sim.now_us() == before);
         waited += 1;
         assert!(waited < 20_000, "{news:?}");
-        std::thread::sleep(std::time::Duration::from_millis(1));
+        std::thread::sleep(std::time::Duration::from_millis(pause_ms));
     }
     let output = gdb.wait_with_output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
