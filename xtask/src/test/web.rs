@@ -55,7 +55,7 @@ pub(crate) fn browser(project: &Project) -> Result<(), Stop> {
             .args(files);
         run(&mut test)
     };
-    let Err(error) = tests(2, &test_files(&web.join("test"))?) else {
+    let Err(error) = tests(3, &test_files(&web.join("test"))?) else {
         return Ok(());
     };
     let failed = std::fs::read_to_string(&failures).unwrap_or_default();
