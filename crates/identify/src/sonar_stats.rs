@@ -97,7 +97,7 @@ fn noise_growth(log: &SonarLog, sonar: &params::Sonar, measured: &[SonarStats]) 
     if far.count() < SEEN_FAR {
         return None;
     }
-    let distance = |noise_growth: f64| {
+    let misfit = |noise_growth: f64| {
         let sonar = params::Sonar {
             noise_growth,
             ..*sonar
@@ -106,7 +106,7 @@ fn noise_growth(log: &SonarLog, sonar: &params::Sonar, measured: &[SonarStats]) 
         let both = measured.iter().zip(&simulated);
         both.map(|(one, other)| distance(one, other)).sum::<f64>()
     };
-    let tried = GROWTHS.into_iter().map(|growth| (distance(growth), growth));
+    let tried = GROWTHS.into_iter().map(|growth| (misfit(growth), growth));
     tried
         .min_by(|one, other| one.0.total_cmp(&other.0))
         .map(|(_, growth)| growth)
