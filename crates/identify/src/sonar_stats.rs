@@ -15,6 +15,7 @@
 pub use log::{SonarLog, SonarLogError};
 pub use residuals::{OUTLIER_LEAST_M, OUTLIER_SDS, SonarStats, statistics};
 
+use rayon::prelude::*;
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params;
 use rumbo_plant::sonar::{self, Sonar, SonarId, View};
@@ -106,7 +107,9 @@ fn noise_growth(log: &SonarLog, sonar: &params::Sonar, measured: &[SonarStats]) 
         let both = measured.iter().zip(&simulated);
         both.map(|(one, other)| distance(one, other)).sum::<f64>()
     };
-    let tried = GROWTHS.into_iter().map(|growth| (misfit(growth), growth));
+    let tried = GROWTHS
+        .into_par_iter()
+        .map(|growth| (misfit(growth), growth));
     tried
         .min_by(|one, other| one.0.total_cmp(&other.0))
         .map(|(_, growth)| growth)
