@@ -133,7 +133,7 @@ impl Recordings {
     /// The recorded figures of each sonar beside those of a simulated one.
     #[must_use]
     pub fn compare_sonars(&self, params: &Params) -> Vec<Comparison> {
-        let compared = |log| sonar_stats::compare(log, &params.sonar);
+        let compared = |log| sonar_stats::compare(log, params);
         self.sonars.iter().flat_map(compared).collect()
     }
 

@@ -3,7 +3,7 @@
 //! ```text
 //! log ──► smooth motion ──► residuals ──► sd at rest and in motion, outliers, losses   (measured)
 //!              └──► the plant's sonars, pinged at the log's times ──► the same figures (simulated, mean of many seeds)
-//!                        with the growth of the noise over the range, which differs by wall, fitted to the run
+//!                        with the growth of the noise over the range, of those that are drawn, that suits the run
 //! ```
 //!
 //! A reading is *lost* if it is no possible range. The residual of another is its distance from a Theil-Sen line
@@ -17,7 +17,7 @@ pub use residuals::{OUTLIER_LEAST_M, OUTLIER_SDS, SonarStats, statistics};
 
 use rayon::prelude::*;
 use rumbo_plant::noise::Noise;
-use rumbo_plant::params;
+use rumbo_plant::params::{self, Params};
 use rumbo_plant::sonar::{self, Sonar, SonarId, View};
 use rumbo_plant::world::{Wall, World};
 
@@ -32,8 +32,8 @@ const MOVING_M_S: f64 = 0.2;
 const NEXT_PING_US: u64 = 100;
 /// Seeds that a simulated figure is the mean of.
 const SEEDS: u64 = 50;
-/// Growths that are tried of a run whose wall was far enough to show one.
-const GROWTHS: [f64; 6] = [0.0, 0.6, 1.2, 1.9, 2.5, 3.2];
+/// Growths of the noise with the range that are tried, evenly spaced over what a seed draws: it differs by wall.
+const GROWTHS: u8 = 6;
 /// Readings beyond [`params::Sonar::noise_full_m`] that show it.
 const SEEN_FAR: usize = 5;
 /// Fewer readings at rest say nothing.
@@ -48,18 +48,19 @@ pub struct Comparison {
     pub measured: SonarStats,
     /// Mean over many seeds of the plant.
     pub simulated: SonarStats,
-    /// [`params::Sonar::noise_growth`] of the run; `None` where the wall was too near to show it.
+    /// [`params::Sonar::noise_growth`] that suits the run; `None` where that is the robot file's, since none is drawn, or
+    /// the run does not show it.
     pub noise_growth: Option<f64>,
 }
 
 /// Compares every sonar of a run with the plant's.
 #[must_use]
-pub fn compare(log: &SonarLog, sonar: &params::Sonar) -> Vec<Comparison> {
+pub fn compare(log: &SonarLog, params: &Params) -> Vec<Comparison> {
     let measured = statistics(log);
-    let noise_growth = noise_growth(log, sonar, &measured);
+    let noise_growth = noise_growth(log, params, &measured);
     let sonar = params::Sonar {
-        noise_growth: noise_growth.unwrap_or(sonar.noise_growth),
-        ..*sonar
+        noise_growth: noise_growth.unwrap_or(params.sonar.noise_growth),
+        ..params.sonar
     };
     let simulated = simulated(log, &sonar);
     let both = measured.into_iter().zip(simulated);
@@ -91,13 +92,18 @@ fn simulated(log: &SonarLog, sonar: &params::Sonar) -> Vec<SonarStats> {
         .collect()
 }
 
-/// Of [`GROWTHS`] the one with which the plant's figures come nearest to those of the run.
-fn noise_growth(log: &SonarLog, sonar: &params::Sonar, measured: &[SonarStats]) -> Option<f64> {
+/// The growth, of those that a seed draws, with which the plant's figures come nearest to those of the run.
+fn noise_growth(log: &SonarLog, params: &Params, measured: &[SonarStats]) -> Option<f64> {
+    let (sonar, spread) = (&params.sonar, params.spread.noise_growth);
     let readings = log.range_m.iter().flatten();
     let far = readings.filter(|&&range_m| range_m > sonar.noise_full_m);
-    if far.count() < SEEN_FAR {
+    if spread == 0.0 || far.count() < SEEN_FAR {
         return None;
     }
+    let growth = |number: u8| {
+        let share = f64::from(number) / f64::from(GROWTHS - 1);
+        sonar.noise_growth * (1.0 + spread * (2.0 * share - 1.0))
+    };
     let misfit = |noise_growth: f64| {
         let sonar = params::Sonar {
             noise_growth,
@@ -107,27 +113,27 @@ fn noise_growth(log: &SonarLog, sonar: &params::Sonar, measured: &[SonarStats]) 
         let both = measured.iter().zip(&simulated);
         both.map(|(one, other)| distance(one, other)).sum::<f64>()
     };
-    let tried = GROWTHS
-        .into_par_iter()
-        .map(|growth| (misfit(growth), growth));
+    let tried = (0..GROWTHS).into_par_iter().map(growth);
     tried
+        .map(|growth| (misfit(growth), growth))
+        .filter(|(misfit, _)| misfit.is_finite())
         .min_by(|one, other| one.0.total_cmp(&other.0))
         .map(|(_, growth)| growth)
 }
 
 /// Between the figures of a sonar: squares of the logarithms of their ratios, in quarters. Outliers are counted: few say
-/// little, and one more on both sides makes no ratio of none.
+/// little, and one more on both sides makes no ratio of none. Not finite where a figure is 0 or missing.
 fn distance(measured: &SonarStats, simulated: &SonarStats) -> f64 {
     const QUARTER: f64 = 0.25 * 0.25;
     let ratio = |value: fn(&SonarStats) -> f64| (value(simulated) / value(measured)).ln().powi(2);
     let readings = measured.rest_n + measured.motion_n;
-    let [many, most] = [simulated, measured].map(|stats| stats.outlier_rate * readings + 1.0);
+    let outliers = |stats: &SonarStats| stats.outlier_rate * readings + 1.0;
+    let (expected, counted) = (outliers(simulated), outliers(measured));
     let mut sum = (ratio(|s| s.motion_sd_m) + ratio(|s| s.second_sd_m)) / QUARTER;
     if measured.rest_n >= LEAST_AT_REST {
         sum += ratio(|s| s.rest_sd_m) / QUARTER;
     }
-    let sum = sum + (many / most).ln().powi(2) / (QUARTER + 1.0 / most);
-    if sum.is_finite() { sum } else { f64::MAX }
+    sum + (expected / counted).ln().powi(2) / (QUARTER + 1.0 / counted)
 }
 
 /// A table of comparisons, measured and simulated side by side.
@@ -334,6 +340,13 @@ mod tests {
         assert_eq!(repeat(&clean, &usual, 3), repeat(&clean, &usual, 3));
     }
 
+    /// Nominal robots, whose growth differs as that of the recorded runs.
+    fn drawn() -> Params {
+        let mut params = Params::default();
+        params.spread.noise_growth = 0.7;
+        params
+    }
+
     #[test]
     fn the_growth_of_a_run_is_found_where_its_wall_is_far_enough() {
         let of = |noise_growth: f64, log: &SonarLog| {
@@ -342,7 +355,7 @@ mod tests {
                 ..params::Sonar::default()
             };
             let run = repeat(log, &sonar, 2);
-            compare(&run, &params::Sonar::default())[0].noise_growth
+            compare(&run, &drawn())[0].noise_growth
         };
         let far = log(|_, _| 0.5);
         // One run tells it to one step of those that are tried.
@@ -352,6 +365,9 @@ mod tests {
         }
         let near = log(|_, _| -0.15);
         assert_eq!(of(3.2, &near), None);
+        assert_eq!(compare(&far, &Params::default())[0].noise_growth, None);
+        // Without any noise to compare with.
+        assert_eq!(compare(&log(|_, _| 9.0), &drawn())[0].noise_growth, None);
     }
 
     #[test]
@@ -387,10 +403,8 @@ mod tests {
         let Some(folder) = std::env::var_os("RUMBO_DATA") else {
             return;
         };
-        let recorded = params::Sonar {
-            bounce_reach_m: 0.65,
-            ..params::Sonar::default()
-        };
+        let mut recorded = drawn();
+        recorded.sonar.bounce_reach_m = 0.65;
         for file in [
             "mode1_stop_at_wall.csv",
             "mode2_square_to_wall.csv",
