@@ -12,9 +12,9 @@ use std::f64::consts::TAU;
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// A goal 4 m ahead, across the way of the two people of the world `crossing`.
+    /// A goal 4 m ahead, across the way of the two people of the world `crossing`; the robot sets off at a drawn time.
     Crossing,
-    /// The same, with two people of drawn places, sizes and speeds.
+    /// A goal 4 m ahead, with two people of drawn places, sizes and speeds.
     People,
     /// So many robots in a room of 3 x 3 m: three go each to the next one's place, others to the one across.
     Room(usize),
@@ -35,8 +35,8 @@ impl Place {
     pub fn draw(self, seed: u64) -> (String, Option<String>) {
         let dice = &mut Dice::new(seed);
         match self {
-            Self::Crossing => (goal_ahead("crossing"), None),
-            Self::People => (goal_ahead("drawn"), Some(people(dice))),
+            Self::Crossing => (goal_ahead("crossing", dice.within(0.0, ROUND_S)), None),
+            Self::People => (goal_ahead("drawn", 0.0), Some(people(dice))),
             Self::Room(robots) => (room(robots, dice), Some(ROOM.to_owned())),
         }
     }
@@ -60,23 +60,30 @@ to_m = [1.5, 1.5]
 walled = true
 ";
 
-/// The head of a scenario in a world, with its limit.
-fn head(world: &str) -> String {
+/// The slower one of `crossing` is back where it was, and goes the same way, after this time [s].
+const ROUND_S: f64 = 26.0;
+/// Time in which the robots are to arrive [s].
+const TIME_S: f64 = 120.0;
+
+/// The head of a scenario in a world, with its limit; the robots set off after a wait.
+fn head(world: &str, wait_s: f64) -> String {
+    let duration_s = TIME_S + wait_s;
     format!(
-        "title = \"What moves in mode 8\"\nrobot = \"memoria\"\nrig = \"final\"\nworld = \"{world}\"\nmode = \"mission\"\nduration_s = 120\n\
-         calibrated = true\n[limits]\n\"contact_speed_m_s\" = {{ max = 0.1 }}\n"
+        "title = \"What moves in mode 8\"\nrobot = \"memoria\"\nrig = \"final\"\nworld = \"{world}\"\nmode = \"mission\"\n\
+         duration_s = {duration_s:.2}\ncalibrated = true\n[limits]\n\"contact_speed_m_s\" = {{ max = 0.1 }}\n"
     )
 }
 
 /// Sends a goal, and ON.
-fn commands(table: &str, [x_m, y_m]: [f64; 2]) -> String {
+fn commands(table: &str, [x_m, y_m]: [f64; 2], wait_s: f64) -> String {
+    let [goal_s, on_s] = [0.4, 0.5].map(|at_s| at_s + wait_s);
     format!(
-        "[[{table}]]\nat_s = 0.4\ngoal_m = [{x_m:.3}, {y_m:.3}]\n[[{table}]]\nat_s = 0.5\narm = true\n"
+        "[[{table}]]\nat_s = {goal_s:.2}\ngoal_m = [{x_m:.3}, {y_m:.3}]\n[[{table}]]\nat_s = {on_s:.2}\narm = true\n"
     )
 }
 
-fn goal_ahead(world: &str) -> String {
-    head(world) + &commands("command", [4.0, 0.0])
+fn goal_ahead(world: &str, wait_s: f64) -> String {
+    head(world, wait_s) + &commands("command", [4.0, 0.0], wait_s)
 }
 
 /// Two who cross the way to a goal 4 m ahead, back and forth.
@@ -122,7 +129,7 @@ fn room(robots: usize, dice: &mut Dice) -> String {
         })
         .collect();
     let on = if robots == 3 { 1 } else { robots / 2 };
-    let mut text = head("drawn");
+    let mut text = head("drawn", 0.0);
     for (robot, [x_m, y_m]) in places_m.iter().enumerate() {
         let [to_x_m, to_y_m] = places_m[(robot + on) % robots];
         let (dx_m, dy_m) = (to_x_m - x_m, to_y_m - y_m);
@@ -133,7 +140,7 @@ fn room(robots: usize, dice: &mut Dice) -> String {
             "[[fleet]]\nname = \"r{robot}\"\nstart = {{ x_m = {x_m:.3}, y_m = {y_m:.3}, heading_deg = {:.2} }}\n",
             heading_rad.to_degrees()
         );
-        text += &commands("fleet.command", goal_m);
+        text += &commands("fleet.command", goal_m, 0.0);
     }
     text
 }
@@ -243,7 +250,7 @@ mod tests {
     fn every_place_can_be_drawn_and_seeds_differ() {
         for place in Place::ALL {
             let drawn = [1, 2].map(|seed| place.draw(seed));
-            assert_eq!(drawn[0] == drawn[1], place == Place::Crossing, "{place}");
+            assert_ne!(drawn[0], drawn[1], "{place}");
             for (scenario, world) in drawn {
                 let library = Library::new()
                     .holding(Kind::Scenario, "moving", &scenario)
