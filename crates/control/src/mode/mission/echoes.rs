@@ -227,15 +227,22 @@ impl Echoes {
         (point.belief > 0).then_some(point.at)
     }
 
-    /// Ingests a reading with its beam. Unless it is `sure`, points that it contradicts keep their belief.
-    pub(super) fn ingest(&mut self, robot: &Transform, reading: &Reading, beam: &Beam, sure: bool) {
+    /// Ingests a reading with its beam, and says whether it tells nothing new: a point explains the echo, or there is
+    /// none in reach. Unless it is `sure`, points that it contradicts keep their belief.
+    pub(super) fn ingest(
+        &mut self,
+        robot: &Transform,
+        reading: &Reading,
+        beam: &Beam,
+        sure: bool,
+    ) -> bool {
         let pose = &robot.pose;
         let ((x_m, y_m), (sin, cos)) = (beam.from_m, beam.sin_cos);
         let [front_mm, side_mm] = HORIZON_MM;
         let (range_mm, echo) = match reading.range {
             Range::Valid(range_m) => (round(1_000.0 * range_m), true),
             Range::Clear => (REACH_MM, false),
-            Range::Faulty => return,
+            Range::Faulty => return true,
         };
         if sure {
             self.clear(beam, range_mm);
@@ -246,12 +253,12 @@ impl Echoes {
             side_mm
         };
         if !echo || range_mm > horizon_mm {
-            return;
+            return true;
         }
         let range_m = 1e-3 * crate::math::from_u32(range_mm.unsigned_abs());
         let explained = self.explain(beam, range_mm);
         if explained && range_mm > NEAR_MM {
-            return;
+            return true;
         }
         let mut room = self.room(Place::new(pose.x_m, pose.y_m));
         let count = if explained || range_m < SHORT_M {
@@ -276,6 +283,7 @@ impl Echoes {
                 None => self.put(at, beam.axis, &mut room),
             }
         }
+        explained
     }
 
     /// The front sonar reported that nothing is in reach. That lowers no belief until the next echo: a sonar that is

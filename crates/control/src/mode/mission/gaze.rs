@@ -164,9 +164,17 @@ pub(super) fn look(state: &mut State, estimate: &Estimate, front_m: f32) -> Look
             state.gaze.to_left = true;
             (0.0, SWEEP_RAD)
         }
+        Phase::Decide if !gives_way => {
+            let middle_rad = state.plan.obstacle.as_ref().map_or(0.0, |obstacle| {
+                let middle_rad = 0.5 * (obstacle.left.pass_rad + obstacle.right.pass_rad);
+                wrap_angle(middle_rad - estimate.pose.heading_rad)
+            });
+            let off_rad = clamp(middle_rad, -SWEEP_RAD, SWEEP_RAD);
+            (off_rad, off_rad)
+        }
         _ => state
             .movement
-            .swing()
+            .swing(following(state.phase))
             .unwrap_or_else(|| swing(state, estimate)),
     };
     let sweeps = state.sweeps() && !gives_way;

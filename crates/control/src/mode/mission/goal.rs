@@ -2,7 +2,7 @@
 
 use super::detour::{following, slow_corners, towards};
 use super::gaze::{SWEEP_RAD, look};
-use super::moving::{BESIDE_M_S, WARY_M_S};
+use super::moving::{BESIDE_M_S, UNKNOWN_M_S, WARY_M_S};
 use super::obstacle::Among;
 use super::{
     Action, Drive, Mission, Movement, ParamId, Phase, Place, Pose, Segment, State, Turn, Way, abs,
@@ -79,12 +79,15 @@ impl Mission<'_> {
         if following(state.phase) && state.watch.nears_aside() {
             state.movement.be_careful();
         }
-        state.movement.step(approach, estimate.turned_rad);
+        state
+            .movement
+            .step(approach, state.watch.moves, estimate.turned_rad);
         if let (Some(approach), Some(reading)) = (approach, &estimate.reading) {
             let robot = estimate.transform();
             state.echoes.forget(&robot, reading, approach.range_m);
         }
         state.watch.approach = None;
+        state.watch.moves = false;
         let (way, left_m) = way_to(&estimate.pose, goal_m);
         count(state, estimate, &way);
         let planned = perceive(state, estimate, &way);
@@ -149,7 +152,15 @@ impl Mission<'_> {
             Phase::GoToGoal => self.go(state, estimate, goal_m, (way, left_m)),
             Phase::SweepRight | Phase::SweepLeft => self.sweep(state, estimate, left_m),
             Phase::Decide => {
-                self.decide(state, estimate, goal_m);
+                if state.movement.pauses(estimate) {
+                    return Drive::Release;
+                }
+                // What stood in the way may have gone meanwhile.
+                if blocked(state, left_m) {
+                    self.decide(state, estimate, goal_m);
+                } else {
+                    state.phase = Phase::GoToGoal;
+                }
                 Drive::Release
             }
             Phase::AvoidanceTurn | Phase::Seek | Phase::Along | Phase::SafeDistance => {
@@ -266,9 +277,11 @@ impl Mission<'_> {
             min(free_m_s, DOUBT_M_S)
         } else if state.movement.is_careful() {
             min(free_m_s, BESIDE_M_S)
-        } else if state.movement.is_lively() {
+        } else if state.movement.is_known() {
             let around = state.detour.is_some();
             min(free_m_s, if around { BESIDE_M_S } else { WARY_M_S })
+        } else if state.movement.wonders() && state.detour.is_none() {
+            min(free_m_s, UNKNOWN_M_S)
         } else {
             free_m_s
         }
@@ -288,12 +301,12 @@ impl Mission<'_> {
             Phase::SweepRight if state.gaze.has_seen(-SWEEP_RAD) => state.phase = Phase::SweepLeft,
             Phase::SweepLeft if state.gaze.has_seen(SWEEP_RAD) => {
                 state.watch.has_swept();
-                state.phase =
-                    if state.plan.clear_m < min(left_m, 1.0) && state.plan.obstacle.is_some() {
-                        Phase::Decide
-                    } else {
-                        Phase::GoToGoal
-                    };
+                state.phase = if blocked(state, left_m) {
+                    state.movement.pause(estimate.pose.x_m);
+                    Phase::Decide
+                } else {
+                    Phase::GoToGoal
+                };
             }
             _ => {}
         }
@@ -304,6 +317,11 @@ impl Mission<'_> {
         }
         self.line.steer(speed_m_s, error_rad)
     }
+}
+
+/// Something stands in the straight way to a goal so far away.
+fn blocked(state: &State, left_m: f32) -> bool {
+    state.plan.clear_m < min(left_m, 1.0) && state.plan.obstacle.is_some()
 }
 
 /// The straight way to the goal, as far as it is judged, and the distance to the goal [m].

@@ -22,6 +22,7 @@ mod obstacle;
 mod place;
 mod plan;
 mod proof;
+mod still;
 mod watch;
 
 use super::description::{FEEDFORWARD, LINES, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
@@ -48,6 +49,8 @@ use watch::Worth;
 const UNSEEN_M: f32 = 0.25;
 /// What passes a robot that gives way nearer than this is remembered [m].
 const PASSING_M: f32 = 0.2;
+/// What no point explains, and the front sonar hears within this, may move [m].
+const UNKNOWN_M: f32 = 0.9;
 /// Time between two fades of the memory [s].
 const FADE_S: f32 = 1.0;
 
@@ -119,7 +122,7 @@ states! {
             Prove: "the front sonar is in doubt",
             GiveWay: "something approaches",
         }
-        /// Takes the side past whose end the way to the goal is shorter; left at once.
+        /// Stands and sees whether it moves; then takes the side past whose end the way to the goal is shorter.
         Decide = "decide" {
             Seek: "the shorter way round",
             GoToGoal: "the way to the goal is clear",
@@ -332,11 +335,16 @@ impl State {
         let (beam, sure) = (&sight.0, worth == Worth::Sure);
         match reading.range {
             Range::Clear if sure && front => self.echoes.silence(beam),
-            Range::Clear if sure => self.echoes.ingest(&robot, reading, beam, sure),
+            Range::Clear if sure => {
+                self.echoes.ingest(&robot, reading, beam, sure);
+            }
             Range::Valid(range_m) => {
                 // While the robot waits, what passes leaves no points behind, unless it is near.
                 if !self.movement.waits() || range_m < PASSING_M {
-                    self.echoes.ingest(&robot, reading, beam, sure);
+                    let known = self.echoes.ingest(&robot, reading, beam, sure);
+                    if front && !known && range_m < UNKNOWN_M {
+                        self.movement.wonder(reading.view.axis_rad);
+                    }
                 }
                 if sure && front {
                     self.echoes.confirm_silences();
@@ -408,8 +416,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_that_is_remembered_fits_into_1_150_bytes() {
+    fn all_that_is_remembered_fits_into_1_200_bytes() {
         let bytes = core::mem::size_of::<State>();
-        assert!(bytes <= 1_150, "{bytes}");
+        assert!(bytes <= 1_200, "{bytes}");
     }
 }

@@ -56,9 +56,21 @@ const LIVELY_TICKS: u16 = 2_000;
 const PASSING_TICKS: u16 = 200;
 const FRESH_TICKS: u16 = 30;
 const CAREFUL_TICKS: u8 = 100;
+/// What moved before a robot that stood is in mind for so long [ticks].
+const KNOWN_TICKS: u16 = 6_000;
+/// Something new is looked at for so long, and ahead; and how fast the robot drives meanwhile [ticks, m/s].
+const WONDER_TICKS: u8 = 120;
+pub(super) const UNKNOWN_M_S: f32 = 0.1;
+/// Shortest pause before a detour, and each of up to seven steps that the robot's place adds; the same where things move
+/// [ticks].
+const PAUSE_TICKS: (u8, u8) = (30, 15);
+const LONG_PAUSE_TICKS: (u8, u8) = (60, 27);
+/// What moves begins it anew until then, and it has an end [ticks].
+const ANEW_TICKS: u16 = 400;
+const MOST_TICKS: u16 = 600;
 /// Speed where things move, and around an obstacle, which may be one of them [m/s].
 pub(super) const WARY_M_S: f32 = 0.2;
-pub(super) const BESIDE_M_S: f32 = 0.08;
+pub(super) const BESIDE_M_S: f32 = 0.06;
 /// Beyond this off the heading something is beside the robot, and beyond this abeam: what a beam sees that looks farther
 /// ahead crosses the way out [rad].
 const ASIDE_RAD: f32 = 1.1;
@@ -69,7 +81,7 @@ const SOON_S: f32 = 2.0;
 /// Shortest wait after the last approach, and each of up to seven steps that the robot's place adds [ticks].
 const WAIT_TICKS: u8 = 100;
 const STEP_TICKS: u8 = 15;
-/// While it waits, the servo looks this far to both sides of ahead at least [rad].
+/// While it waits or something is new, the servo looks this far to both sides of ahead at least [rad].
 const AROUND_RAD: f32 = 0.38;
 /// What is nearer is evaded, by so much at most, and so fast [m, m, m/s].
 const EVADE_M: f32 = 0.6;
@@ -138,6 +150,14 @@ pub(super) struct Movement {
     back_m: f32,
     /// For so long the robot is slow beside what may approach.
     careful_ticks: u8,
+    /// For so long it is slow since something moved while it stood.
+    known_ticks: u16,
+    /// For so long it looks at something new, which is there [rad].
+    wonder_ticks: u8,
+    wonder_rad: f32,
+    /// What is left of a pause before a detour, and how long it has been.
+    pause_ticks: u8,
+    paused_ticks: u16,
 }
 
 impl Approach {
@@ -205,12 +225,19 @@ impl Track {
 }
 
 impl Movement {
-    /// One tick, in which something was seen to approach, or not.
-    pub(super) fn step(&mut self, approach: Option<&Approach>, turned_rad: f32) {
+    /// One tick, in which something was seen to approach, or to move before a robot that stands, or not.
+    pub(super) fn step(&mut self, approach: Option<&Approach>, moves: bool, turned_rad: f32) {
         self.lively_ticks = self.lively_ticks.saturating_sub(1);
         self.ahead_ticks = self.ahead_ticks.saturating_sub(1);
         self.careful_ticks = self.careful_ticks.saturating_sub(1);
+        self.wonder_ticks = self.wonder_ticks.saturating_sub(1);
+        self.known_ticks = if moves {
+            KNOWN_TICKS
+        } else {
+            self.known_ticks.saturating_sub(1)
+        };
         self.last.off_rad -= turned_rad;
+        self.wonder_rad -= turned_rad;
         if let Some(approach) = approach {
             self.last = *approach;
             self.lively_ticks = LIVELY_TICKS;
@@ -230,7 +257,49 @@ impl Movement {
         self.careful_ticks > 0
     }
 
-    /// Things move here.
+    /// Something new is in this direction, positive is left [rad].
+    pub(super) fn wonder(&mut self, off_rad: f32) {
+        (self.wonder_ticks, self.wonder_rad) = (WONDER_TICKS, off_rad);
+    }
+
+    /// The robot should be slow for that.
+    pub(super) fn wonders(&self) -> bool {
+        self.wonder_ticks > 0
+    }
+
+    /// Begins a pause before a detour: of two robots that meet, one goes on first, and the other sees it move.
+    pub(super) fn pause(&mut self, x_m: f32) {
+        self.paused_ticks = 0;
+        self.begin_pause(x_m);
+    }
+
+    fn begin_pause(&mut self, x_m: f32) {
+        let (least, step) = if self.is_known() {
+            LONG_PAUSE_TICKS
+        } else {
+            PAUSE_TICKS
+        };
+        self.pause_ticks = least + step * dice(x_m);
+    }
+
+    /// One tick of the pause; whether it goes on.
+    pub(super) fn pauses(&mut self, estimate: &Estimate) -> bool {
+        if self.known_ticks == KNOWN_TICKS && self.paused_ticks < ANEW_TICKS {
+            self.begin_pause(estimate.pose.x_m);
+        }
+        self.paused_ticks += 1;
+        self.pause_ticks = self
+            .pause_ticks
+            .saturating_sub(u8::from(estimate.standing()));
+        self.pause_ticks > 0 && self.paused_ticks < MOST_TICKS
+    }
+
+    /// Something is known to move here: the robot should be slow.
+    pub(super) fn is_known(&self) -> bool {
+        self.is_lively() || self.known_ticks > 0
+    }
+
+    /// Something has approached here: things may have gone elsewhere.
     pub(super) fn is_lively(&self) -> bool {
         self.lively_ticks > 0
     }
@@ -256,15 +325,19 @@ impl Movement {
     }
 
     /// Between which directions the servo swings while the robot gives way: straight ahead on its way out, else what
-    /// approached and ahead [rad].
-    pub(super) fn swing(&self) -> Option<(f32, f32)> {
-        if !self.gives_way() {
+    /// approached and ahead. Unless it goes `around` an obstacle, it looks at something new and ahead else [rad].
+    pub(super) fn swing(&self, around: bool) -> Option<(f32, f32)> {
+        let off_rad = if self.gives_way() {
+            if !self.waits() {
+                return Some((0.0, 0.0));
+            }
+            self.last.off_rad
+        } else if self.wonders() && !around {
+            self.wonder_rad
+        } else {
             return None;
-        }
-        if !self.waits() {
-            return Some((0.0, 0.0));
-        }
-        let off_rad = clamp(self.last.off_rad, -SWEEP_RAD, SWEEP_RAD);
+        };
+        let off_rad = clamp(off_rad, -SWEEP_RAD, SWEEP_RAD);
         Some((min(off_rad, -AROUND_RAD), max(off_rad, AROUND_RAD)))
     }
 }
@@ -336,111 +409,4 @@ fn dice(x_m: f32) -> u8 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::{Detour, Mode, Params, Place, Side, Task};
-    use super::*;
-    use crate::rig::View;
-    use crate::types::SonarId;
-
-    /// Time between two looks [s].
-    const LOOK_S: f32 = 0.06;
-
-    /// After how many of 20 looks a thing approaches that is `range_m(time)` away along an axis, before a robot this fast.
-    fn approaches(axis_rad: f32, robot_m_s: f32, range_m: impl Fn(f32) -> f32) -> Option<u8> {
-        let mut track = Track::default();
-        (1..=20).find(|look| {
-            let reading = Reading {
-                sonar: SonarId::Front,
-                range: Range::Valid(range_m(LOOK_S * f32::from(*look))),
-                view: View {
-                    axis_rad,
-                    ..View::default()
-                },
-                servo_rad: axis_rad,
-            };
-            let since = Since {
-                age_s: LOOK_S,
-                rolled_m: LOOK_S * robot_m_s,
-                turned_rad: 0.0,
-                aside_rad: 0.0,
-            };
-            track.ingest(&reading, &since).is_some()
-        })
-    }
-
-    #[test]
-    fn a_wall_that_the_robot_drives_to_does_not_approach_and_a_person_does() {
-        assert_eq!(approaches(0.0, 0.4, |time_s| 1.1 - 0.4 * time_s), None);
-        assert_eq!(approaches(0.0, -0.2, |time_s| 0.5 + 0.2 * time_s), None);
-        // Half a metre away, at 0.3 m/s: seen at the third look, before a robot that stands and one that drives.
-        assert_eq!(approaches(0.0, 0.0, |time_s| 0.5 - 0.3 * time_s), Some(3));
-        assert_eq!(approaches(0.0, 0.4, |time_s| 0.5 - 0.7 * time_s), Some(3));
-        assert_eq!(approaches(1.5, 0.4, |time_s| 0.5 - 0.6 * time_s), Some(3));
-        // It goes away.
-        assert_eq!(approaches(0.0, 0.0, |time_s| 0.3 + 0.3 * time_s), None);
-    }
-
-    #[test]
-    fn another_face_in_the_beam_does_not_approach() {
-        let corner = |time_s: f32| if time_s > 0.3 { 0.35 } else { 0.41 };
-        assert_eq!(approaches(1.5, 0.0, corner), None);
-    }
-
-    /// What a standing robot does first about something that approaches, at 0.5 m/s and half a metre away.
-    fn first_drive(off_rad: f32, sure: bool, detour: Option<Detour>) -> Option<Drive> {
-        let params = Params::default();
-        let mission = Mission::new(&params, &Task::Goal { x_m: 3.0, y_m: 0.0 });
-        let mut state = State {
-            phase: Phase::GoToGoal,
-            gap_m: 1.0,
-            detour,
-            ..State::default()
-        };
-        let approach = Approach {
-            off_rad,
-            range_m: 0.5,
-            speed_m_s: 0.5,
-            sure,
-        };
-        state.movement.step(Some(&approach), 0.0);
-        let mut estimate = Estimate::default();
-        (
-            estimate.motion.left.standing,
-            estimate.motion.right.standing,
-        ) = (true, true);
-        mission.give_way(&mut state, &estimate)
-    }
-
-    #[test]
-    fn it_drives_out_of_the_way_of_what_is_abeam_and_backs_off_from_what_is_farther_ahead() {
-        for side in [1.0, -1.0] {
-            assert_eq!(first_drive(1.5 * side, true, None), Some(straight(OUT_M_S)));
-            assert_eq!(
-                first_drive(1.2 * side, true, None),
-                Some(straight(-BACK_M_S))
-            );
-            assert_eq!(
-                first_drive(0.5 * side, true, None),
-                Some(straight(-BACK_M_S))
-            );
-        }
-    }
-
-    #[test]
-    fn around_an_obstacle_it_backs_off_from_what_surely_approaches() {
-        let detour = Some(Detour {
-            side: Side::Left,
-            met: Place::default(),
-            least_m: 3.0,
-            way_m: 0.0,
-            away: false,
-            vain: 0,
-            changes: 0,
-            wound_rad: 0.0,
-            bearing_rad: 0.0,
-        });
-        assert_eq!(first_drive(1.2, true, detour), Some(straight(-BACK_M_S)));
-        // Another obstacle may be behind: it stands.
-        assert_eq!(first_drive(1.2, false, detour), Some(Drive::Release));
-    }
-}
+mod tests;

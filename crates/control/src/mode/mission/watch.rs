@@ -10,6 +10,7 @@ use super::gaze::SWEEP_RAD;
 use super::landmarks::Landmarks;
 use super::moving::{Approach, Since, Track};
 use super::place::Place;
+use super::still::Still;
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sin_cos};
 use crate::stuck::Stuck;
@@ -90,8 +91,9 @@ struct SonarState {
     /// Way rolled and angle turned since the last answer [m, rad].
     rolled_m: f32,
     turned_rad: f32,
-    /// What it has seen along one beam.
+    /// What it has seen along one beam, and while it stood.
     track: Track,
+    still: Still,
 }
 
 impl SonarState {
@@ -175,6 +177,8 @@ pub(in crate::mode) struct Watch {
     sonars: [SonarState; 3],
     /// What the reading of this tick shows to approach.
     pub(super) approach: Option<Approach>,
+    /// It shows that something moves before a robot that stands.
+    pub(super) moves: bool,
     /// Faces that the front sonar must detect.
     pub(super) landmarks: Landmarks,
     /// Directions without an echo since the last call of `ask`; none after an echo.
@@ -196,6 +200,7 @@ impl Default for Watch {
         Self {
             sonars: [SonarState::default(); 3],
             approach: None,
+            moves: false,
             landmarks: Landmarks::default(),
             unanswered: 0,
             aside_m: 0.0,
@@ -226,6 +231,7 @@ impl Watch {
         };
         let since = sonar.since(reading);
         self.approach = sonar.track.ingest(reading, &since);
+        self.moves = sonar.still.ingest(reading, &since);
         let worth = sonar.ingest(reading);
         let second = sonar.looks.is_multiple_of(2);
         if worth != Worth::Sure {

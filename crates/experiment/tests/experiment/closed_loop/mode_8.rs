@@ -111,8 +111,8 @@ fn a_sonar_cut_on_the_way_around_a_box_or_in_a_lane_stops_the_robot_and_is_repor
     }
 }
 
-/// A front sonar stuck at "nothing in range" is detected only where something must answer; a constant echo is detected
-/// at once.
+/// A sonar stuck at "nothing in range" is detected only where something must answer: what it hides is met slowly. A
+/// constant echo is detected at once.
 #[test]
 fn a_stuck_sonar_on_the_way_around_a_box_never_drives_the_robot_hard_against_it() {
     for sonar in SonarId::ALL {
@@ -130,10 +130,11 @@ fn a_stuck_sonar_on_the_way_around_a_box_never_drives_the_robot_hard_against_it(
                 let speed_m_s = run.metrics["contact_speed_m_s"];
                 assert!(speed_m_s < 0.1, "{what}: {speed_m_s} m/s");
                 let named = fault(&run) == Some(Fault::SonarFaulty);
-                // One stuck at "nothing in range" may stay undetected: at a side it does no harm, and the front one is
-                // tested only where something must answer.
-                let gentle = run.metrics["contacts"] == 0.0 || sonar == SonarId::Front;
-                assert!(named || gentle, "{what}: not named");
+                let before = run.trace.between(at_s - 0.1, at_s);
+                let heard =
+                    (before.iter()).all(|sample| sample.range_m[sonar as usize].is_finite());
+                let touches = run.metrics["contacts"] > 0.0;
+                assert!(named || !(heard && touches), "{what}: not named");
             }
         }
     }
