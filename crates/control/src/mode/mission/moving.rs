@@ -10,6 +10,9 @@
 //! for. A single jump is another face in the beam. Something ahead is waited for; before what comes from the side near by
 //! the robot drives on, if the way is free, since it may stand in its way, or else backs off. Nobody is sure to stop for
 //! the robot, and two that wait for each other do not wait for equally long.
+//!
+//! What only passes or recedes, a robot sees that stands ([`super::still`]): it does so before a detour. Where an echo is
+//! new, it slows down and looks there.
 
 use super::gaze::SWEEP_RAD;
 use super::{Drive, Mission, Phase, State};
@@ -324,8 +327,8 @@ impl Movement {
         self.gives_way() && self.out_m <= 0.0
     }
 
-    /// Between which directions the servo swings while the robot gives way: straight ahead on its way out, else what
-    /// approached and ahead. Unless it goes `around` an obstacle, it looks at something new and ahead else [rad].
+    /// Between which directions the servo swings [rad]. While the robot gives way: straight ahead on its way out, else
+    /// what approached and ahead. Else, unless it goes `around` an obstacle, something new and ahead.
     pub(super) fn swing(&self, around: bool) -> Option<(f32, f32)> {
         let off_rad = if self.gives_way() {
             if !self.waits() {
