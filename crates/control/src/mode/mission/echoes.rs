@@ -227,8 +227,8 @@ impl Echoes {
         (point.belief > 0).then_some(point.at)
     }
 
-    /// Ingests a reading with its beam, and says whether it tells nothing new: a point explains the echo, or there is
-    /// none in reach. Unless it is `sure`, points that it contradicts keep their belief.
+    /// Ingests a reading with its beam; says whether it is an echo in reach that no point explains. Unless it is `sure`,
+    /// points that it contradicts keep their belief.
     pub(super) fn ingest(
         &mut self,
         robot: &Transform,
@@ -242,7 +242,7 @@ impl Echoes {
         let (range_mm, echo) = match reading.range {
             Range::Valid(range_m) => (round(1_000.0 * range_m), true),
             Range::Clear => (REACH_MM, false),
-            Range::Faulty => return true,
+            Range::Faulty => return false,
         };
         if sure {
             self.clear(beam, range_mm);
@@ -253,12 +253,12 @@ impl Echoes {
             side_mm
         };
         if !echo || range_mm > horizon_mm {
-            return true;
+            return false;
         }
         let range_m = 1e-3 * crate::math::from_u32(range_mm.unsigned_abs());
         let explained = self.explain(beam, range_mm);
         if explained && range_mm > NEAR_MM {
-            return true;
+            return false;
         }
         let mut room = self.room(Place::new(pose.x_m, pose.y_m));
         let count = if explained || range_m < SHORT_M {
@@ -283,7 +283,7 @@ impl Echoes {
                 None => self.put(at, beam.axis, &mut room),
             }
         }
-        explained
+        !explained
     }
 
     /// The front sonar reported that nothing is in reach. That lowers no belief until the next echo: a sonar that is

@@ -341,8 +341,8 @@ impl State {
             Range::Valid(range_m) => {
                 // While the robot waits, what passes leaves no points behind, unless it is near.
                 if !self.movement.waits() || range_m < PASSING_M {
-                    let known = self.echoes.ingest(&robot, reading, beam, sure);
-                    if front && !known && range_m < UNKNOWN_M {
+                    let new = self.echoes.ingest(&robot, reading, beam, sure);
+                    if new && front && range_m < UNKNOWN_M {
                         self.movement.wonder(reading.view.axis_rad);
                     }
                 }
