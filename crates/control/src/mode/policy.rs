@@ -140,6 +140,9 @@ impl<'a> Mode<'a> for Policy<'a> {
             state.watch.hear(estimate, reading);
         }
         state.watch.step(estimate, self.stale_s, false)?;
+        if state.watch.is_wild() {
+            return Err(Fault::SonarFaulty);
+        }
         let mut action = Action::default();
         let mut slower = 1.0;
         state.phase = match self.goal.0 {

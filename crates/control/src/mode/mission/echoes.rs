@@ -214,9 +214,9 @@ impl Echoes {
         })
     }
 
-    /// Fades points detected only once. To be called at intervals.
-    pub(super) fn fade(&mut self) {
-        for point in self.points.iter_mut().filter(|point| point.belief < FIRM) {
+    /// Fades points detected only once, or all of them. To be called at intervals.
+    pub(super) fn fade(&mut self, all: bool) {
+        for point in (self.points.iter_mut()).filter(|point| all || point.belief < FIRM) {
             point.belief = point.belief.saturating_sub(1);
         }
     }

@@ -30,6 +30,8 @@ const TURNED_RAD: f32 = 0.12;
 pub(super) const PROGRESS_M: f32 = 0.05;
 /// Once around the goal without getting nearer to it, and a little more [rad].
 const WOUND_RAD: f32 = TAU + 0.3;
+/// Way after an obstacle on which one that was not seen beside the robot may still be there [m].
+const PAST_M: f32 = 0.6;
 /// Half of the width that must be clear ahead to drive [m].
 const AHEAD_M: f32 = 0.1;
 /// Front of the robot from the wheels' axis [m].
@@ -103,6 +105,11 @@ impl Mission<'_> {
                 Drive::Release
             }
             None => self.drive(state, estimate, goal_m, (&way, left_m), planned),
+        };
+        let drive = if state.watch.is_wild() {
+            Drive::Release
+        } else {
+            drive
         };
         let front_m = self.params.get(ParamId::SonarFrontX);
         let look = look(state, estimate, front_m);
@@ -350,12 +357,16 @@ fn count(state: &mut State, estimate: &Estimate, way: &Way) {
     if let Some((_, way_m)) = &mut state.last {
         *way_m += rolled_m;
     }
-    state.unseen_m = match &state.detour {
-        Some(detour) => match estimate.range(towards(detour.side)).range {
-            Range::Valid(_) => 0.0,
-            _ => state.unseen_m + rolled_m,
-        },
-        None => 0.0,
+    let (beside, more_m) = match (&state.detour, state.last) {
+        (Some(detour), _) => (Some(detour.side), rolled_m),
+        // The obstacle is still beside the robot.
+        (None, Some((side, way_m))) if way_m < PAST_M => (Some(side), 0.0),
+        (None, _) => (None, 0.0),
+    };
+    let sees = |side| matches!(estimate.range(towards(side)).range, Range::Valid(_));
+    state.unseen_m = match beside {
+        Some(side) if !sees(side) => state.unseen_m + more_m,
+        _ => 0.0,
     };
     if let Some(detour) = &mut state.detour {
         detour.way_m += rolled_m;
@@ -399,4 +410,29 @@ fn perceive(state: &mut State, estimate: &Estimate, way: &Way) -> bool {
             .map_or(f32::MAX, |(_, distance_m)| distance_m);
     }
     planned
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::with_ranges_m;
+    use crate::types::Side;
+
+    #[test]
+    fn an_obstacle_never_heard_beside_the_robot_slows_it_until_it_is_behind() {
+        // Just passed on the left: the sonar at the right looks there.
+        let slow = |way_m: f32, right_m: f32| {
+            let mut state = State {
+                last: Some((Side::Left, way_m)),
+                unseen_m: 0.3,
+                ..State::default()
+            };
+            let (way, _) = way_to(&Pose::default(), &(3.0, 0.0));
+            count(&mut state, &with_ranges_m([0.0, right_m, 0.0]), &way);
+            state.doubts()
+        };
+        assert!(slow(0.1, 0.0));
+        assert!(!slow(0.1, 0.9), "it hears something");
+        assert!(!slow(0.7, 0.0), "far behind");
+    }
 }

@@ -212,6 +212,9 @@ pub(super) struct Lane {
 
 impl Mission<'_> {
     pub(super) fn lane(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {
+        if state.watch.is_wild() {
+            return Err(Fault::SonarFaulty);
+        }
         let proving = state.proof.is_some();
         let proof = self.prove(state, estimate)?;
         let doubts = state.watch.doubts() || !state.watch.landmarks.is_alive();

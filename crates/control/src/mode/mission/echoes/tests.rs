@@ -105,9 +105,13 @@ fn silence_from_another_direction_says_nothing() {
 fn points_detected_once_fade_and_firm_ones_stay() {
     let mut echoes = after(&[(Range::Valid(0.8), 0.0), (Range::Valid(0.8), 0.0)]);
     for _ in 0..10 {
-        echoes.fade();
+        echoes.fade(false);
     }
     assert_eq!((count(&echoes), firm(&echoes)), (1, 1));
+    for _ in 0..MOST_BELIEF {
+        echoes.fade(true);
+    }
+    assert_eq!(count(&echoes), 0, "where things move, none does");
 }
 
 #[test]

@@ -110,7 +110,11 @@ fn random_ranges_slow_the_robot_and_then_stop_it_and_an_edge_that_flickers_does_
         SonarId::Front => Range::Valid(RANDOM_M[usize::from(tick / 6) % RANDOM_M.len()]),
         _ => near(sonar, 0),
     };
-    assert!(watched(wild, 34, 0.0).is_ok_and(|watch| watch.doubts()));
+    assert!(watched(wild, 34, 0.0).is_ok_and(|watch| watch.doubts() && !watch.is_wild()));
+    assert!(
+        watched(wild, 60, 0.0).is_ok_and(|watch| watch.is_wild()),
+        "it stands"
+    );
     let end = watched(wild, 400, 0.0).map(|_| ());
     assert!(matches!(end, Err((_, Fault::SonarFaulty))), "{end:?}");
     let edge = |_, tick: u16| match tick / 6 % 3 {
