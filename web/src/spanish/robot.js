@@ -61,6 +61,7 @@ export const ROBOT = {
   'lane: it faces the heading': 'carril: con el rumbo', 'lane: stands before a face': 'carril: parado ante una cara',
   'something approaches': 'algo se acerca', 'nothing approaches': 'nada se acerca',
   'nothing approaches, the goal is not ahead': 'nada se acerca, el destino no está delante',
+  'ranges agree again': 'las distancias vuelven a coincidir',
   'out of its way, before an obstacle': 'fuera de su camino, ante un obstáculo',
   'out of its way, the front sonar is in doubt': 'fuera de su camino, duda del sonar delantero',
   'the front sonar is in doubt': 'duda del sonar delantero', 'it hears': 'oye', 'it hears, beside an obstacle': 'oye, junto a un obstáculo',
