@@ -33,7 +33,7 @@ const WILD: u8 = 10;
 const CALM: u8 = 2;
 /// An outlier score that slows the robot.
 const UNEASY: u8 = 20;
-/// One before which it stands, and that of a sonar that is faulty.
+/// One at which the robot stands, and that of a sonar that is faulty.
 const WILD_LIMIT: u8 = 60;
 const FAULTY_LIMIT: u8 = 120;
 /// Ranges beyond this are not judged: there corners and the noise of weak echoes make them change [m].

@@ -111,7 +111,7 @@ fn points_detected_once_fade_and_firm_ones_stay() {
     for _ in 0..MOST_BELIEF {
         echoes.fade(true);
     }
-    assert_eq!(count(&echoes), 0, "where things move, none does");
+    assert_eq!(count(&echoes), 0, "all of them fade, however firm");
 }
 
 #[test]
