@@ -3,9 +3,7 @@
 use super::goal::{CREEP_M_S, PROGRESS_M, SPOT_RAD};
 use super::lane::side_m;
 use super::obstacle::Obstacle;
-use super::{
-    Detour, Drive, Mission, Phase, Place, Plan, Pose, Side, State, UNSEEN_M, abs, min, sqrt,
-};
+use super::{Detour, Drive, Mission, Phase, Place, Plan, Pose, Side, State, abs, min, sqrt};
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
 use crate::motion::TurnState;
@@ -60,8 +58,6 @@ impl Mission<'_> {
             wound_rad: 0.0,
             bearing_rad: atan2(dy, dx),
         });
-        // Not heard yet.
-        state.unseen_m = UNSEEN_M;
         state.phase = Phase::Seek;
     }
 

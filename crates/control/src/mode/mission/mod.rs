@@ -45,8 +45,7 @@ use proof::Proof;
 pub(super) use watch::Watch;
 use watch::Worth;
 
-/// Way around an obstacle without an echo of the sonar towards it, after which that may be silent for ever: one that has
-/// had none since the obstacle was met may be so from the start [m].
+/// Way around an obstacle without an echo of the sonar towards it, after which that may be silent for ever [m].
 const UNSEEN_M: f32 = 0.25;
 /// What passes a robot that gives way nearer than this is remembered [m].
 const PASSING_M: f32 = 0.2;
@@ -307,7 +306,7 @@ impl State {
     }
 
     /// Whether a sonar may be wrong: the robot should be slow. That at the obstacle's side is one if it has long been
-    /// silent, or always.
+    /// silent.
     fn doubts(&self) -> bool {
         self.watch.doubts() || self.unseen_m > UNSEEN_M
     }

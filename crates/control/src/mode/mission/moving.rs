@@ -93,7 +93,7 @@ const BACK_M_S: f32 = 0.25;
 /// Way out of the way of something beside the robot, how fast, what must be free ahead before it, and where it ends [m,
 /// m/s, m, m].
 const OUT_M: f32 = 0.45;
-const OUT_M_S: f32 = 0.5;
+const OUT_M_S: f32 = 0.6;
 const FREE_M: f32 = 0.7;
 const STOP_M: f32 = 0.3;
 /// No way out leads ahead where something has approached from there within this [ticks].
