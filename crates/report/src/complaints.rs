@@ -18,6 +18,7 @@ pub(crate) struct Complaint {
 
 impl Complaint {
     /// As a line.
+    #[cfg(feature = "host")]
     pub(crate) fn text(self) -> String {
         match (self.own.is_empty(), self.english.is_empty()) {
             (_, true) => self.own,
