@@ -4,7 +4,7 @@ use rumbo_experiment::files::FileError;
 use std::path::{Path, PathBuf};
 
 /// A file beside the folder that this program was built into: of `target/debug/NAME`, `target/FILE`.
-pub fn built(file: &str) -> PathBuf {
+pub(crate) fn built(file: &str) -> PathBuf {
     let here = std::env::current_exe().unwrap_or_default();
     let target = here.ancestors().nth(2).map(PathBuf::from);
     target.unwrap_or_default().join(file)
@@ -14,7 +14,7 @@ pub fn built(file: &str) -> PathBuf {
 ///
 /// # Errors
 /// The page cannot be read or written, or has no such markers.
-pub fn write(page: &str, name: &str, text: &str) -> Result<(), FileError> {
+pub(crate) fn write(page: &str, name: &str, text: &str) -> Result<(), FileError> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(page);
     let error = |what: String| FileError::Setting(format!("{page}: {what}"));
     let old = std::fs::read_to_string(&path).map_err(|source| error(source.to_string()))?;
@@ -32,7 +32,7 @@ pub fn write(page: &str, name: &str, text: &str) -> Result<(), FileError> {
 ///
 /// # Errors
 /// It cannot be written.
-pub fn write_figure(name: &str, svg: &str) -> Result<(), FileError> {
+pub(crate) fn write_figure(name: &str, svg: &str) -> Result<(), FileError> {
     let path = format!("docs/img/theory/{name}.svg");
     let whole = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(&path);
     std::fs::write(whole, svg)

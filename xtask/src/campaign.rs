@@ -198,7 +198,8 @@ fn soak(project: &Project) -> Result<bool, String> {
 
 /// Runs a program of `tools/`; true if it found all requirements met.
 fn tool(project: &Project, name: &str, args: &[String]) -> Result<bool, String> {
-    program(project, ["rumbo-tools", "--bin", name], args)
+    let args = [&[name.to_owned()], args].concat();
+    program(project, ["rumbo-tools", "--bin", "rumbo-tools"], &args)
 }
 
 /// Runs a program of a package, `--bin` or `--example`; true if it found all requirements met.

@@ -12,7 +12,12 @@ use spdx::{Expression, ParseMode};
 use crate::project::{Project, all_metadata};
 
 /// The workspaces.
-const MANIFESTS: [&str; 3] = ["Cargo.toml", "firmware/Cargo.toml", "fuzz/Cargo.toml"];
+const MANIFESTS: [&str; 4] = [
+    "Cargo.toml",
+    "firmware/Cargo.toml",
+    "fuzz/Cargo.toml",
+    "tools/bindgen/Cargo.toml",
+];
 
 /// The part of `deny.toml` used here.
 #[derive(Deserialize)]
@@ -52,7 +57,7 @@ struct Banned {
     name: String,
 }
 
-/// Checks the three workspaces and prints what is found; true if nothing.
+/// Checks the workspaces and prints what is found; true if nothing.
 pub(crate) fn check(project: &Project) -> Result<bool, String> {
     let path = project.root.join("deny.toml");
     let rules = read(&path).map_err(|error| format!("{}: {error}", path.display()))?;

@@ -1,4 +1,4 @@
-//! `cargo xtask fidelity`: where the report's robot lies among simulated ones, by `tools/src/bin/fidelity/`.
+//! `cargo xtask fidelity`: where the report's robot lies among simulated ones, by `tools/src/fidelity/`.
 
 use crate::project::{Project, run as run_command};
 
@@ -7,15 +7,7 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if std::env::var_os("RUMBO_DATA").is_none() {
         return Err("fidelity needs the recorded runs; set RUMBO_DATA to their folder".to_owned());
     }
-    let mut command = project.cargo(&[
-        "run",
-        "--locked",
-        "-p",
-        "rumbo-tools",
-        "--bin",
-        "fidelity",
-        "--",
-    ]);
+    let mut command = project.cargo(&["run", "--locked", "-p", "rumbo-tools", "--", "fidelity"]);
     if let Some(seeds) = seeds {
         command.args(["--seeds", &seeds.to_string()]);
     }

@@ -1,4 +1,4 @@
-//! `cargo xtask figures`: the figures and tables of docs/theory, drawn by `tools/src/bin/figures/`.
+//! `cargo xtask figures`: the figures and tables of docs/theory, drawn by `tools/src/figures/`.
 
 use crate::project::{Project, run as run_command};
 
@@ -14,6 +14,6 @@ pub(crate) fn check(project: &Project) -> Result<(), String> {
 
 /// Built as the tests are: the bytes are the same with any optimisation, and CI has already built these crates.
 fn draw(project: &Project, args: &[String]) -> Result<(), String> {
-    let program = project.program("figures")?;
-    run_command(project.command(program).args(args))
+    let program = project.program("rumbo-tools")?;
+    run_command(project.command(program).arg("figures").args(args))
 }

@@ -33,8 +33,9 @@ The project's chores.
 Usage: cargo xtask <command> [options]
 
 Commands:
-  test [--only STEP]...    every check, in order: format, tidy, dependencies, clippy, docs, sketches, tests, fuzz
-                           targets, figures, dashboard, browser, README, lessons
+  test [--full] [--only STEP]...
+                           the gate: format, tidy, dependencies, clippy, sketches, firmware, tests, figures, Python,
+                           browser, logs, README, lessons; with --full every check there is
   tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
   bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
   firmware                 the image for the Mega, target/firmware/rumbo.elf and .hex, with its sizes
@@ -66,6 +67,7 @@ Options:
 Examples:
   cargo xtask test
   cargo xtask test --only fmt --only clippy
+  cargo xtask test --full
   cargo xtask tidy
   cargo xtask firmware
   cargo xtask sketches
@@ -90,6 +92,7 @@ enum Request {
         only: Vec<String>,
         seeds: Option<u32>,
         seconds: Option<u32>,
+        full: bool,
     },
 }
 
@@ -98,7 +101,7 @@ fn main() -> ExitCode {
         Ok(request) => request,
         Err(error) => return usage(&error.to_string()),
     };
-    let (command, only, seeds, seconds) = match request {
+    let (command, only, seeds, seconds, full) = match request {
         Request::Help(command) => {
             // A reader that has seen enough, as `head`, is no error.
             let _ = writeln!(std::io::stdout(), "{}", help(command.as_deref()));
@@ -109,14 +112,18 @@ fn main() -> ExitCode {
             only,
             seeds,
             seconds,
-        } => (command, only, seeds, seconds),
+            full,
+        } => (command, only, seeds, seconds, full),
     };
     let project = match Project::find() {
-        Ok(project) => project,
+        Ok(project) => Project { full, ..project },
         Err(error) => return failure(&error),
     };
     if seeds.is_some() && !matches!(command.as_str(), "campaign" | "fidelity" | "memoria") {
         return usage("--seeds is for campaign, fidelity and memoria");
+    }
+    if full && command != "test" {
+        return usage("--full is for test");
     }
     if seconds.is_some() && command != "fuzz" {
         return usage("--seconds is for fuzz");
@@ -151,9 +158,10 @@ fn main() -> ExitCode {
 fn parse(mut args: lexopt::Parser) -> Result<Request, lexopt::Error> {
     use lexopt::prelude::{Long, Short, Value, ValueExt};
     let (mut command, mut only, mut help) = (None, Vec::new(), false);
-    let (mut seeds, mut seconds) = (None, None);
+    let (mut seeds, mut seconds, mut full) = (None, None, false);
     while let Some(arg) = args.next()? {
         match arg {
+            Long("full") => full = true,
             Long("help") | Short('h') => help = true,
             Long("seeds") => seeds = Some(args.value()?.parse()?),
             Long("seconds") => seconds = Some(args.value()?.parse()?),
@@ -168,6 +176,7 @@ fn parse(mut args: lexopt::Parser) -> Result<Request, lexopt::Error> {
             only,
             seeds,
             seconds,
+            full,
         },
         command => Request::Help(command),
     })
@@ -209,7 +218,8 @@ mod tests {
                 command: "test".to_owned(),
                 only,
                 seeds: None,
-                seconds: None
+                seconds: None,
+                full: false
             })
         );
     }
@@ -223,7 +233,8 @@ mod tests {
                 command: "campaign".to_owned(),
                 only: Vec::new(),
                 seeds: Some(50),
-                seconds: None
+                seconds: None,
+                full: false
             })
         );
         assert!(request(&["campaign", "--seeds", "many"]).is_err());

@@ -1,7 +1,7 @@
 //! `cargo xtask memoria`: the report's program as an Arduino sketch, its native form, our core and our image, scenario by scenario.
 //!
 //! The table of docs/theory/baseline.md and its short form in docs/figures.md come from here;
-//! `tools/src/bin/memoria/` runs all of it.
+//! `tools/src/memoria/` runs all of it.
 
 use crate::project::{Project, run as run_command};
 use crate::sketches;
@@ -10,15 +10,7 @@ use crate::sketches;
 pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Result<bool, String> {
     sketches::run(project)?;
     crate::firmware::run(project)?;
-    let mut program = project.cargo(&[
-        "run",
-        "--locked",
-        "-p",
-        "rumbo-tools",
-        "--bin",
-        "memoria",
-        "--",
-    ]);
+    let mut program = project.cargo(&["run", "--locked", "-p", "rumbo-tools", "--", "memoria"]);
     program
         .args(seeds.map(|seeds| seeds.to_string()))
         .args(only);

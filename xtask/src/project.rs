@@ -16,6 +16,8 @@ pub(crate) struct Project {
     pub(crate) metadata: Value,
     /// `CI=true` is set: what cannot be checked is a failure.
     pub(crate) ci: bool,
+    /// The full check, not the gate.
+    pub(crate) full: bool,
 }
 
 impl Project {
@@ -34,6 +36,7 @@ impl Project {
             target,
             metadata,
             ci,
+            full: false,
         })
     }
 
@@ -52,19 +55,16 @@ impl Project {
         command
     }
 
-    /// A command of cargo on the whole workspace with the bridge to Foxglove and the node of ROS 2, which the usual build
-    /// leaves out. Cargo builds a dependency once for each set of features: what the tests share with it is not built
-    /// again.
-    pub(crate) fn whole(&self, command: &str) -> Command {
-        let features = "--features=rumbo-cli/foxglove,rumbo-cli/zenoh";
-        self.cargo(&[command, "--workspace", features, "--locked"])
-    }
-
     /// Builds a program of the workspace as the tests are built, so that they share all crates, and returns its path.
     pub(crate) fn program(&self, name: &str) -> Result<PathBuf, String> {
-        run(self.whole("build").args(["--quiet", "--bin", name]))?;
+        run(&mut self.cargo(&["build", "--workspace", "--locked", "--quiet", "--bin", name]))?;
         let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
         Ok(self.target.join("debug").join(name))
+    }
+
+    /// The `rumbo` of the tests.
+    pub(crate) fn rumbo(&self) -> Result<PathBuf, String> {
+        self.program("rumbo")
     }
 
     /// Builds the release binary of `rumbo` (does nothing when it is fresh) and returns its path.
@@ -108,6 +108,13 @@ pub(crate) fn metadata(manifest: &Path) -> Result<Value, String> {
 /// The same with all dependencies, of all features.
 pub(crate) fn all_metadata(manifest: &Path) -> Result<Value, String> {
     metadata_with(manifest, &["--all-features", "--locked"])
+}
+
+/// The same with the dependencies that default features have on this machine.
+pub(crate) fn host_metadata(project: &Project) -> Result<Value, String> {
+    let host = output(project.command("rustc").args(["--print", "host-tuple"]))?;
+    let options = ["--locked", "--filter-platform", host.trim()];
+    metadata_with(&project.root.join("Cargo.toml"), &options)
 }
 
 fn metadata_with(manifest: &Path, options: &[&str]) -> Result<Value, String> {

@@ -1,4 +1,4 @@
-//! `rumbo export`: a log as CSV, SVG and PNG, and as a bag of ROS 2.
+//! `rumbo export`: a log as CSV and SVG, and as a bag of ROS 2.
 
 use crate::args::{ExportArgs, Format};
 use crate::failure::Failure;
@@ -60,7 +60,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
                     args.log.display()
                 ));
             }
-            Format::Svg | Format::Png if figures.is_empty() => {
+            Format::Svg if figures.is_empty() => {
                 return Err(Failure::Input(format!(
                     "{}: holds no signals to draw; --format csv writes what there is",
                     args.log.display()
@@ -76,10 +76,6 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
             Format::Svg => {
                 write(&path("svg"), stamp.put_on(figures.svg()))?;
             }
-            Format::Png => {
-                let image = rumbo_plot::png(&figures.svg()).map_err(Failure::input)?;
-                write(&path("png"), stamp.put_on(image))?;
-            }
         }
     }
     Ok(())
@@ -94,7 +90,6 @@ fn files(format: Format, stamp: &Stamp) -> Vec<(&'static str, Mark)> {
             ("events.csv", Mark::table(&events(&nothing))),
         ],
         Format::Svg => vec![("svg", Mark::of(stamp))],
-        Format::Png => vec![("png", Mark::of(stamp))],
     }
 }
 

@@ -155,9 +155,9 @@ fn bar(args: &IdentifyArgs) -> ProgressBar {
     }
 }
 
-/// Where the plots of a run go.
-fn places(folder: &Path, name: &str) -> [PathBuf; 2] {
-    ["svg", "png"].map(|ending| folder.join(Path::new(name).with_extension(ending)))
+/// Where the plot of a run goes.
+fn place_of(folder: &Path, name: &str) -> PathBuf {
+    folder.join(Path::new(name).with_extension("svg"))
 }
 
 fn stamp(name: &str) -> Stamp {
@@ -169,9 +169,8 @@ fn check_plots(args: &IdentifyArgs, logs: &Recordings, folder: &Path) -> Result<
     let guard = Guard::new(&args.logs, args.overwrite.force);
     let mut results = Vec::new();
     for (number, log) in (1..).zip(&logs.drive) {
-        let [svg, png] = places(folder, &log.name);
+        let svg = place_of(folder, &log.name);
         guard.check(&svg, &Mark::of(&stamp(&log.name)))?;
-        guard.check(&png, &Mark::of(&stamp(&log.name)))?;
         results.push((svg, format!("run {number}")));
     }
     place::distinct(&results)
@@ -189,15 +188,9 @@ fn plot(
             let plot = rumbo_identify::plot(log, params, run.nuisance);
             let picture = plot.picture(Words::default(), WIDTH);
             let svg = Sheet::new(1).with(&log.name, picture).svg();
-            let stamp = stamp(&log.name);
-            let png = rumbo_plot::png(&svg).map_err(Failure::input)?;
-            for (path, drawn) in places(folder, &log.name)
-                .into_iter()
-                .zip([svg.into_bytes(), png])
-            {
-                place::write(&path, stamp.put_on(drawn))?;
-                plots.push(path);
-            }
+            let path = place_of(folder, &log.name);
+            place::write(&path, stamp(&log.name).put_on(svg))?;
+            plots.push(path);
         }
     }
     Ok(plots)

@@ -18,20 +18,18 @@ pub(crate) const LONGEST_S: f64 = 3_600.0;
 /// Of the ATmega2560 [bytes].
 const EEPROM: usize = 4_096;
 
-/// What a line for the USB cable began with in logs in which such lines had no list of their own.
-const TO_USB: char = '\t';
-
 fn typed(manifest: &Manifest) -> Vec<TimedText> {
-    let line = |at_s: f64, line: &str, port: Port| match line.strip_prefix(TO_USB) {
-        Some(text) => (at_s, text.to_owned(), Port::Usb),
-        None => (at_s, line.to_owned(), port),
+    let lines = |texts: &[(f64, String)], port: Port| -> Vec<TimedText> {
+        let timed = texts.iter().map(|(at_s, text)| TimedText {
+            at_s: *at_s,
+            text: text.clone(),
+            port,
+        });
+        timed.collect()
     };
-    let texts = manifest.texts.iter();
-    let texts = texts.map(|(at_s, text)| line(*at_s, text, Port::Link));
-    let usb = manifest.usb_texts.iter();
-    let usb = usb.map(|(at_s, text)| line(*at_s, text, Port::Usb));
-    let timed = |(at_s, text, port)| TimedText { at_s, text, port };
-    texts.chain(usb).map(timed).collect()
+    let mut texts = lines(&manifest.texts, Port::Link);
+    texts.extend(lines(&manifest.usb_texts, Port::Usb));
+    texts
 }
 
 /// Rejects values that no recorded run can have had.
@@ -113,8 +111,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
     }
     let (program, firmware) = match manifest.program.as_str() {
         "rumbo" => (NativeProgram::Rumbo, None),
-        // `original` in logs of 0.2.0 and before.
-        "baseline" | "original" => (NativeProgram::Baseline, None),
+        "baseline" => (NativeProgram::Baseline, None),
         image => (NativeProgram::default(), Some(PathBuf::from(image))),
     };
     // A log may name any file: one that is not the recorded program is rejected.
@@ -149,29 +146,24 @@ mod tests {
     use rumbo_log::Kind;
 
     #[test]
-    fn a_line_for_the_usb_port_is_read_from_its_own_list_and_as_earlier_logs_have_it() {
+    fn a_line_for_the_usb_port_is_read_from_its_own_list() {
         let timed = |text: &str, port: Port| TimedText {
             at_s: 2.0,
             text: text.into(),
             port,
         };
         let texts = vec![timed("REF 30", Port::Link), timed("go", Port::Usb)];
-        let now = Manifest {
+        let manifest = Manifest {
             texts: lines(&texts, Port::Link),
             usb_texts: lines(&texts, Port::Usb),
             ..Manifest::default()
         };
-        assert_eq!(now.usb_texts, [(2.0, "go".to_owned())]);
-        let before = Manifest {
-            texts: vec![(2.0, "REF 30".into()), (2.0, "\tgo".into())],
-            ..Manifest::default()
-        };
-        assert_eq!(typed(&now), texts);
-        assert_eq!(typed(&before), texts);
+        assert_eq!(manifest.usb_texts, [(2.0, "go".to_owned())]);
+        assert_eq!(typed(&manifest), texts);
     }
 
     #[test]
-    fn a_log_of_the_baseline_is_run_again_under_its_name_and_its_earlier_one() {
+    fn a_log_of_the_baseline_is_run_again_under_its_name() {
         let overrides = Overrides {
             program: NativeProgram::Baseline,
             ..Overrides::default()
@@ -182,17 +174,7 @@ mod tests {
             ..of(Kind::Lab, &made, &overrides, 3)
         };
         assert_eq!(manifest.program, "baseline");
-        for program in ["baseline", "original"] {
-            let manifest = Manifest {
-                program: program.into(),
-                ..manifest.clone()
-            };
-            let (again, seed) = setup(Path::new("a.mcap"), &manifest).unwrap();
-            assert_eq!(
-                (again.program, seed),
-                (NativeProgram::Baseline, 3),
-                "{program}"
-            );
-        }
+        let (again, seed) = setup(Path::new("a.mcap"), &manifest).unwrap();
+        assert_eq!((again.program, seed), (NativeProgram::Baseline, 3));
     }
 }

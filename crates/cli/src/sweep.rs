@@ -30,7 +30,6 @@ use std::sync::atomic::Ordering;
 /// The page, the tables, the runs as they are done, and the logs of the best and the worst.
 const PAGE: &str = "index.html";
 const CSV: &str = "runs.csv";
-const PARQUET: &str = "runs.parquet";
 const JOURNAL: &str = "runs.jsonl";
 const LOGS: &str = "logs";
 
@@ -167,7 +166,7 @@ fn check_places(args: &SweepArgs) -> Result<(), Failure> {
     let inputs = inputs.map(PathBuf::from).chain(args.image.firmware.clone());
     let guard = Guard::new(inputs, args.overwrite.force);
     let mark = Mark::Text("rumbo sweep ".into());
-    [PAGE, CSV, PARQUET, JOURNAL]
+    [PAGE, CSV, JOURNAL]
         .into_iter()
         .try_for_each(|name| guard.check(&args.out.join(name), &mark))
 }
@@ -198,7 +197,6 @@ impl Writer<'_> {
         let out = |name: &str| self.args.out.join(name);
         let logs = self.logs(sweep)?;
         place::write(&out(CSV), tables::csv(sweep))?;
-        place::write(&out(PARQUET), tables::parquet(sweep)?)?;
         let page = Page {
             sweep,
             scenario: &self.setup.scenario,

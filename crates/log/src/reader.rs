@@ -4,7 +4,6 @@
 //! is damaged in the middle but has its index, everything intact is read. Logs that `rumbo import` made of the original
 //! program's CSV are read too, as far as their signals have a place in a [`Row`](crate::signals::Row).
 
-mod earlier;
 mod intake;
 mod metadata;
 mod pieces;
@@ -16,9 +15,11 @@ use crate::log::Log;
 use intake::{Intake, Stop};
 use mcap::MAGIC;
 use pieces::Pieces;
-use rumbo_wire::Hello;
+use rumbo_wire::{Decoder, FromRobot, Hello, Message, Received};
 use std::io::{BufReader, Read, Seek, SeekFrom};
 
+/// Longest line of text from a robot that is put together.
+const LINE: usize = 160;
 /// A log that is shorter has no whole manifest \[bytes\].
 const SHORTEST: u64 = 256;
 
@@ -55,7 +56,17 @@ impl Log {
     /// How the robot first named itself in frames.
     #[must_use]
     pub fn hello(&self) -> Option<Hello> {
-        earlier::hello(&self.link)
+        let from_robot = self.link.iter().filter(|burst| !burst.to_robot);
+        let mut decoder = Decoder::<LINE>::default();
+        from_robot
+            .flat_map(|burst| &burst.bytes)
+            .find_map(|byte| match decoder.push(*byte) {
+                Some(Received::Frame(body)) => match FromRobot::from_body(&body) {
+                    Ok(FromRobot::Hello(hello)) => Some(hello),
+                    _ => None,
+                },
+                _ => None,
+            })
     }
 }
 
@@ -80,7 +91,6 @@ fn read(mut from: impl Read + Seek, with_link: bool) -> Result<Log, ReadError> {
         });
     }
     log.rows.sort_by_key(|row| row.t_ms);
-    earlier::renew(&mut log.link);
     Ok(log)
 }
 

@@ -12,8 +12,6 @@ mod heat;
 mod map;
 mod panels;
 mod parallel;
-#[cfg(feature = "png")]
-mod png;
 mod ramp;
 mod sheet;
 #[cfg(test)]
@@ -26,8 +24,6 @@ pub use heat::Heat;
 pub use map::{Map, Shape};
 pub use panels::{Panel, Plot};
 pub use parallel::Parallel;
-#[cfg(feature = "png")]
-pub use png::{PngError, png};
 pub use sheet::{Picture, Sheet};
 pub use text::{Words, escape, number, put};
 

@@ -106,19 +106,3 @@ fn a_sheet_needs_no_page_around_it() {
     assert!(svg.contains("xmlns=") && svg.contains("A &lt; B") && svg.contains(">speed<"));
     assert!(!svg.contains("var("), "a variable without its colour");
 }
-
-#[cfg(feature = "png")]
-#[test]
-fn a_png_has_the_curve_and_the_letters_of_its_sheet() {
-    let image = png(&sheet().svg()).unwrap();
-    let pixels = resvg::tiny_skia::Pixmap::decode_png(&image).unwrap();
-    let dark = |part: &[resvg::tiny_skia::PremultipliedColorU8]| {
-        part.iter().filter(|pixel| pixel.red() < 0x60).count()
-    };
-    let width = pixels.width() as usize;
-    // The title above the frame has letters of ink.
-    assert!(dark(&pixels.pixels()[..60 * width]) > 50);
-    let blue = pixels.pixels().iter();
-    let blue = blue.filter(|pixel| (pixel.red(), pixel.blue()) == (0x00, 0x8b));
-    assert!(blue.count() > 500);
-}

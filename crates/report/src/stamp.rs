@@ -3,10 +3,6 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 
-/// How an image begins, up to the end of its header.
-const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
-const PNG_HEADER: usize = 33;
-
 /// The mark added to a file whose contents have none: the command, and a checksum of its arguments.
 #[derive(Clone, Debug)]
 pub struct Stamp(String);
@@ -25,14 +21,10 @@ impl Stamp {
         &self.0
     }
 
-    /// A PNG, SVG or HTML file with it.
+    /// An SVG or HTML file with it.
     #[must_use]
     pub fn put_on(&self, file: impl Into<Vec<u8>>) -> Vec<u8> {
         let (file, text) = (file.into(), &self.0);
-        if file.starts_with(PNG) && file.len() >= PNG_HEADER {
-            let (header, rest) = file.split_at(PNG_HEADER);
-            return [header, &text_chunk(text), rest].concat();
-        }
         let comment = format!("<!-- {text} -->\n");
         // Nothing but the document's type comes before a comment in HTML.
         match file.iter().position(|byte| *byte == b'\n') {
@@ -43,14 +35,6 @@ impl Stamp {
             _ => [comment.as_bytes(), &file].concat(),
         }
     }
-}
-
-/// A `tEXt` chunk (PNG specification, 11.3.4.3).
-fn text_chunk(text: &str) -> Vec<u8> {
-    let body = [b"tEXtSoftware\0", text.as_bytes()].concat();
-    let length = (body.len() - 4) as u32;
-    let sum = crc32(&body);
-    [&length.to_be_bytes(), &body[..], &sum.to_be_bytes()].concat()
 }
 
 fn crc32(bytes: &[u8]) -> u32 {

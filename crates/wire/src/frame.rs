@@ -120,21 +120,15 @@ pub struct Body {
 impl Body {
     /// The content of a frame, given without its 0x00; `None` if anything is wrong with it.
     pub fn parse(stuffed: &[u8]) -> Option<Body> {
-        Self::parse_of(PROTOCOL_VERSION, stuffed)
-    }
-
-    /// The same of a frame of another version of the protocol.
-    pub(crate) fn parse_of(protocol: u8, stuffed: &[u8]) -> Option<Body> {
         let mut bytes = [0; MAX_BODY];
         let len = unstuff(stuffed, &mut bytes)?;
         let (checked, check) = bytes.get(..len)?.split_last_chunk::<2>()?;
         let header = *checked.first()?;
         let kind = Kind::from_number(header >> 4)?;
-        let sum = checked
-            .iter()
-            .fold(crc(CRC_START, kind.schema(protocol)), |sum, byte| {
-                crc(sum, *byte)
-            });
+        let sum = checked.iter().fold(
+            crc(CRC_START, kind.schema(PROTOCOL_VERSION)),
+            |sum, byte| crc(sum, *byte),
+        );
         (sum == u16::from_le_bytes(*check)).then_some(Body {
             kind,
             seq: header & 0xF,

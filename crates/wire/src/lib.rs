@@ -14,8 +14,6 @@ pub mod codec;
 pub mod csv;
 mod decimal;
 pub mod decoder;
-#[cfg(feature = "names")]
-pub mod earlier;
 pub mod frame;
 pub mod message;
 #[cfg(feature = "names")]

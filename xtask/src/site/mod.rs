@@ -87,8 +87,9 @@ pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
     let head = HEAD.replace("{style}", &report_style(project)?) + &carry_image(project, &site)?;
     complete(&site.join("index.html"), &head)?;
     let lab = site.join("lab");
+    let bindgen = bindgen(project)?;
     for (wasm, name) in modules.iter().zip(MODULES) {
-        let mut bindgen = project.command(project.program("rumbo-bindgen")?);
+        let mut bindgen = project.command(&bindgen);
         run_command(bindgen.arg(wasm).arg(&lab).arg(name))?;
     }
     let mut kept = names_below(&site)?;
@@ -171,12 +172,24 @@ fn files_below(folder: &Path) -> Result<Vec<PathBuf>, String> {
 
 /// The lab and the report as WebAssembly, in the order of [`MODULES`]: the report is loaded when it is asked for.
 pub(crate) fn compile(project: &Project) -> Result<[PathBuf; 2], Stop> {
+    cargo(project, "build", &["--profile", PROFILE])?;
+    let folder = project.target.join("wasm").join(TARGET).join(PROFILE);
+    Ok(["rumbo_browser.wasm", "rumbo_report.wasm"].map(|file| folder.join(file)))
+}
+
+/// Whether they compile.
+pub(crate) fn check(project: &Project) -> Result<(), Stop> {
+    cargo(project, "check", &[])
+}
+
+/// A command of cargo on them.
+fn cargo(project: &Project, command: &str, words: &[&str]) -> Result<(), Stop> {
     let toolchain = Toolchain::find(project)?;
     // Apart, so that this compiler and the usual one do not build each other's crates again.
     let target = project.target.join("wasm");
     let mut build = toolchain.command("cargo");
     build.current_dir(&project.root).args([
-        "build",
+        command,
         "--quiet",
         "--locked",
         "--lib",
@@ -185,7 +198,7 @@ pub(crate) fn compile(project: &Project) -> Result<[PathBuf; 2], Stop> {
         "--package=rumbo-report",
         "-Zbuild-std=std,panic_abort",
     ]);
-    build.args(["--profile", PROFILE, "--target", TARGET]);
+    build.args(words).args(["--target", TARGET]);
     build.arg("--target-dir").arg(&target);
     if matches!(toolchain, Toolchain::Debian) {
         build.env(
@@ -193,9 +206,18 @@ pub(crate) fn compile(project: &Project) -> Result<[PathBuf; 2], Stop> {
             linker(project)?,
         );
     }
-    run_command(&mut build)?;
-    let folder = target.join(TARGET).join(PROFILE);
-    Ok(["rumbo_browser.wasm", "rumbo_report.wasm"].map(|file| folder.join(file)))
+    Ok(run_command(&mut build)?)
+}
+
+/// What writes the scripts.
+fn bindgen(project: &Project) -> Result<PathBuf, String> {
+    let target = project.target.join("bindgen");
+    let build = ["build", "--quiet", "--locked", "--manifest-path"];
+    let mut build = project.cargo(&build);
+    build.arg("tools/bindgen/Cargo.toml");
+    run_command(build.arg("--target-dir").arg(&target))?;
+    let name = format!("rumbo-bindgen{}", std::env::consts::EXE_SUFFIX);
+    Ok(target.join("debug").join(name))
 }
 
 /// Debian's compiler has no linker for WebAssembly: that of the Rust in use, or else LLVM's.

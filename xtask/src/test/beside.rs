@@ -1,14 +1,14 @@
 //! The second lane of CI: steps run by another process of this program, and shown when the steps beside them have ended.
 
-use super::{Lane, Outcome};
+use super::Outcome;
+use super::cost::Cost;
 use crate::project::Project;
 use std::fs::{self, File};
 use std::path::PathBuf;
 use std::process::{Child, Stdio};
-use std::time::Duration;
 
-/// A step's name, how it ended, and its time.
-type Row = (&'static str, Outcome, Duration);
+/// A step's name, how it ended, and what it cost.
+type Row = (&'static str, Outcome, Cost);
 
 /// The running lane; it ends with this.
 pub(super) struct Beside {
@@ -19,21 +19,14 @@ pub(super) struct Beside {
 
 impl Beside {
     /// Starts the steps.
-    pub(super) fn start(project: &Project, lane: &Lane) -> Result<Self, String> {
+    pub(super) fn start(project: &Project, steps: &'static [&'static str]) -> Result<Self, String> {
         let program = std::env::current_exe().map_err(|error| error.to_string())?;
         let folder = project.target.join("tmp");
         let output = folder.join("beside.txt");
         let wrong = |error: std::io::Error| format!("{}: {error}", output.display());
         fs::create_dir_all(&folder).map_err(wrong)?;
         let file = File::create(&output).map_err(wrong)?;
-        let steps = lane.steps;
-        let mut lane = if lane.nice && cfg!(unix) {
-            let mut nice = project.command("nice");
-            nice.arg(program);
-            nice
-        } else {
-            project.command(program)
-        };
+        let mut lane = project.command(program);
         lane.arg("test");
         lane.args(steps.iter().flat_map(|name| ["--only", name]));
         lane.stdin(Stdio::null());
@@ -71,43 +64,46 @@ fn row(name: &'static str, output: &str) -> Row {
     let said = output.lines().find_map(|line| {
         let (found, rest) = line.strip_prefix("<== ")?.split_once(' ')?;
         let (word, rest) = rest.trim_start().split_once(' ')?;
-        let (seconds, why) = rest
-            .trim_start()
-            .split_once(" s")
-            .filter(|_| found == name)?;
-        Some((word, seconds.parse().ok()?, why.trim().to_owned()))
+        let (cost, why) = Cost::parse(rest)?;
+        (found == name).then(|| (word, cost, why.trim().to_owned()))
     });
-    let (outcome, seconds) = match said {
-        Some(("passed", seconds, _)) => (Outcome::Passed, seconds),
-        Some(("skipped", seconds, why)) => (Outcome::Skipped(why), seconds),
-        Some((_, seconds, why)) => (Outcome::Failed(why), seconds),
-        None => (Outcome::Failed("did not come to its end".to_owned()), 0.0),
+    let (outcome, cost) = match said {
+        Some(("passed", cost, _)) => (Outcome::Passed, cost),
+        Some(("skipped", cost, why)) => (Outcome::Skipped(why), cost),
+        Some((_, cost, why)) => (Outcome::Failed(why), cost),
+        None => (
+            Outcome::Failed("did not come to its end".to_owned()),
+            Cost::default(),
+        ),
     };
-    let time = Duration::try_from_secs_f64(seconds).unwrap_or_default();
-    (name, outcome, time)
+    (name, outcome, cost)
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::line;
     use super::*;
+    use std::time::Duration;
 
     #[test]
     fn a_step_of_the_other_lane_ends_here_as_it_ended_there() {
-        let time = Duration::from_millis(12_300);
+        let cost = Cost {
+            time: Duration::from_millis(12_300),
+            processor: Duration::from_millis(20_100),
+        };
         for outcome in [
             Outcome::Passed,
             Outcome::Failed("the image is 7 s late".to_owned()),
             Outcome::Skipped("install it".to_owned()),
         ] {
-            let printed = format!("==> wasm: it\nhm\n<== {}\n", line("wasm", &outcome, time));
-            assert_eq!(row("wasm", &printed), ("wasm", outcome, time));
+            let printed = format!("==> wasm: it\nhm\n<== {}\n", line("wasm", &outcome, cost));
+            assert_eq!(row("wasm", &printed), ("wasm", outcome, cost));
         }
     }
 
     #[test]
     fn a_step_that_the_other_lane_did_not_reach_has_failed() {
-        let printed = "==> wasm: it\n<== fuzz     passed    1.0 s\n";
+        let printed = "==> wasm: it\n<== fuzz     passed    1.0 s, processor 2.0 s\n";
         assert!(matches!(row("wasm", printed).1, Outcome::Failed(_)));
     }
 }

@@ -36,7 +36,7 @@ struct Figure {
 
 /// Checks the lessons in both languages.
 pub(crate) fn check(project: &Project) -> Result<(), Stop> {
-    let rumbo = project.release_binary()?;
+    let rumbo = project.rumbo()?;
     let files = project.files()?;
     let mut lessons: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for file in &files {

@@ -25,7 +25,7 @@ pub(super) fn check(project: &Project) -> Result<(), Stop> {
     // Of an earlier time.
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let rumbo = project.release_binary()?;
+    let rumbo = project.rumbo()?;
     for scenario in ["mode1", "mode8-lane"] {
         let mut command = project.command(&rumbo);
         command.args(["run", scenario, "--out"]).arg(&folder);

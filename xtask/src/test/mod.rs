@@ -1,11 +1,14 @@
-//! `cargo xtask test`: every check, in order, each with its time and result, and a summary.
+//! `cargo xtask test`: the gate, every check that a change passes before it lands; with `--full` every check there is.
+//! Each prints its result, its time and the processor's, and a summary closes the list.
 //!
 //! A step that lacks a tool installs it where it can (Debian packages as root, Node packages with `npm ci`), else it
-//! is skipped with the remedy; with `CI=true` that is a failure. Debug builds serve the tests, one release build the
-//! browser and the README, so nothing is built twice in the same way. CI builds in two lanes where the steps allow it
+//! is skipped with the remedy; with `CI=true` that is a failure. The gate builds everything once: tests, browser, logs,
+//! README, lessons and the Python package share the development profile's artefacts. What samples do not show, and what
+//! needs another build of the same sources, is in the full check. CI builds in two lanes where the steps allow it
 //! ([`beside`]).
 
 mod beside;
+mod cost;
 mod lessons;
 mod logs;
 mod readme;
@@ -14,13 +17,16 @@ pub(crate) mod tools;
 mod web;
 pub(crate) mod wheel;
 
-use std::time::{Duration, Instant};
-
 use beside::Beside;
+use cost::Clock;
+pub(crate) use cost::Cost;
 pub(crate) use tools::installed_chromium;
 
-use crate::project::{Project, run as run_command};
-use crate::tidy;
+use crate::project::{Project, output, run as run_command};
+use crate::tidy::{
+    self,
+    ceilings::{Ceilings, Gate},
+};
 
 /// How a step ended.
 #[derive(Debug, PartialEq)]
@@ -46,144 +52,183 @@ impl From<String> for Stop {
     }
 }
 
+/// Variable of the environment by which tests take all ticks, seeds and cases in place of a sample.
+const FULL: &str = "RUMBO_FULL";
+
+/// Which check a step belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Check {
+    /// The one that CI runs, and the full one.
+    Gate,
+    /// The full one only.
+    Full,
+}
+
 struct Step {
     name: &'static str,
     what: &'static str,
+    part_of: Check,
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 19] = [
+const STEPS: [Step; 22] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
+        part_of: Check::Gate,
         check: fmt,
     },
     Step {
         name: "tidy",
-        what: "the rules of ARCHITECTURE.md hold",
+        what: "the rules of ARCHITECTURE.md hold, and the ceilings of xtask/ceilings.toml",
+        part_of: Check::Gate,
         check: rules,
     },
     Step {
         name: "deny",
         what: "licences and sources of the dependencies are those of deny.toml",
+        part_of: Check::Gate,
         check: dependencies,
     },
     Step {
         name: "clippy",
         what: "no warning from the compiler or clippy",
+        part_of: Check::Gate,
         check: clippy,
     },
     Step {
         name: "doc",
         what: "the API documentation builds without a warning",
+        part_of: Check::Full,
         check: doc,
-    },
-    Step {
-        name: "build",
-        what: "the rumbo binary, as users build it",
-        check: build,
     },
     Step {
         name: "sketches",
         what: "the Arduino sketches build: images for the tests",
+        part_of: Check::Gate,
         check: crate::sketches::build,
     },
     Step {
         name: "firmware",
         what: "the image for the Mega builds and keeps to its caps",
+        part_of: Check::Gate,
         check: crate::firmware::build,
     },
     Step {
         name: "wasm",
         what: "simulator, experiments, report, session, logs and lab compile for a browser",
+        part_of: Check::Gate,
         check: wasm,
     },
     Step {
-        name: "fuzz",
-        what: "the fuzz targets find nothing in five seconds each",
-        check: fuzz,
+        name: "build",
+        what: "the tests of all crates compile",
+        part_of: Check::Gate,
+        check: build,
     },
     Step {
         name: "test",
-        what: "the tests of all crates, the bridge to Foxglove and the node of ROS 2 included",
+        what: "the tests of all crates, and the seeds of the fuzz targets",
+        part_of: Check::Gate,
         check: tests,
-    },
-    Step {
-        name: "ros",
-        what: "robots as nodes of ROS 2, as genuine peers see them",
-        check: ros::check,
     },
     Step {
         name: "figures",
         what: "the figures and tables of docs/theory are those of the sources",
+        part_of: Check::Gate,
         check: figures,
     },
     Step {
         name: "web",
         what: "the types of the dashboard",
+        part_of: Check::Gate,
         check: web::types,
     },
     Step {
         name: "python",
-        what: "the Python package: wheel, tests, environments, types",
+        what: "the Python package: tests, environments, types",
+        part_of: Check::Gate,
         check: wheel::check,
     },
     Step {
         name: "browser",
         what: "the dashboard in a real browser",
+        part_of: Check::Gate,
         check: web::browser,
     },
     Step {
         name: "logs",
         what: "logs as other programs read them",
+        part_of: Check::Gate,
         check: logs::check,
     },
     Step {
         name: "readme",
         what: "the commands of the README",
+        part_of: Check::Gate,
         check: readme::check,
     },
     Step {
         name: "lessons",
         what: "the figures of the lessons are those of the runs",
+        part_of: Check::Gate,
         check: lessons::check,
     },
+    Step {
+        name: "release",
+        what: "the rumbo binary, as users build it, does what the README says",
+        part_of: Check::Full,
+        check: readme::check_release,
+    },
+    Step {
+        name: "wheel",
+        what: "the wheel and the source archive, beside JAX, PettingZoo and matplotlib",
+        part_of: Check::Full,
+        check: wheel::check_whole,
+    },
+    Step {
+        name: "ros",
+        what: "robots as nodes of ROS 2, as genuine peers see them",
+        part_of: Check::Full,
+        check: ros::check,
+    },
+    Step {
+        name: "site",
+        what: "the site, and all browser tests",
+        part_of: Check::Full,
+        check: web::browser,
+    },
+    Step {
+        name: "fuzz",
+        what: "the fuzz targets find nothing in five seconds each",
+        part_of: Check::Full,
+        check: fuzz,
+    },
 ];
 
-/// Steps that run beside others with `CI=true`.
-struct Lane {
-    /// They begin with this step, and end before the first of them has its turn.
-    first: &'static str,
-    steps: &'static [&'static str],
-    /// They take what the others leave of the processor.
-    nice: bool,
-}
-
-/// They build into folders of their own. Those beside the compiler have long phases of a single thread, as it has; the
-/// nodes of ROS 2 mostly wait, but must not wait for long.
-const LANES: [Lane; 2] = [
-    Lane {
-        first: "clippy",
-        steps: &["sketches", "firmware", "wasm", "fuzz"],
-        nice: false,
-    },
-    Lane {
-        first: "ros",
-        steps: &["python"],
-        nice: true,
-    },
-];
+/// Steps that run beside another one with `CI=true`: they build into folders of their own, and have long phases of a
+/// single thread, as the compiler has.
+const BESIDE: (&str, [&str; 3]) = ("clippy", ["sketches", "firmware", "wasm"]);
 
 /// Text of `cargo xtask test --help`.
 pub(crate) fn help() -> String {
-    let mut text = String::from("Usage: cargo xtask test [--only STEP]...\n\nSteps, in order:\n");
-    for step in &STEPS {
-        text += &format!("  {:<8} {}\n", step.name, step.what);
+    let mut text = String::from("Usage: cargo xtask test [--full] [--only STEP]...\n");
+    for (check, title) in [
+        (Check::Gate, "Steps, in order"),
+        (
+            Check::Full,
+            "Steps of --full besides, which also makes the tests longer",
+        ),
+    ] {
+        text += &format!("\n{title}:\n");
+        for step in STEPS.iter().filter(|step| step.part_of == check) {
+            text += &format!("  {:<8} {}\n", step.name, step.what);
+        }
     }
-    text + "\nExamples:\n  cargo xtask test\n  cargo xtask test --only fmt --only clippy\n  CI=true cargo xtask test"
+    text + "\nExamples:\n  cargo xtask test\n  cargo xtask test --only fmt --only clippy\n  cargo xtask test --full\n  CI=true cargo xtask test"
 }
 
-/// Runs the steps named in `only` (all if empty); true if none failed.
+/// Runs the steps named in `only`, or all of the gate, or all; true if none failed.
 pub(crate) fn run(project: &Project, only: &[String]) -> Result<bool, String> {
     if let Some(unknown) = only
         .iter()
@@ -192,17 +237,18 @@ pub(crate) fn run(project: &Project, only: &[String]) -> Result<bool, String> {
         let known: Vec<_> = STEPS.iter().map(|step| step.name).collect();
         return Err(format!("no step `{unknown}`; steps: {}", known.join(", ")));
     }
+    let chosen = |step: &&Step| match only.is_empty() {
+        true => project.full || step.part_of == Check::Gate,
+        false => only.iter().any(|name| name == step.name),
+    };
     let mut results = Vec::new();
     let mut beside = None;
-    for step in STEPS
-        .iter()
-        .filter(|step| only.is_empty() || only.iter().any(|name| name == step.name))
-    {
+    for step in STEPS.iter().filter(chosen) {
         if project.ci && only.is_empty() {
-            if let Some(lane) = LANES.iter().find(|lane| lane.first == step.name) {
-                beside = Some(Beside::start(project, lane)?);
+            if step.name == BESIDE.0 {
+                beside = Some(Beside::start(project, &BESIDE.1)?);
             }
-            if LANES.iter().any(|lane| lane.steps.contains(&step.name)) {
+            if BESIDE.1.contains(&step.name) {
                 if let Some(lane) = beside.take() {
                     results.extend(lane.end()?);
                 }
@@ -210,15 +256,24 @@ pub(crate) fn run(project: &Project, only: &[String]) -> Result<bool, String> {
             }
         }
         println!("\n==> {}: {}", step.name, step.what);
-        let start = Instant::now();
+        let clock = Clock::start();
         let outcome = judge((step.check)(project), project.ci);
-        let time = start.elapsed();
-        println!("<== {}", line(step.name, &outcome, time));
-        results.push((step.name, outcome, time));
+        let cost = clock.stop();
+        println!("<== {}", line(step.name, &outcome, cost));
+        results.push((step.name, outcome, cost));
     }
     println!("\nSummary");
-    for (name, outcome, time) in &results {
-        println!("  {}", line(name, outcome, *time));
+    for (name, outcome, cost) in &results {
+        println!("  {}", line(name, outcome, *cost));
+    }
+    let whole: Cost = results.iter().map(|(_, _, cost)| *cost).sum();
+    println!("  {:<16} {whole}", "all steps");
+    let costs: Vec<_> = results
+        .iter()
+        .map(|(name, _, cost)| (*name, *cost))
+        .collect();
+    for warning in Ceilings::read(project)?.warnings(&costs) {
+        println!("{warning}");
     }
     println!("{}", tally(results.iter().map(|(_, outcome, _)| outcome)));
     Ok(!results
@@ -235,13 +290,13 @@ fn judge(result: Result<(), Stop>, ci: bool) -> Outcome {
     }
 }
 
-fn line(name: &str, outcome: &Outcome, time: Duration) -> String {
+fn line(name: &str, outcome: &Outcome, cost: Cost) -> String {
     let (word, why) = match outcome {
         Outcome::Passed => ("passed", ""),
         Outcome::Failed(error) => ("FAILED", error.as_str()),
         Outcome::Skipped(remedy) => ("skipped", remedy.as_str()),
     };
-    format!("{name:<8} {word:<7} {:>6.1} s  {why}", time.as_secs_f64())
+    format!("{name:<8} {word:<7} {cost}  {why}")
         .trim_end()
         .to_owned()
 }
@@ -306,10 +361,33 @@ fn doc(project: &Project) -> Result<(), Stop> {
     Ok(run_command(doc.env("RUSTDOCFLAGS", "-D warnings"))?)
 }
 
+/// Compiles the tests; what that takes is separate from what they take themselves.
+fn build(project: &Project) -> Result<(), Stop> {
+    let words = ["test", "--workspace", "--locked", "--no-run"];
+    let messages = output(
+        project
+            .cargo(&words)
+            .arg("--message-format=json-render-diagnostics"),
+    )?;
+    let gate = Gate::of(&messages);
+    println!(
+        "{} units, {} programs with tests",
+        gate.units, gate.executables
+    );
+    match gate.above(Ceilings::read(project)?.gate) {
+        Some(problem) => Err(Stop::Failed(problem)),
+        None => Ok(()),
+    }
+}
+
 /// Where simavr or avr-gdb is missing, the tests that need it skip themselves, so this step is incomplete.
 fn tests(project: &Project) -> Result<(), Stop> {
     let tools = [tools::simavr(project), tools::avr_gdb(project)];
-    run_command(project.whole("test").arg("--no-fail-fast"))?;
+    let mut test = project.cargo(&["test", "--workspace", "--locked", "--no-fail-fast"]);
+    if project.full {
+        test.env(FULL, "1");
+    }
+    run_command(&mut test)?;
     tools.into_iter().try_for_each(|tool| tool.map(|_| ()))
 }
 
@@ -317,15 +395,8 @@ fn fuzz(project: &Project) -> Result<(), Stop> {
     found_nothing(crate::fuzz::campaign(project, Some(5), &[])?)
 }
 
-/// The step *browser* takes what this one builds.
 fn wasm(project: &Project) -> Result<(), Stop> {
-    crate::site::compile(project)?;
-    Ok(())
-}
-
-fn build(project: &Project) -> Result<(), Stop> {
-    project.release_binary()?;
-    Ok(())
+    crate::site::check(project)
 }
 
 /// The same sources give the same bytes, so a difference is a change of behaviour that the pages do not show yet.
@@ -361,17 +432,14 @@ mod tests {
         );
     }
 
-    /// Else steps would be left out, or a lane ended by the next one.
+    /// Else they would be left out.
     #[test]
-    fn a_lane_begins_before_its_steps_and_after_those_of_the_lane_before() {
+    fn the_lane_begins_before_its_steps() {
         let place = |name: &str| STEPS.iter().position(|step| step.name == name);
-        let mut places = Vec::new();
-        for lane in &LANES {
-            places.push(place(lane.first).expect(lane.first));
-            let steps = lane.steps.iter().map(|name| place(name).expect(name));
-            places.push(steps.min().expect(lane.first));
+        let first = place(BESIDE.0).expect(BESIDE.0);
+        for name in BESIDE.1 {
+            assert!(place(name).expect(name) > first, "{name}");
         }
-        assert!(places.is_sorted_by(|one, next| one < next), "{places:?}");
     }
 
     #[test]

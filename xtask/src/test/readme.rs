@@ -23,8 +23,18 @@ const ENGLISH: &str = "README.md";
 /// The page in Spanish, which has the same commands.
 const SPANISH: &str = "README.es.md";
 
-/// Runs the commands of `README.md`; the page's server and the exit statuses decide.
+/// Runs the commands of `README.md` with the program that the tests built.
 pub(crate) fn check(project: &Project) -> Result<(), Stop> {
+    run(project, &project.rumbo()?, false)
+}
+
+/// The same as a reader would: `cargo run --release` is that, and `rumbo` what it built.
+pub(crate) fn check_release(project: &Project) -> Result<(), Stop> {
+    run(project, &project.release_binary()?, true)
+}
+
+/// The page's server and the exit statuses decide.
+fn run(project: &Project, rumbo: &Path, with_cargo: bool) -> Result<(), Stop> {
     let read = |name: &str| {
         std::fs::read_to_string(project.root.join(name)).map_err(|error| format!("{name}: {error}"))
     };
@@ -46,11 +56,10 @@ pub(crate) fn check(project: &Project) -> Result<(), Stop> {
             "README.md: no `cargo run --release` in a `sh` block".to_owned(),
         ));
     }
-    let rumbo = project.release_binary()?;
     let mut wrong = Vec::new();
     for (line, command) in commands {
         println!("README.md:{line}: {command:?}");
-        if let Err(error) = try_command(project, &rumbo, &command) {
+        if let Err(error) = try_command(project, rumbo, &command, with_cargo) {
             println!("README.md:{line}: {error}");
             wrong.push(line.to_string());
         }
@@ -171,13 +180,18 @@ fn words(line: &str) -> Vec<String> {
     words
 }
 
-fn try_command(project: &Project, rumbo: &Path, command: &Command) -> Result<(), String> {
+fn try_command(
+    project: &Project,
+    rumbo: &Path,
+    command: &Command,
+    with_cargo: bool,
+) -> Result<(), String> {
     match command {
         Command::Lab {
             through_cargo,
             args,
         } => {
-            let mut start = if *through_cargo {
+            let mut start = if *through_cargo && with_cargo {
                 project.cargo(&["run", "--release", "--locked", "--", "lab"])
             } else {
                 let mut start = project.command(rumbo);

@@ -1,5 +1,5 @@
-//! The Python package: its wheel and its source archive are built, and the wheel is installed and tested, in an environment
-//! made for it.
+//! The Python package. The gate takes its Rust part as the tests are built, beside the sources; the full check builds the
+//! wheel and the source archive, and installs the wheel in an environment made for it, with all that it is used with.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,18 +8,22 @@ use super::{Stop, tools};
 use crate::project::{Project, output, run};
 
 /// Packages of PyPI; what type checkers find depends on their versions. They need Python 3.11, the wheel itself 3.10.
-const PACKAGES: [&str; 11] = [
-    "maturin==1.16.0",
+const PACKAGES: [&str; 7] = [
     "numpy==2.4.6",
     "gymnasium==1.4.0",
-    "jax==0.10.2",
-    "optax==0.2.8",
     "pettingzoo==1.27.0",
-    "matplotlib==3.11.2",
     "pytest==9.2.0",
     "rosbags==0.11.9",
     "mypy==2.4.1",
     "ruff==0.17.6",
+];
+
+/// What the wheel is built and tested with besides.
+const WHEEL_PACKAGES: [&str; 4] = [
+    "maturin==1.16.0",
+    "jax==0.10.2",
+    "optax==0.2.8",
+    "matplotlib==3.11.2",
 ];
 
 /// For its tests and figures on Ray.
@@ -32,38 +36,76 @@ const SB3_PACKAGES: [&str; 4] = [
     "torch==2.15.0",
 ];
 
-/// Builds the package, installs it, and runs its tests and type checks.
+/// Runs the package's tests, and checks its form and its types.
 pub(super) fn check(project: &Project) -> Result<(), Stop> {
-    let python = installed(project, "wheel", &PACKAGES)?;
-    let sources = package(project, &python, &["sdist"], "gz")?;
-    let rumbo = project.release_binary()?;
-    let module = |words: &[&str]| module(project, &python, words);
-    let mut tests = module(&["pytest", "--quiet", "-p", "no:cacheprovider"]);
-    tests
-        .env("RUMBO_COMMAND", rumbo)
-        .env("RUMBO_SDIST", sources);
-    run(&mut tests)?;
-    run(&mut module(&[
-        "ruff",
-        "format",
-        "--no-cache",
-        "--check",
-        "python",
-        "examples/python",
-    ]))?;
-    run(&mut module(&[
-        "ruff",
-        "check",
-        "--no-cache",
-        "--quiet",
-        "python",
-        "examples/python",
-    ]))?;
+    let python = tools::python_with(project, "python-tests", &PACKAGES)?;
+    let package = in_place(project)?;
+    let module = |words: &[&str]| {
+        let mut module = module(project, &python, words);
+        module.env("PYTHONPATH", &package);
+        module
+    };
+    let rumbo = project.rumbo()?;
+    run(module(&["pytest", "--quiet", "-p", "no:cacheprovider"]).env("RUMBO_COMMAND", rumbo))?;
+    for words in [
+        &["ruff", "format", "--no-cache", "--check"][..],
+        &["ruff", "check", "--no-cache", "--quiet"],
+    ] {
+        run(module(words).args(["python", "examples/python"]))?;
+    }
     let cache = project.target.join("tmp/mypy");
     run(module(&["mypy", "--cache-dir"]).arg(cache))?;
     // Whether the stub of the Rust part is true.
     let mut stub = module(&["mypy.stubtest", "rumbo._rumbo"]);
     Ok(run(stub.current_dir(project.target.join("tmp")))?)
+}
+
+/// The package as it would be installed, with the Rust part of the tests' build; returns the folder that Python looks in.
+fn in_place(project: &Project) -> Result<PathBuf, Stop> {
+    let build = ["build", "--workspace", "--locked", "--quiet", "--lib"];
+    run(&mut project.cargo(&build))?;
+    let folder = project.target.join("tmp/python");
+    let package = folder.join("rumbo");
+    // Of an earlier version.
+    let _ = std::fs::remove_dir_all(&package);
+    let wrong = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
+    for file in project.files()? {
+        if let Ok(name) = file.strip_prefix("python/rumbo") {
+            let to = package.join(name);
+            let parent = to.parent().unwrap_or(&package);
+            std::fs::create_dir_all(parent).map_err(|error| wrong(parent, error))?;
+            let from = project.root.join(&file);
+            std::fs::copy(&from, &to).map_err(|error| wrong(&from, error))?;
+        }
+    }
+    let [prefix, suffix] = [std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX];
+    let library = project.target.join(format!("debug/{prefix}_rumbo{suffix}"));
+    let name = match cfg!(windows) {
+        true => "_rumbo.pyd",
+        false => "_rumbo.abi3.so",
+    };
+    std::fs::copy(&library, package.join(name)).map_err(|error| wrong(&library, error))?;
+    Ok(folder)
+}
+
+/// Builds the package, installs it, and runs its tests with all that they take where it is there.
+pub(super) fn check_whole(project: &Project) -> Result<(), Stop> {
+    let python = installed(project, "wheel", &packages())?;
+    let sources = package(project, &python, &["sdist"], "gz")?;
+    let mut tests = module(
+        project,
+        &python,
+        &["pytest", "--quiet", "-p", "no:cacheprovider"],
+    );
+    tests
+        .env("RUMBO_COMMAND", project.release_binary()?)
+        .env("RUMBO_SDIST", sources);
+    Ok(run(&mut tests)?)
+}
+
+/// Those of the wheel.
+fn packages() -> Vec<&'static str> {
+    [&PACKAGES[..], &WHEEL_PACKAGES].concat()
 }
 
 /// Installs the package beside Ray, and runs its tests on clusters of two workers, then its figures.
@@ -81,7 +123,7 @@ pub(crate) fn on_ray(project: &Project) -> Result<(), Stop> {
 /// Learns as the examples do, whole, with JAX and with Stable-Baselines3, whose checker looks at the environments; fails
 /// where too few robots arrive.
 pub(crate) fn learning(project: &Project) -> Result<(), Stop> {
-    let jax = installed(project, "wheel", &PACKAGES)?;
+    let jax = installed(project, "wheel", &packages())?;
     example(project, &jax, "ppo.py")?;
     let sb3 = installed(project, "sb3", &SB3_PACKAGES)?;
     tests(project, &sb3, "python/tests/test_sb3.py")?;
@@ -121,7 +163,7 @@ fn installed(project: &Project, name: &str, packages: &[&str]) -> Result<PathBuf
 
 /// Builds the wheel.
 fn wheel(project: &Project) -> Result<PathBuf, Stop> {
-    let python = tools::python_with(project, "wheel", &PACKAGES)?;
+    let python = tools::python_with(project, "wheel", &packages())?;
     // The same interpreter each time, or the crate is built again.
     let interpreter = python.to_string_lossy();
     let build = [

@@ -32,7 +32,6 @@ const ARROWS: [(&str, &[&str]); 25] = [
     ("rumbo-ros", &["rumbo-log"]),
     ("rumbo-lab", &["rumbo-experiment", "rumbo-session"]),
     ("rumbo-browser", &["rumbo-lab", "rumbo-flash"]),
-    ("rumbo-bindgen", &[]),
     ("rumbo-sketch", &[]),
     ("rumbo-station", &["rumbo-session", "rumbo-flash"]),
     ("rumbo-report", &["rumbo-experiment", "rumbo-identify"]),
@@ -59,6 +58,7 @@ const ARROWS: [(&str, &[&str]); 25] = [
         ],
     ),
     ("xtask", &["rumbo-sketch"]),
+    ("rumbo-fuzz-claims", &["rumbo-experiment", "rumbo-session"]),
 ];
 
 /// What tests may use besides, and why.

@@ -1,9 +1,10 @@
 //! `cargo xtask tidy`: the rules that no compiler checks, each with the place and the remedy.
 //!
 //! [`dependencies`] keeps the diagram of ARCHITECTURE.md true, [`circles`] that modules of a crate depend one way,
-//! [`source`] guarantees of the crates' code, [`documents`] links and numbering, [`presence`] required files. Rules are
+//! [`ceilings`] that the house does not grow by itself, [`source`] guarantees of the crates' code, [`documents`] links and numbering, [`presence`] required files. Rules are
 //! functions of a [`Tree`], so that they can be tested on small made-up trees.
 
+pub(crate) mod ceilings;
 mod circles;
 mod dependencies;
 mod documents;
@@ -129,6 +130,7 @@ pub(crate) fn run(project: &Project) -> Result<bool, String> {
     ] {
         findings.extend(rule(&tree));
     }
+    findings.extend(ceilings::check(project, &tree)?);
     findings.sort_by(|a, b| (a.hint, &a.path, a.line).cmp(&(b.hint, &b.path, b.line)));
     for finding in &findings {
         println!("{finding}");

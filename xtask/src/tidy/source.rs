@@ -56,7 +56,7 @@ fn in_source_of(path: &str, names: &[&str]) -> bool {
 }
 
 /// The lines of a Rust file before its tests, without comments, with their number.
-fn code(text: &str) -> impl Iterator<Item = (usize, &str)> {
+pub(super) fn code(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let lines = text
         .lines()
         .enumerate()
@@ -75,9 +75,14 @@ fn lints(path: &str, text: &str) -> Option<Finding> {
     let inherited = lines.find(|line| !line.is_empty()) == Some("workspace = true");
     let remedy = "add `[lints]` with `workspace = true`";
     // The firmware's workspace has a lint table of its own.
-    let own = ["firmware/", "fuzz/", "tools/rapier/"]
-        .iter()
-        .any(|other| path.starts_with(other));
+    let own = [
+        "firmware/",
+        "fuzz/Cargo.toml",
+        "tools/bindgen/",
+        "tools/rapier/",
+    ]
+    .iter()
+    .any(|other| path.starts_with(other));
     (!inherited && !own).then(|| {
         Finding::error(
             path,

@@ -64,7 +64,7 @@ pub(crate) struct ReplayArgs {
 #[command(after_help = "\
 Examples:
   rumbo export out/mode1-7.mcap
-  rumbo export out/mode1-7.mcap --format png --out figures
+  rumbo export out/mode1-7.mcap --format svg --out figures
   rumbo export out/mode8-goals-1.mcap --ros2bag
 
 CSV: one row per telemetry frame, time and units in the names of the columns; empty where a value is not known, inf where a sonar
@@ -93,8 +93,6 @@ pub(crate) enum Format {
     Csv,
     /// Figures as vector graphics
     Svg,
-    /// Figures as an image
-    Png,
 }
 
 /// Options of `rumbo compare`.

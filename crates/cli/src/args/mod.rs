@@ -83,7 +83,7 @@ pub(crate) enum Command {
     Import(ImportArgs),
     /// Show a log in the dashboard: play, pause, step, scrub; or the page of a sweep
     Replay(ReplayArgs),
-    /// Write a log as CSV, SVG or PNG
+    /// Write a log as CSV or SVG
     Export(ExportArgs),
     /// Make a policy of a learned network: integers that the robot evaluates in mode 9
     ExportPolicy(ExportPolicyArgs),

@@ -243,7 +243,7 @@ pub(crate) struct IdentifyArgs {
     /// The result as JSON on stdout
     #[arg(long)]
     pub(crate) json: bool,
-    /// Folder for plots of measured against simulated, SVG and PNG; made if need be
+    /// Folder for plots of measured against simulated, SVG; made if need be
     #[arg(long, value_name = "DIR")]
     pub(crate) plots: Option<PathBuf>,
     #[command(flatten)]

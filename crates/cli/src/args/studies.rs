@@ -20,8 +20,7 @@ Examples:
 An axis is NAME=FROM:TO:COUNT (even steps, both ends included; FROM:TO:COUNT:log for even steps of the logarithm) or
 NAME=VALUE,VALUE; with --random or --sobol, NAME=FROM:TO. Every point is run with the same seeds.
 
-In DIR: index.html (curves, heat maps, parallel coordinates, best and worst points), runs.csv and runs.parquet (a row for each
-run), logs of the best and the worst runs, and runs.jsonl, to which every run is added as it is done: --resume goes on from
+In DIR: index.html (curves, heat maps, parallel coordinates, best and worst points), runs.csv (a row for each run), logs of the best and the worst runs, and runs.jsonl, to which every run is added as it is done: --resume goes on from
 there after Ctrl-C, a full disk or a power cut.
 
 Exit status 0: done; 2: wrong input; 130: Ctrl-C.")]

@@ -7,7 +7,7 @@ use rumbo_session::headless::Run;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
 use rumbo_wire::message::Hello;
-use rumbo_wire::{Decoder, FromRobot, Message, Received, ToRobot};
+use rumbo_wire::{Decoder, FromRobot, Message, Received};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -234,8 +234,6 @@ fn a_log_is_exported_with_units_and_compared_with_another() {
             "csv",
             "--format",
             "svg",
-            "--format",
-            "png",
         ],
         folder.path(),
     );
@@ -259,11 +257,6 @@ fn a_log_is_exported_with_units_and_compared_with_another() {
         std::fs::read_to_string(folder.path().join("x/mode1-1.svg"))
             .unwrap()
             .contains("Distances")
-    );
-    assert!(
-        std::fs::read(folder.path().join("x/mode1-1.png"))
-            .unwrap()
-            .starts_with(b"\x89PNG")
     );
 
     let pair = [
@@ -559,71 +552,4 @@ fn a_simulated_robot_behind_a_pseudo_terminal_is_connected_to_and_recorded_like_
         folder.path(),
     );
     assert_eq!(again.status.code(), Some(2));
-}
-
-/// A log of protocol 2, as the last version that spoke it made it: `rumbo run mode1 --seed 7`.
-const EARLIER: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/tests/data/protocol-2-mode1-7.mcap"
-);
-
-#[test]
-fn a_log_of_the_protocol_before_is_exported_compared_and_run_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let done = rumbo(&["export", EARLIER, "--out", "."], folder.path());
-    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
-    let done = rumbo(&["compare", EARLIER, EARLIER], folder.path());
-    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
-    // The same run, but for the instants at which longer commands arrive: it says what it compares, and the result.
-    let done = rumbo(&["rerun", EARLIER], folder.path());
-    let said = text(&done.stdout);
-    assert!(
-        done.status.code().is_some_and(|status| status < 2),
-        "{}",
-        text(&done.stderr)
-    );
-    assert!(said.contains("protocol 2, now 3"), "{said}");
-    let log = log_file::read(Path::new(EARLIER)).unwrap();
-    assert_eq!(log.hello().map(|hello| hello.protocol), Some(2));
-    // Each frame of it is one of today.
-    for to_robot in [false, true] {
-        let bursts = log.link.iter().filter(|burst| burst.to_robot == to_robot);
-        let mut decoder = Decoder::<160>::default();
-        let mut frames = 0;
-        for byte in bursts.flat_map(|burst| &burst.bytes) {
-            if let Some(Received::Frame(body)) = decoder.push(*byte) {
-                frames += 1;
-                match to_robot {
-                    false => drop(FromRobot::from_body(&body).unwrap()),
-                    true => drop(ToRobot::from_body(&body).unwrap()),
-                }
-            }
-        }
-        assert_eq!(decoder.crc_errors(), 0);
-        assert!(frames > 50, "{frames}");
-    }
-}
-
-#[test]
-fn a_log_of_the_protocol_before_is_shown_with_a_ghost_that_does_as_its_robot_did() {
-    let done = std::process::Command::new(env!("CARGO_BIN_EXE_rumbo"))
-        .args([
-            "replay",
-            EARLIER,
-            "--ghost",
-            "mode1",
-            "--no-browser",
-            "--port",
-            "0",
-        ])
-        .stdout(Stdio::piped())
-        .spawn();
-    let mut replay = done.unwrap();
-    let mut address = String::new();
-    BufReader::new(replay.stdout.take().unwrap())
-        .read_line(&mut address)
-        .unwrap();
-    replay.kill().unwrap();
-    replay.wait().unwrap();
-    assert!(address.starts_with("http://"), "{address}");
 }

@@ -7,7 +7,6 @@
 
 pub mod bounded;
 pub mod commands;
-mod dropped;
 mod error;
 pub mod firmware;
 mod fit;

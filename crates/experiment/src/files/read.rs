@@ -4,7 +4,6 @@
 //! remaining keys. A missing or wrong value is recorded and the loader continues with a placeholder, so that one pass
 //! reports everything that is wrong; [`Source::verdict`] turns the collection into an error.
 
-use super::dropped;
 use super::error::{FileError, Problem};
 use super::near;
 pub(crate) use super::value::{Allowed, Placed};
@@ -354,14 +353,13 @@ impl<'a, 't> Table<'a, 't> {
                 let shown = value
                     .map(|(_, value)| shown(value.get_ref()))
                     .unwrap_or_default();
-                let remedy = match dropped::successor(&self.path_of(key.value)) {
-                    Some(successor) => format!("key of an earlier version; {successor}"),
-                    None => {
-                        let remedy = near::remedy_for_key(key.value, number, &known);
-                        format!("unknown key; {remedy}")
-                    }
-                };
-                self.complain(key.value, key.line, &shown, &remedy);
+                let remedy = near::remedy_for_key(key.value, number, &known);
+                self.complain(
+                    key.value,
+                    key.line,
+                    &shown,
+                    &format!("unknown key; {remedy}"),
+                );
             }
         }
     }

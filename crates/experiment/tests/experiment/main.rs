@@ -8,7 +8,6 @@
 
 mod batch;
 mod closed_loop;
-mod earlier_files;
 mod emulated;
 mod files;
 mod fleet;

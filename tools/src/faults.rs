@@ -1,0 +1,187 @@
+//! Breaks sensors and wires in thousands of drives, and prints contacts and reported faults.
+//!
+//! `cargo xtask campaign --only faults` builds and starts it, natively and on the image. Arguments: `--seeds N` (50),
+//! `--from N` first seed (1), `--instants N` per drive (5), `--image` (the built one, on the emulated Mega), `--list`
+//! (each run that touched something), `--write` (the table of docs/faults.md), and words that the name of a drive or of
+//! a failure must contain. Exit status 1 if a requirement is missed.
+
+use crate::pages;
+use rumbo_experiment::campaign::faults::{
+    Class, DRIVES, Drive, Failure, GENTLE_M_S, INSTANTS, Named, Verdict, drive_all,
+};
+use rumbo_experiment::files::{FileError, Overrides};
+use std::process::ExitCode;
+
+/// The command line.
+struct Args {
+    seeds: u64,
+    from: u64,
+    instants: usize,
+    image: bool,
+    list: bool,
+    write: bool,
+    words: Vec<String>,
+}
+
+fn parse() -> Option<Args> {
+    let mut parsed = Args {
+        seeds: 50,
+        from: 1,
+        instants: INSTANTS,
+        image: false,
+        list: false,
+        write: false,
+        words: Vec::new(),
+    };
+    let mut args = crate::arguments();
+    while let Some(arg) = args.next() {
+        match arg.as_str() {
+            "--seeds" => parsed.seeds = args.next()?.parse().ok()?,
+            "--from" => parsed.from = args.next()?.parse().ok()?,
+            "--instants" => parsed.instants = args.next()?.parse().ok()?,
+            "--image" => parsed.image = true,
+            "--list" => parsed.list = true,
+            "--write" => parsed.write = true,
+            option if option.starts_with("--") => return None,
+            word => parsed.words.push(word.to_owned()),
+        }
+    }
+    Some(parsed)
+}
+
+pub(crate) fn main() -> ExitCode {
+    let Some(args) = parse() else {
+        eprintln!("faults: see the head of tools/src/bin/faults.rs for the arguments");
+        return ExitCode::from(2);
+    };
+    match campaign(&args) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("faults: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn campaign(args: &Args) -> Result<bool, FileError> {
+    let overrides = Overrides {
+        firmware: args.image.then(|| pages::built("firmware/rumbo.elf")),
+        ..Overrides::default()
+    };
+    let keep = |drive: &str, failure: Failure| {
+        let failure = failure.to_string();
+        (args.words.iter()).all(|word| drive.contains(word) || failure.contains(word))
+    };
+    let seeds = args.from..args.from + args.seeds;
+    let drives = drive_all(&overrides, seeds, args.instants, keep)?;
+    let table = table(&drives);
+    println!("{table}");
+    if args.list {
+        for drive in drives.iter().filter(|drive| drive.touch.is_some()) {
+            println!("{}", line(drive));
+        }
+    }
+    let (summary, met) = summary(&drives);
+    println!("{summary}");
+    if args.write {
+        let place = if args.image {
+            "campaign-image"
+        } else {
+            "campaign"
+        };
+        pages::write("docs/faults.md", place, &format!("{table}\n{summary}"))?;
+    }
+    Ok(met)
+}
+
+fn line(drive: &Drive) -> String {
+    let Drive {
+        seed,
+        at_s,
+        failure,
+        class,
+        ..
+    } = drive;
+    let (touch_s, touch_m_s) = drive.touch.unwrap_or_default();
+    let named = drive
+        .named
+        .map_or("nothing named".to_owned(), |(named_s, named)| match named {
+            Named::Fault(fault) => format!("{fault:?} at {named_s:.2} s"),
+            Named::Restart => format!("restart at {named_s:.2} s"),
+        });
+    format!(
+        "{} seed {seed}, {failure} at {at_s} s ({class:?}): touch at {touch_s:.2} s, {touch_m_s:.3} m/s; {named}",
+        DRIVES[drive.drive].0
+    )
+}
+
+/// Rows of failures, columns of drives: runs, those with a contact, and the fastest contact.
+fn table(drives: &[Drive]) -> String {
+    let columns: Vec<usize> = (0..DRIVES.len())
+        .filter(|column| drives.iter().any(|drive| drive.drive == *column))
+        .collect();
+    let mut text = String::from("| what fails |");
+    for column in &columns {
+        text += &format!(" {} |", DRIVES[*column].0);
+    }
+    text += &format!("\n|---|{}\n", "---|".repeat(columns.len()));
+    for class in [Class::Knowable, Class::FreeFloor] {
+        for failure in Failure::all() {
+            let of_row = |drive: &&Drive| drive.failure == failure && drive.class == class;
+            if !drives.iter().any(|drive| of_row(&drive)) {
+                continue;
+            }
+            let free = if class == Class::FreeFloor {
+                ", floor free before"
+            } else {
+                ""
+            };
+            text += &format!("| {failure}{free} |");
+            for column in &columns {
+                let here = drives
+                    .iter()
+                    .filter(of_row)
+                    .filter(|drive| drive.drive == *column);
+                text += &format!(" {} |", cell(&here.collect::<Vec<_>>()));
+            }
+            text += "\n";
+        }
+    }
+    text
+}
+
+fn cell(drives: &[&Drive]) -> String {
+    let touches: Vec<f64> = drives
+        .iter()
+        .filter_map(|drive| Some(drive.touch?.1))
+        .collect();
+    let fastest = touches.iter().copied().fold(0.0, f64::max);
+    match (drives.len(), touches.len()) {
+        (0, _) => String::new(),
+        (all, 0) => format!("0 of {all}"),
+        (all, count) => format!("{count} of {all} ({fastest:.2} m/s)"),
+    }
+}
+
+fn summary(drives: &[Drive]) -> (String, bool) {
+    let verdict = Verdict::of(drives);
+    let Verdict {
+        runs,
+        touches,
+        hard,
+        unnamed,
+    } = verdict;
+    let allowed = verdict.allowed();
+    let met = hard == 0 && unnamed == 0 && touches <= allowed;
+    let last = drives
+        .iter()
+        .map(|drive| drive.seed)
+        .max()
+        .unwrap_or_default();
+    let text = format!(
+        "Seeds up to {last}. Of {runs} runs {touches} touched something (at most {allowed} allowed), {hard} of them\n\
+         faster than {GENTLE_M_S} m/s (none allowed), {unnamed} before the fault was named (none allowed)."
+    );
+    (text, met)
+}
