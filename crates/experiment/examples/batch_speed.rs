@@ -3,7 +3,7 @@
 //! An arena of 10 x 10 m with 20 boxes, three sonars, closed-loop avoidance. First the plant alone, with a few lines for a
 //! program; then the whole control program in the same world, commanded by the caller and by a scenario over its link;
 //! then several robots that share that world.
-//! `batch_speed SECONDS` prints a line for each measurement: what, instructions, threads, value. What one thread does counts
+//! `batch_speed SECONDS` prints a line for each measurement: what, threads, value. What one thread does counts
 //! by the processor's time (Linux), so that other work on the machine disturbs it less; `-wall` is by the clock on the wall.
 
 use rumbo_control::mode::ModeId;
@@ -12,7 +12,6 @@ use rumbo_experiment::batch::{Batch, Driver, Team};
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup, fleet_around};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
-use rumbo_plant::lanes::{LANES, Lanes};
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Event, Mount, Plant, Rig, State};
 use rumbo_plant::sonar::SonarId;
@@ -21,8 +20,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::time::Instant;
 
-/// Robots: eight groups.
-const ROBOTS: usize = 8 * LANES;
+const ROBOTS: usize = 64;
 /// Robots in one world; alone as a team of one.
 const TEAMS: [usize; 3] = [1, 4, 16];
 const TICK_US: u64 = 10_000;
@@ -35,48 +33,31 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => 10,
     };
     let arena = arena()?;
-    for lanes in Lanes::all() {
-        print(
-            "plant",
-            lanes,
-            1,
-            plant_alone(&arena, lanes, seconds)?.thread,
-        );
-    }
+    print("plant", 1, plant_alone(&arena, seconds)?.thread);
     for threads in [1, 2] {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()?;
-        for lanes in Lanes::all() {
-            let (caller, scenario) = pool.install(|| -> Result<_, FileError> {
-                Ok((
-                    commanded(&arena, lanes, seconds)?,
-                    by_scenario(&arena, lanes, seconds)?,
-                ))
-            })?;
-            for (what, speed) in [("caller", caller), ("scenario", scenario)] {
-                if threads == 1 {
-                    print(what, lanes, threads, speed.thread);
-                }
-                print(&format!("{what}-wall"), lanes, threads, speed.wall);
+        let (caller, scenario) = pool.install(|| -> Result<_, FileError> {
+            Ok((commanded(&arena, seconds)?, by_scenario(&arena, seconds)?))
+        })?;
+        for (what, speed) in [("caller", caller), ("scenario", scenario)] {
+            if threads == 1 {
+                print(what, threads, speed.thread);
             }
+            print(&format!("{what}-wall"), threads, speed.wall);
         }
     }
     for robots in TEAMS {
         let speed = together(&arena, robots, seconds)?;
-        print(
-            &format!("together-{robots}"),
-            Lanes::SCALAR,
-            1,
-            speed.thread,
-        );
+        print(&format!("together-{robots}"), 1, speed.thread);
     }
-    print("memory", Lanes::SCALAR, 1, memory(&arena)?);
+    print("memory", 1, memory(&arena)?);
     Ok(())
 }
 
-fn print(what: &str, lanes: Lanes, threads: usize, value: f64) {
-    println!("{what} {} {threads} {value:.0}", lanes.name());
+fn print(what: &str, threads: usize, value: f64) {
+    println!("{what} {threads} {value:.0}");
 }
 
 /// Steps a second: by the time of this thread on a processor, and by the clock on the wall.
@@ -151,7 +132,7 @@ struct Eyes {
 }
 
 /// Steps a second of the plant, each robot with one ping a tick and wheels that turn it away from what is near.
-fn plant_alone(arena: &Setup, lanes: Lanes, seconds: u64) -> Result<Speed, Box<dyn Error>> {
+fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
     let mount = |angle_rad| {
         Some(Mount {
             x_m: 0.1,
@@ -190,46 +171,35 @@ fn plant_alone(arena: &Setup, lanes: Lanes, seconds: u64) -> Result<Speed, Box<d
         .collect();
     let ticks = seconds * 100;
     let start = Start::now();
-    for group in robots.as_chunks_mut::<LANES>().0 {
+    for (plant, state, eyes) in &mut robots {
         for tick in 0..ticks {
-            for (plant, state, eyes) in group.iter_mut() {
-                let [left_m, right_m, front_m] = eyes.range_m;
-                let duties = match left_m.min(right_m).min(front_m) < NEAR_M {
-                    true if left_m > right_m => [Bridge::Backward(0.5), Bridge::Forward(0.6)],
-                    true => [Bridge::Forward(0.6), Bridge::Backward(0.5)],
-                    false => [Bridge::Forward(0.6 + 0.001 * (tick % 7) as f64); 2],
-                };
-                plant.set_bridge(state, Side::Left, duties[0]);
-                plant.set_bridge(state, Side::Right, duties[1]);
-                plant.trigger(state, SonarId::ALL[(tick % 3) as usize]);
-            }
-            let mut eyes = group.each_ref().map(|(_, _, eyes)| *eyes);
-            let mut each = group.each_mut().map(|(plant, state, _)| (&*plant, state));
-            lanes.advance(&mut each, TICK_US, &mut |lane, event| {
-                let eyes = &mut eyes[lane];
-                match event {
-                    Event::EchoRise { sonar, at_us } => eyes.rise_us[sonar.index()] = at_us,
-                    Event::EchoFall { sonar, at_us } => {
-                        let high_us = (at_us - eyes.rise_us[sonar.index()]) as f64;
-                        eyes.range_m[sonar.index()] = high_us * 171.5e-6;
-                    }
-                    _ => {}
+            let [left_m, right_m, front_m] = eyes.range_m;
+            let duties = match left_m.min(right_m).min(front_m) < NEAR_M {
+                true if left_m > right_m => [Bridge::Backward(0.5), Bridge::Forward(0.6)],
+                true => [Bridge::Forward(0.6), Bridge::Backward(0.5)],
+                false => [Bridge::Forward(0.6 + 0.001 * (tick % 7) as f64); 2],
+            };
+            plant.set_bridge(state, Side::Left, duties[0]);
+            plant.set_bridge(state, Side::Right, duties[1]);
+            plant.trigger(state, SonarId::ALL[(tick % 3) as usize]);
+            plant.advance(state, TICK_US, &mut |event| match event {
+                Event::EchoRise { sonar, at_us } => eyes.rise_us[sonar.index()] = at_us,
+                Event::EchoFall { sonar, at_us } => {
+                    let high_us = (at_us - eyes.rise_us[sonar.index()]) as f64;
+                    eyes.range_m[sonar.index()] = high_us * 171.5e-6;
                 }
+                _ => {}
             });
-            for ((_, _, old), new) in group.iter_mut().zip(eyes) {
-                *old = new;
-            }
         }
     }
     Ok(start.speed(ticks))
 }
 
 /// Ticks a second of the whole control program, wheel speeds commanded by the caller ten times a second.
-fn commanded(arena: &Setup, lanes: Lanes, seconds: u64) -> Result<Speed, FileError> {
+fn commanded(arena: &Setup, seconds: u64) -> Result<Speed, FileError> {
     let mut arena = arena.clone();
     arena.scenario.mode = ModeId::WheelSpeed;
     let mut batch = Batch::new(arena, Driver::Caller, &seeds(ROBOTS))?;
-    batch.use_lanes(lanes);
     batch.for_each(|_, robot| {
         // A robot at its start obeys.
         let _ = robot.command(&Command::Arm);
@@ -253,9 +223,8 @@ fn commanded(arena: &Setup, lanes: Lanes, seconds: u64) -> Result<Speed, FileErr
 }
 
 /// The same of mode 8 by the scenario's commands over the link.
-fn by_scenario(arena: &Setup, lanes: Lanes, seconds: u64) -> Result<Speed, FileError> {
+fn by_scenario(arena: &Setup, seconds: u64) -> Result<Speed, FileError> {
     let mut batch = Batch::new(arena.clone(), Driver::Scenario, &seeds(ROBOTS))?;
-    batch.use_lanes(lanes);
     let start = Start::now();
     batch.advance(seconds as u32 * 100);
     Ok(start.speed(seconds * 100))

@@ -15,7 +15,6 @@ use crate::operator::Operator;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_emulator::observe::waveform::Waveform;
 #[cfg(feature = "host")]
-use rumbo_plant::lanes::{LANES, Lanes};
 use rumbo_sim::Sim;
 use rumbo_sim::fleet::Fleet;
 use rumbo_sim::mega::Mega;
@@ -167,29 +166,6 @@ impl<'a> Run<'a> {
         self.fleet.advance(self.sample_us);
         self.draw_levels();
         self.sample();
-    }
-
-    /// The same of several at once, none of which is over. As many single robots as there are lanes share the work.
-    #[cfg(feature = "host")]
-    fn advance_together(lanes: Lanes, runs: &mut [&mut Self]) {
-        for run in runs.iter_mut() {
-            run.operate();
-        }
-        let for_us = runs[0].sample_us - runs[0].fleet.now_us();
-        let sims = runs.iter_mut().map(|run| {
-            let alike = run.sample_us - run.fleet.now_us() == for_us;
-            run.fleet.only_mut().filter(|_| alike)
-        });
-        let sims = sims.collect::<Option<Vec<&mut Sim>>>();
-        match sims.map(<[&mut Sim; LANES]>::try_from) {
-            Some(Ok(sims)) => Sim::advance_together(lanes, sims, for_us),
-            _ => runs
-                .iter_mut()
-                .for_each(|run| run.fleet.advance(run.sample_us)),
-        }
-        for run in runs {
-            run.sample();
-        }
     }
 
     /// Before a sample: what the operators send.
@@ -372,28 +348,6 @@ pub fn run_by<E: From<FileError>>(
     let mut run = Run::new(setup, robots.iter().map(|robot| &**robot), seed)?;
     go_on(&mut run)?;
     Ok(run.judge())
-}
-
-/// Runs some, each as [`run`] does.
-#[cfg(feature = "host")]
-fn run_together(jobs: &[(Cow<'_, Setup>, u64)]) -> Vec<Result<RunResult, FileError>> {
-    let lanes = Lanes::widest();
-    let together = || -> Result<_, FileError> {
-        let prepared = jobs.iter().map(|(setup, seed)| prepare_all(setup, *seed));
-        let prepared: Vec<_> = prepared.collect::<Result<_, _>>()?;
-        let runs = std::iter::zip(jobs, &prepared)
-            .map(|((setup, seed), robots)| Run::new(setup, robots.iter().map(|r| &**r), *seed));
-        let mut runs: Vec<_> = runs.collect::<Result<_, _>>()?;
-        loop {
-            let going = runs.iter_mut().filter(|run| !run.is_over());
-            match &mut going.collect::<Vec<_>>()[..] {
-                [] => return Ok(runs.into_iter().map(|run| Ok(run.judge())).collect()),
-                going => Run::advance_together(lanes, going),
-            }
-        }
-    };
-    // One by one, an error is that of its own job.
-    together().unwrap_or_else(|_| jobs.iter().map(|(setup, seed)| run(setup, *seed)).collect())
 }
 
 /// The robots of a setup, each prepared for the seed.

@@ -1,19 +1,18 @@
 //! How fast the plant is: `cargo run --release -p rumbo-plant --example speed`.
 //!
-//! Eight robots drive about a room with 20 boxes, first without pings, then with their three sonars at 50 pings a second;
-//! one by one, and in lanes.
+//! Eight robots drive about a room with 20 boxes, first without pings, then with their three sonars at 50 pings a second.
 
 use std::hint::black_box;
 use std::time::Instant;
 
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
-use rumbo_plant::lanes::{LANES, Lanes};
 use rumbo_plant::plant::{Mount, Plant, Rig, Setup};
 use rumbo_plant::sonar::SonarId;
 use rumbo_plant::world::{Block, ShapeError, Wall, World};
 
 const RUN_S: u64 = 400;
+const ROBOTS: usize = 8;
 
 fn main() -> Result<(), ShapeError> {
     let mount = |x_m, y_m, angle_rad| {
@@ -48,7 +47,7 @@ fn main() -> Result<(), ShapeError> {
         })
         .collect();
     let world = World::new(&walls, &blocks)?;
-    let plants: [Plant; LANES] = std::array::from_fn(|seed| {
+    let plants: [Plant; ROBOTS] = std::array::from_fn(|seed| {
         Plant::new(Setup {
             rig,
             world: world.clone(),
@@ -57,14 +56,12 @@ fn main() -> Result<(), ShapeError> {
         })
     });
     for ping in [false, true] {
-        for lanes in Lanes::all() {
-            measure(&plants, lanes, ping);
-        }
+        measure(&plants, ping);
     }
     Ok(())
 }
 
-fn measure(plants: &[Plant; LANES], lanes: Lanes, ping: bool) {
+fn measure(plants: &[Plant; ROBOTS], ping: bool) {
     let mut robots = plants
         .each_ref()
         .map(|plant| (plant, plant.start(Pose::default())));
@@ -80,10 +77,11 @@ fn measure(plants: &[Plant; LANES], lanes: Lanes, ping: bool) {
                 plant.trigger(state, SonarId::ALL[(tick / 2 % 3) as usize]);
             }
         }
-        let mut group = robots.each_mut().map(|(plant, state)| (*plant, state));
-        lanes.advance(&mut group, 10_000, &mut |_, event| {
-            events += u64::from(event.at_us() > 0);
-        });
+        for (plant, state) in &mut robots {
+            plant.advance(state, 10_000, &mut |event| {
+                events += u64::from(event.at_us() > 0);
+            });
+        }
     }
     let took_s = started.elapsed().as_secs_f64();
     let contacts = robots
@@ -91,10 +89,9 @@ fn measure(plants: &[Plant; LANES], lanes: Lanes, ping: bool) {
         .map(|(plant, state)| plant.truth(state).contacts);
     let contacts: u32 = black_box(contacts).iter().sum();
     println!(
-        "{:<12} {:<8} {:6.1} ns per 1 ms step of a robot, {:6.0} x real time ({events} events, {contacts} contacts)",
+        "{:<12} {:6.1} ns per 1 ms step of a robot, {:6.0} x real time ({events} events, {contacts} contacts)",
         if ping { "50 pings/s:" } else { "no ping:" },
-        lanes.name(),
-        took_s / (RUN_S * 1000 * LANES as u64) as f64 * 1e9,
-        (RUN_S * LANES as u64) as f64 / took_s,
+        took_s / (RUN_S * 1000 * ROBOTS as u64) as f64 * 1e9,
+        (RUN_S * ROBOTS as u64) as f64 / took_s,
     );
 }

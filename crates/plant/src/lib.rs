@@ -20,7 +20,6 @@ pub mod draw;
 pub mod drivetrain;
 pub mod encoder;
 pub mod event;
-pub mod lanes;
 pub mod link;
 pub mod moving;
 pub mod noise;

@@ -9,13 +9,11 @@
 //! What stands in them is wrong or right for every run alike: the tests find a mistake before a reader does.
 
 use crate::text::Language;
-use rust_embed::RustEmbed;
+use include_dir::{Dir, include_dir};
 use std::borrow::Cow;
 use std::fmt;
 
-#[derive(RustEmbed)]
-#[folder = "content/"]
-struct Files;
+static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/content");
 
 /// What is wrong in a file of the report's content: which file, which line, what, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -63,11 +61,9 @@ impl Source {
             line: 1,
             what: what.into(),
         };
-        let bytes = Files::get(path).ok_or_else(|| wrong("there is no such file"))?;
-        let text = match bytes.data {
-            Cow::Borrowed(bytes) => std::str::from_utf8(bytes).map(Cow::Borrowed).ok(),
-            Cow::Owned(bytes) => String::from_utf8(bytes).map(Cow::Owned).ok(),
-        };
+        let found = FILES.get_file(path);
+        let found = found.ok_or_else(|| wrong("there is no such file"))?;
+        let text = found.contents_utf8().map(Cow::Borrowed);
         let text = text.ok_or_else(|| wrong("is not UTF-8; save it as UTF-8"))?;
         Ok(Self { file, text })
     }

@@ -2,20 +2,19 @@
 
 use crate::board::Board;
 use crate::error::SketchError;
+use crate::libraries::files_below;
 use crate::source::Source;
-use rust_embed::RustEmbed;
+use include_dir::{Dir, include_dir};
 use std::collections::BTreeSet;
 
-#[derive(RustEmbed)]
-#[folder = "../../examples/arduino"]
-struct Examples;
+static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../examples/arduino");
 
 /// Names of the examples, in order, with the first line of each.
 #[must_use]
 pub fn examples() -> Vec<(String, String)> {
     let first_line = |name: &str| {
-        let text = Examples::get(&format!("{name}/{name}.ino"))?;
-        let text = String::from_utf8_lossy(&text.data).into_owned();
+        let text = EXAMPLES.get_file(format!("{name}/{name}.ino"))?;
+        let text = String::from_utf8_lossy(text.contents()).into_owned();
         Some(
             text.lines()
                 .next()?
@@ -23,9 +22,8 @@ pub fn examples() -> Vec<(String, String)> {
                 .to_owned(),
         )
     };
-    let names: BTreeSet<String> = Examples::iter()
-        .filter_map(|file| Some(file.split_once('/')?.0.to_owned()))
-        .collect();
+    let folders = EXAMPLES.dirs().filter_map(|folder| folder.path().to_str());
+    let names: BTreeSet<String> = folders.map(str::to_owned).collect();
     let named = names.into_iter();
     named
         .filter_map(|name| Some((name.clone(), first_line(&name)?)))
@@ -42,17 +40,11 @@ fn unknown(name: &str) -> SketchError {
 /// # Errors
 /// There is none.
 pub fn example(name: &str) -> Result<Source, SketchError> {
-    let prefix = format!("{name}/");
-    let files = Examples::iter().filter_map(|file| {
-        let inner = file.strip_prefix(&prefix)?.to_owned();
-        if inner.ends_with(".md") {
-            return None;
-        }
-        Some((inner, Examples::get(&file)?.data.into_owned()))
-    });
+    let files = EXAMPLES.get_dir(name).map(files_below).unwrap_or_default();
+    let files = files.into_iter().filter(|(file, _)| !file.ends_with(".md"));
     let source = Source {
         name: name.to_owned(),
-        files: files.collect(),
+        files: files.map(|(file, bytes)| (file, bytes.to_vec())).collect(),
     };
     match source.files.is_empty() {
         true => Err(unknown(name)),
@@ -70,6 +62,6 @@ pub fn starter(board: Board) -> Result<String, SketchError> {
         _ => "wall",
     };
     let file = format!("{name}/{name}.ino");
-    let embedded = Examples::get(&file).ok_or_else(|| unknown(name))?;
-    Ok(String::from_utf8_lossy(&embedded.data).into_owned())
+    let embedded = EXAMPLES.get_file(&file).ok_or_else(|| unknown(name))?;
+    Ok(String::from_utf8_lossy(embedded.contents()).into_owned())
 }

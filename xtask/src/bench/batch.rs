@@ -1,5 +1,4 @@
-//! Many robots on the common task: the plant alone and with the whole control program, in lanes and one by one, beside
-//! rapier2d, and several in one world, by `crates/experiment/examples/batch_speed.rs` and `tools/rapier/`.
+//! Many robots on the common task: the plant alone and with the whole control program, beside rapier2d, and several in one world, by `crates/experiment/examples/batch_speed.rs` and `tools/rapier/`.
 //!
 //! The programs run by turns, one thread counts by its time on a processor, and each figure is the median of its rounds:
 //! ratios hold on a machine with other work. What two threads gain is by the clock on the wall, and needs an idle one.
@@ -16,8 +15,8 @@ const SECONDS: &str = "10";
 /// Robots of rapier2d, and their steps.
 const RAPIER: [&str; 2] = ["64", "500"];
 
-/// What was measured (what, instructions, threads), each round.
-type Rounds = BTreeMap<(String, String, u32), Vec<f64>>;
+/// What was measured, on how many threads, each round.
+type Rounds = BTreeMap<(String, u32), Vec<f64>>;
 
 pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
     let target = project.target.join("rapier");
@@ -40,54 +39,45 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
     let mut rounds = Rounds::new();
     for _ in 0..ROUNDS {
         let steps = output(project.command(&rapier).args(RAPIER))?;
-        read(&format!("rapier2d - 1 {steps}"), &mut rounds)?;
+        read(&format!("rapier2d 1 {steps}"), &mut rounds)?;
         read(&output(project.command(&ours).arg(SECONDS))?, &mut rounds)?;
     }
     figures(rounds)
 }
 
-/// Lines of what, instructions, threads, value.
+/// Lines of what, threads, value.
 fn read(text: &str, rounds: &mut Rounds) -> Result<(), String> {
     for line in text.lines() {
         let fields: Vec<&str> = line.split_whitespace().collect();
-        let [what, lanes, threads, value] = fields[..] else {
+        let [what, threads, value] = fields[..] else {
             return Err(format!("cannot read `{line}`"));
         };
         let (Ok(threads), Ok(value)) = (threads.parse(), value.parse()) else {
             return Err(format!("cannot read the numbers of `{line}`"));
         };
-        let key = (what.to_owned(), lanes.to_owned(), threads);
+        let key = (what.to_owned(), threads);
         rounds.entry(key).or_default().push(value);
     }
     Ok(())
 }
 
 fn figures(mut rounds: Rounds) -> Result<Vec<Figure>, String> {
-    let lanes: Vec<String> = rounds
-        .keys()
-        .filter(|(what, ..)| what == "plant")
-        .map(|(_, lanes, _)| lanes.clone())
-        .collect();
-    let mut median = |what: &str, lanes: &str, threads| {
-        let key = (what.to_owned(), lanes.to_owned(), threads);
+    let mut median = |what: &str, threads| {
+        let key = (what.to_owned(), threads);
         let values = rounds
             .get_mut(&key)
-            .ok_or_else(|| format!("no `{what} {lanes} {threads}`"))?;
+            .ok_or_else(|| format!("no `{what} {threads}`"))?;
         values.sort_by(f64::total_cmp);
         Ok::<f64, String>(values[values.len() / 2])
     };
-    let rapier = median("rapier2d", "-", 1)?;
+    let rapier = median("rapier2d", 1)?;
     let mut figures = vec![Figure::new(
         "rapier2d, no noise: steps of 10 ms a second, one thread",
         format!("{:.2} M", rapier / 1e6),
         "",
     )];
     for (what, name, budget) in [
-        (
-            "plant",
-            "plant, all noise, ten steps of 1 ms",
-            "1.5 M AVX2, 2 M AVX-512",
-        ),
+        ("plant", "plant, all noise, ten steps of 1 ms", "0.78 M"),
         (
             "caller",
             "whole control program, commanded by the caller",
@@ -99,44 +89,35 @@ fn figures(mut rounds: Rounds) -> Result<Vec<Figure>, String> {
             "",
         ),
     ] {
-        for lanes in &lanes {
-            let (here, scalar) = (median(what, lanes, 1)?, median(what, "scalar", 1)?);
-            figures.push(Figure::new(
-                format!("{name}: {lanes}"),
-                format!(
-                    "{:.2} M, {:.2} x scalar, {:.1} x rapier2d",
-                    here / 1e6,
-                    here / scalar,
-                    here / rapier
-                ),
-                budget,
-            ));
-        }
-    }
-    for lanes in &lanes {
-        let ns = |per_second: f64| 1e9 / per_second;
-        let plant = ns(median("plant", lanes, 1)?);
-        let caller = ns(median("caller", lanes, 1)?);
-        let scenario = ns(median("scenario", lanes, 1)?);
+        let here = median(what, 1)?;
         figures.push(Figure::new(
-            format!("where a tick's time goes: {lanes}"),
-            format!(
-                "plant {plant:.0} ns; robot, observations {:.0} ns; link, operator {:.0} ns",
-                caller - plant,
-                scenario - caller
-            ),
-            "",
-        ));
-        let scaling = median("caller-wall", lanes, 2)? / median("caller-wall", lanes, 1)? / 2.0;
-        figures.push(Figure::new(
-            format!("from one thread to two: {lanes}"),
-            format!("{:.0} %", 100.0 * scaling),
-            "95 %",
+            name,
+            format!("{:.2} M, {:.1} x rapier2d", here / 1e6, here / rapier),
+            budget,
         ));
     }
-    let alone = median("together-1", "scalar", 1)?;
+    let ns = |per_second: f64| 1e9 / per_second;
+    let plant = ns(median("plant", 1)?);
+    let caller = ns(median("caller", 1)?);
+    let scenario = ns(median("scenario", 1)?);
+    figures.push(Figure::new(
+        "where a tick's time goes",
+        format!(
+            "plant {plant:.0} ns; robot, observations {:.0} ns; link, operator {:.0} ns",
+            caller - plant,
+            scenario - caller
+        ),
+        "",
+    ));
+    let scaling = median("caller-wall", 2)? / median("caller-wall", 1)? / 2.0;
+    figures.push(Figure::new(
+        "from one thread to two",
+        format!("{:.0} %", 100.0 * scaling),
+        "95 %",
+    ));
+    let alone = median("together-1", 1)?;
     for robots in [4, 16] {
-        let each = median(&format!("together-{robots}"), "scalar", 1)?;
+        let each = median(&format!("together-{robots}"), 1)?;
         figures.push(Figure::new(
             format!(
                 "{robots} robots in one world, the whole control program of each by its scenario"
@@ -149,7 +130,7 @@ fn figures(mut rounds: Rounds) -> Result<Vec<Figure>, String> {
             "",
         ));
     }
-    let bytes = median("memory", "scalar", 1)?;
+    let bytes = median("memory", 1)?;
     figures.push(Figure::new(
         "memory of a robot in a batch",
         format!("{:.1} KB", bytes / 1024.0),
@@ -166,31 +147,25 @@ mod tests {
     fn medians_of_the_rounds_become_ratios() {
         let mut rounds = Rounds::new();
         for [slow, fast] in [[1, 2], [3, 9], [2, 5]] {
-            let mut text = format!("rapier2d - 1 {slow}00000\nmemory scalar 1 3072\n");
+            let mut text = format!("rapier2d 1 {slow}00000\nmemory 1 3072\n");
             for (robots, speed) in [(1, 8), (4, 4), (16, 2)] {
-                text += &format!("together-{robots} scalar 1 {speed}00000\n");
+                text += &format!("together-{robots} 1 {speed}00000\n");
             }
             for what in ["plant", "caller", "scenario", "caller-wall"] {
                 for threads in [1, 2] {
-                    text += &format!("{what} scalar {threads} {slow}00000\n");
-                    text += &format!("{what} AVX2 {threads} {fast}00000\n");
+                    text += &format!("{what} {threads} {fast}00000\n");
                 }
             }
             read(&text, &mut rounds).unwrap();
         }
         let figures = figures(rounds).unwrap();
-        let plant = figures
-            .iter()
-            .find(|figure| figure.what.ends_with("1 ms: AVX2"));
-        assert_eq!(
-            plant.unwrap().measured,
-            "0.50 M, 2.50 x scalar, 2.5 x rapier2d"
-        );
+        let plant = figures.iter().find(|figure| figure.what.ends_with("1 ms"));
+        assert_eq!(plant.unwrap().measured, "0.50 M, 2.5 x rapier2d");
         let fleet = figures.iter().find(|figure| figure.what.starts_with("4 "));
         assert_eq!(
             fleet.unwrap().measured,
             "1000 x real time; a robot takes 2.00 x the time of one alone"
         );
-        assert!(read("plant scalar 1", &mut Rounds::new()).is_err());
+        assert!(read("plant 1", &mut Rounds::new()).is_err());
     }
 }

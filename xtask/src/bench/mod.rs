@@ -39,7 +39,7 @@ struct Part {
 const PARTS: [Part; 8] = [
     Part {
         name: "batch",
-        what: "robots stepped together, in lanes and one by one, beside rapier2d: some minutes",
+        what: "robots stepped together, beside rapier2d: some minutes",
         measure: batch::measure,
     },
     Part {

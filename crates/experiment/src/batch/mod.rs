@@ -3,8 +3,7 @@
 //! A [`Robot`] is a run that the caller steps: by its scenario's commands it is bit for bit that of [`crate::run::run`],
 //! without its records. Taken by the caller it has no link: commands reach the control core at once. A [`Batch`] steps
 //! its robots on the threads of the current rayon pool, a single one on the caller's; robots share nothing, so the number
-//! of threads does not matter. Eight and more go in groups, their plants in the lanes of vector registers, with the same
-//! bits as one by one.
+//! of threads does not matter.
 //!
 //! A [`Team`] is the robots of a scenario with several, in one world: they go on together.
 
@@ -20,7 +19,6 @@ pub use team::Team;
 use crate::files::{FileError, Setup};
 #[cfg(feature = "host")]
 use rayon::prelude::*;
-use rumbo_plant::lanes::{LANES, Lanes};
 use rumbo_plant::world::World;
 use std::sync::{Arc, OnceLock};
 
@@ -29,7 +27,6 @@ use std::sync::{Arc, OnceLock};
 pub struct Batch {
     setup: Arc<Setup>,
     driver: Driver,
-    lanes: Lanes,
     /// The world of all robots that are in the same.
     world: OnceLock<Arc<World>>,
     robots: Vec<Robot>,
@@ -47,15 +44,9 @@ impl Batch {
         Ok(Self {
             setup,
             driver,
-            lanes: Lanes::widest(),
             world,
             robots,
         })
-    }
-
-    /// Steps groups of robots with these instructions from now on, in place of the widest that the processor has.
-    pub fn use_lanes(&mut self, lanes: Lanes) {
-        self.lanes = lanes;
     }
 
     /// The robots, in the order of their seeds.
@@ -86,11 +77,7 @@ impl Batch {
 
     /// Advances every robot by this many control ticks of 10 ms.
     pub fn advance(&mut self, ticks: u32) {
-        let (lanes, size) = (self.lanes, group_size(self.robots.len()));
-        let mut groups: Vec<_> = self.robots.chunks_mut(size).collect();
-        for_all(&mut groups, |group| {
-            robot::advance(lanes, group.iter_mut(), ticks);
-        });
+        for_all(&mut self.robots, |robot| robot.advance(ticks));
     }
 
     /// Has each robot, by its number, do something.
@@ -108,46 +95,18 @@ impl Batch {
         ticks: u32,
         act: impl Fn(usize, &mut Robot) -> bool + Sync,
     ) {
-        let (lanes, size) = (self.lanes, group_size(self.robots.len()));
         let rows = known
-            .chunks_mut(size * OBSERVED.len())
-            .zip(truth.chunks_mut(size * TRUE.len()));
-        let mut work: Vec<_> = self.robots.chunks_mut(size).zip(rows).enumerate().collect();
-        for_all(&mut work, |(group, (robots, (known, truth)))| {
-            let mut going: Vec<&mut Robot> = Vec::with_capacity(size);
-            for (index, robot) in robots.iter_mut().enumerate() {
-                if act(*group * size + index, robot) {
-                    going.push(robot);
-                }
+            .chunks_exact_mut(OBSERVED.len())
+            .zip(truth.chunks_exact_mut(TRUE.len()));
+        let mut work: Vec<_> = self.robots.iter_mut().zip(rows).enumerate().collect();
+        for_all(&mut work, |(index, (robot, (known, truth)))| {
+            if act(*index, robot) {
+                robot.advance(ticks);
             }
-            robot::advance(lanes, going.into_iter(), ticks);
-            let rows = known
-                .chunks_exact_mut(OBSERVED.len())
-                .zip(truth.chunks_exact_mut(TRUE.len()));
-            for (robot, (known, truth)) in robots.iter().zip(rows) {
-                known.copy_from_slice(&robot.observed());
-                truth.copy_from_slice(&robot.true_values());
-            }
+            known.copy_from_slice(&robot.observed());
+            truth.copy_from_slice(&robot.true_values());
         });
     }
-}
-
-/// Robots that one thread steps together: a group of lanes, unless that left threads without work.
-fn group_size(robots: usize) -> usize {
-    match robots >= LANES * threads() {
-        true => LANES,
-        false => 1,
-    }
-}
-
-#[cfg(feature = "host")]
-fn threads() -> usize {
-    rayon::current_num_threads()
-}
-
-#[cfg(not(feature = "host"))]
-fn threads() -> usize {
-    1
 }
 
 fn make(

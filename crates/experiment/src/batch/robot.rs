@@ -4,7 +4,6 @@ use super::pilot::{Driver, Pilot, TRUE};
 use crate::files::{FileError, Setup};
 use rumbo_control::policy::Observation;
 use rumbo_control::{ServoAngle, TICK_US};
-use rumbo_plant::lanes::{LANES, Lanes};
 use rumbo_plant::world::World;
 use rumbo_sim::Sim;
 use rumbo_sim::trace::Trace;
@@ -149,33 +148,5 @@ impl Robot {
     /// Ground truth now: see [`TRUE`].
     pub fn true_values(&self) -> [f64; TRUE.len()] {
         self.pilot.true_values(&self.sim)
-    }
-}
-
-/// Advances robots of one thread, in lanes where there are as many.
-pub(super) fn advance<'a>(lanes: Lanes, robots: impl Iterator<Item = &'a mut Robot>, ticks: u32) {
-    let mut robots: Vec<_> = robots.collect();
-    for group in robots.chunks_mut(LANES) {
-        match group {
-            [a, b, c, d, e, f, g, h] => together(lanes, [a, b, c, d, e, f, g, h], ticks),
-            few => few.iter_mut().for_each(|robot| robot.advance(ticks)),
-        }
-    }
-}
-
-/// As [`Robot::advance`], which a program that can end takes alone.
-fn together(lanes: Lanes, mut robots: [&mut Robot; LANES], ticks: u32) {
-    if robots.iter().any(|robot| robot.sim.mega().is_some()) {
-        return robots.into_iter().for_each(|robot| robot.advance(ticks));
-    }
-    let (strides, stride) = match robots.iter().any(|robot| robot.needs_every_tick()) {
-        true => (ticks, 1),
-        false => (1, ticks),
-    };
-    for _ in 0..strides {
-        robots.iter_mut().for_each(|robot| robot.operate());
-        let sims = robots.each_mut().map(|robot| &mut robot.sim);
-        Sim::advance_together(lanes, sims, u64::from(stride) * u64::from(TICK_US));
-        robots.iter_mut().for_each(|robot| robot.sample());
     }
 }

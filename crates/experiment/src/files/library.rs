@@ -4,25 +4,14 @@ use super::bounded;
 use super::error::FileError;
 use super::near::near_or_all;
 use super::{PolicyFile, RobotFile, ScenarioFile, WorldFile};
-use rust_embed::RustEmbed;
+use include_dir::{Dir, include_dir};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-#[derive(RustEmbed)]
-#[folder = "../../robots"]
-struct Robots;
-
-#[derive(RustEmbed)]
-#[folder = "../../worlds"]
-struct Worlds;
-
-#[derive(RustEmbed)]
-#[folder = "../../scenarios"]
-struct Scenarios;
-
-#[derive(RustEmbed)]
-#[folder = "../../policies"]
-struct Policies;
+static ROBOTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../robots");
+static WORLDS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../worlds");
+static SCENARIOS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios");
+static POLICIES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../policies");
 
 /// The kinds of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -59,31 +48,29 @@ impl Kind {
         }
     }
 
+    /// The built-in files.
+    fn files(self) -> &'static Dir<'static> {
+        match self {
+            Self::Robot => &ROBOTS,
+            Self::World => &WORLDS,
+            Self::Scenario => &SCENARIOS,
+            Self::Policy => &POLICIES,
+        }
+    }
+
     /// The names of the built-in files, in order.
     fn names(self) -> Vec<String> {
-        let files: Vec<_> = match self {
-            Self::Robot => Robots::iter().collect(),
-            Self::World => Worlds::iter().collect(),
-            Self::Scenario => Scenarios::iter().collect(),
-            Self::Policy => Policies::iter().collect(),
-        };
-        let mut names: Vec<String> = files
-            .iter()
-            .filter_map(|file| Some(file.strip_suffix(".toml")?.to_owned()))
+        let paths = self.files().files().filter_map(|file| file.path().to_str());
+        let mut names: Vec<String> = paths
+            .filter_map(|path| Some(path.strip_suffix(".toml")?.to_owned()))
             .collect();
         names.sort();
         names
     }
 
     fn built_in(self, name: &str) -> Option<String> {
-        let file = format!("{name}.toml");
-        let embedded = match self {
-            Self::Robot => Robots::get(&file),
-            Self::World => Worlds::get(&file),
-            Self::Scenario => Scenarios::get(&file),
-            Self::Policy => Policies::get(&file),
-        }?;
-        String::from_utf8(embedded.data.into_owned()).ok()
+        let file = self.files().get_file(format!("{name}.toml"))?;
+        Some(file.contents_utf8()?.to_owned())
     }
 }
 

@@ -1,8 +1,7 @@
 //! Many runs, on all cores.
 
-use super::{RunResult, run, run_together};
+use super::{RunResult, run};
 use crate::files::{FileError, Setup};
-use rumbo_plant::lanes::LANES;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -44,7 +43,7 @@ pub fn run_all_on<E: From<FileError>>(
 
 /// Runs `count` jobs, each a setup and a seed, on this many threads of its own, at least one. `of` takes on these threads
 /// what is wanted of each result; `handle` gets that in the order of the jobs, each as soon as it and all before it are
-/// there. Where there are enough for all threads, single robots go in groups, in the lanes of vector registers.
+/// there.
 ///
 /// # Errors
 /// The first error, of a setup or of `handle`; no further run is begun.
@@ -55,40 +54,11 @@ pub fn run_each<'a, T: Send, E: From<FileError>>(
     of: impl Fn(usize, RunResult) -> T + Sync,
     mut handle: impl FnMut(usize, T) -> Result<(), E>,
 ) -> Result<(), E> {
-    let one = |index: usize| {
+    let work = |index: usize| {
         let (setup, seed) = job(index)?;
-        run(&setup, seed)
+        run(&setup, seed).map(|result| of(index, result))
     };
-    // Of few groups one thread would have one more than another for too long; an image does not share its steps.
-    let many = count >= 4 * LANES * threads.max(1);
-    let size = match many && job(0).is_ok_and(|(setup, _)| setup.firmware.is_none()) {
-        true => LANES,
-        false => 1,
-    };
-    let work = |group: usize| {
-        let indices = (group * size..count).take(size);
-        let jobs = || {
-            indices
-                .clone()
-                .map(&job)
-                .collect::<Result<Vec<_>, _>>()
-                .ok()
-        };
-        let results = match (size > 1).then(jobs).flatten() {
-            Some(jobs) => run_together(&jobs),
-            None => indices.clone().map(one).collect(),
-        };
-        let results = indices.zip(results);
-        let results = results.map(|(index, result)| result.map(|result| of(index, result)));
-        results.collect::<Vec<Result<T, FileError>>>()
-    };
-    let (groups, waiting) = (count.div_ceil(size), WAITING / size);
-    in_order_holding(waiting, threads, groups, work, |group, results| {
-        let results = (group * size..).zip(results);
-        results
-            .into_iter()
-            .try_for_each(|(index, result)| handle(index, result?))
-    })
+    in_order(threads, count, work, |index, result| handle(index, result?))
 }
 
 /// Does `work` for 0, 1 ... `count` - 1 on this many threads of its own, at least one, and hands the results to `handle`
@@ -100,21 +70,10 @@ pub fn in_order<T: Send, E>(
     threads: usize,
     count: usize,
     work: impl Fn(usize) -> T + Sync,
-    handle: impl FnMut(usize, T) -> Result<(), E>,
-) -> Result<(), E> {
-    in_order_holding(WAITING, threads, count, work, handle)
-}
-
-/// The same with so much room for results that wait.
-fn in_order_holding<T: Send, E>(
-    waiting: usize,
-    threads: usize,
-    count: usize,
-    work: impl Fn(usize) -> T + Sync,
     mut handle: impl FnMut(usize, T) -> Result<(), E>,
 ) -> Result<(), E> {
     let next = AtomicUsize::new(0);
-    let (done, results) = sync_channel(waiting);
+    let (done, results) = sync_channel(WAITING);
     // Separate threads: the caller may be one of the pool's, perhaps its only one, and waits for the results.
     std::thread::scope(|scope| {
         for _ in 0..threads.max(1).min(count) {

@@ -8,7 +8,6 @@ use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Batch, Driver, OBSERVED, Robot, TRUE};
 use rumbo_experiment::files::{FileError, Kind, Library, NativeProgram, Overrides, Setup};
 use rumbo_experiment::run;
-use rumbo_plant::lanes::Lanes;
 use rumbo_sim::trace::Sample;
 use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, Refusal, ToRobot};
 
@@ -60,31 +59,6 @@ fn of_robot(robot: &Robot) -> [u64; 8] {
 }
 
 #[test]
-fn runs_that_share_lanes_are_those_of_one_by_one() {
-    let jobs = |setups: &[Setup]| -> Vec<(Setup, u64)> {
-        let setups = setups.iter().cycle().take(35);
-        setups.cloned().zip(1..).collect()
-    };
-    // The last three of 35 fill no group. Robots of other worlds, and runs of other lengths, do not disturb.
-    for jobs in [
-        jobs(&[setup("mode1")]),
-        jobs(&[setup("mode3"), setup("mode5")]),
-    ] {
-        let jobs: Vec<_> = jobs.iter().map(|(setup, seed)| (setup, *seed)).collect();
-        let mut results = Vec::new();
-        run::run_all_on::<FileError>(1, &jobs, |_, result| {
-            results.push(result);
-            Ok(())
-        })
-        .unwrap();
-        let alone = jobs
-            .iter()
-            .map(|(setup, seed)| run::run(setup, *seed).unwrap());
-        assert!(results.into_iter().eq(alone));
-    }
-}
-
-#[test]
 fn each_robot_of_a_batch_is_bit_for_bit_that_of_a_run() {
     for scenario in Library::new().list(Kind::Scenario) {
         let setup = setup(&scenario);
@@ -103,42 +77,6 @@ fn each_robot_of_a_batch_is_bit_for_bit_that_of_a_run() {
                             of_sample(sample),
                             "{scenario}, seed {}, {threads} threads, tick {}",
                             run.seed,
-                            at + STEP
-                        );
-                    }
-                }
-            });
-        }
-    }
-}
-
-/// Seeds of groups for the lanes, and of three robots more: `RUMBO_LANES_SEEDS=100` asks for more than usual.
-fn many_seeds() -> Vec<u64> {
-    let more = std::env::var("RUMBO_LANES_SEEDS").ok();
-    let count = more.and_then(|count| count.parse().ok()).unwrap_or(11);
-    (1..=count).collect()
-}
-
-#[test]
-fn robots_in_lanes_are_bit_for_bit_those_of_runs_in_every_scenario() {
-    let seeds = many_seeds();
-    for scenario in Library::new().list(Kind::Scenario) {
-        let setup = setup(&scenario);
-        let runs = (seeds.iter().map(|seed| run::run(&setup, *seed).unwrap())).collect::<Vec<_>>();
-        for lanes in Lanes::all() {
-            on_threads(1, || {
-                let mut batch = Batch::new(setup.clone(), Driver::Scenario, &seeds).unwrap();
-                batch.use_lanes(lanes);
-                let ticks = runs[0].trace.samples.len();
-                for at in (0..ticks - STEP).step_by(STEP) {
-                    batch.advance(STEP as u32);
-                    for (robot, run) in batch.robots().iter().zip(&runs) {
-                        assert_eq!(
-                            of_robot(robot),
-                            of_sample(&run.trace.samples[at + STEP - 1]),
-                            "{scenario}, seed {}, {}, tick {}",
-                            run.seed,
-                            lanes.name(),
                             at + STEP
                         );
                     }
@@ -193,26 +131,6 @@ fn a_driven_robot_is_the_same_alone_and_among_others_on_any_threads() {
             assert!(truth[..] == all_truth[index * TRUE.len()..][..TRUE.len()]);
         }
     }
-}
-
-#[test]
-fn driven_robots_of_any_age_share_lanes_with_the_bits_of_each_alone() {
-    let mut setup = setup("mode8-random");
-    setup.scenario.mode = ModeId::WheelSpeed;
-    let seeds: Vec<u64> = (1..=19).collect();
-    let mut rows = Vec::new();
-    for lanes in Lanes::all() {
-        on_threads(1, || {
-            let mut batch = Batch::new(setup.clone(), Driver::Caller, &seeds).unwrap();
-            batch.use_lanes(lanes);
-            let mut all = driven(&mut batch, 20);
-            // New ones among the old, as vector environments begin an episode.
-            batch.renew(&[(2, 102), (9, 109)]).unwrap();
-            all.extend(driven(&mut batch, 20));
-            rows.push(all);
-        });
-    }
-    assert!(rows.iter().all(|row| *row == rows[0]));
 }
 
 #[test]
@@ -306,10 +224,10 @@ fn a_recorded_robot_has_the_trace_of_its_run() {
 }
 
 #[test]
-fn recording_changes_no_bit_of_a_driven_robot_alone_or_in_lanes() {
+fn recording_changes_no_bit_of_a_driven_robot() {
     let mut setup = setup("mode8-random");
     setup.scenario.mode = ModeId::WheelSpeed;
-    for seeds in [&[1][..], &[1, 2, 3, 4, 5, 6, 7, 8]] {
+    for seeds in [&[1][..], &[1, 2, 3]] {
         on_threads(1, || {
             let make = || Batch::new(setup.clone(), Driver::Caller, seeds).unwrap();
             let unrecorded = driven(&mut make(), 60);

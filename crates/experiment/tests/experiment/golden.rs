@@ -5,9 +5,9 @@
 
 #![cfg(test)]
 
+use crate::closed_loop::fifty;
 use rumbo_experiment::MODEL;
-use rumbo_experiment::files::{Kind, Library, Overrides};
-use rumbo_experiment::run::run;
+use rumbo_experiment::files::{Kind, Library};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -18,11 +18,10 @@ fn metrics_are_those_of_the_golden_files() {
     let bless = std::env::var_os("RUMBO_BLESS").is_some();
     let mut wrong = Vec::new();
     for name in library.list(Kind::Scenario) {
-        let setup = library.setup(&name, &Overrides::default()).unwrap();
         let mut text = String::new();
-        for seed in 1..=3 {
-            writeln!(text, "[seed.{seed}]").unwrap();
-            for (metric, value) in run(&setup, seed).unwrap().metrics {
+        for run in &fifty(&name)[..3] {
+            writeln!(text, "[seed.{}]", run.seed).unwrap();
+            for (metric, value) in &run.metrics {
                 writeln!(text, "\"{metric}\" = {value:.4}").unwrap();
             }
         }

@@ -14,3 +14,8 @@ mod fleet;
 mod golden;
 mod moving;
 mod quantise;
+
+/// The full check, not the gate: all seeds.
+fn is_full() -> bool {
+    std::env::var_os("RUMBO_FULL").is_some()
+}

@@ -1,4 +1,4 @@
-//! The plant and its sensors, one by one and in lanes.
+//! The plant and its sensors.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -7,7 +7,6 @@
 )]
 
 mod cone;
-mod lanes;
 mod moving;
 mod plant;
 mod sonar;

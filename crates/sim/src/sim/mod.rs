@@ -12,7 +12,6 @@
 mod baseline;
 mod emulated;
 mod native;
-mod together;
 mod touches;
 mod unlinked;
 

@@ -8,8 +8,8 @@ mod ways;
 mod wheels;
 mod wiring;
 
-use crate::figures::table::{Row, row, spread, table};
 use crate::figures::runs::{self, Change, Runs, runs};
+use crate::figures::table::{Row, row, spread, table};
 use rumbo_experiment::files::Setup;
 use rumbo_plot::{Curve, Ink, Map, Panel, Plot, Points, Shape, Sheet, WIDTH, Words};
 use rumbo_sim::trace::Sample;

@@ -35,7 +35,8 @@ fn start(run: &RunResult, from_s: f64, signs: [f64; 2]) -> Start {
 }
 
 fn assert_together(scenario: &str, from_s: f64, signs: [f64; 2], apart_s: f64, ahead_deg: f64) {
-    for run in seeds(&setup(scenario), 1..51) {
+    let robots = if crate::is_full() { 50 } else { 15 };
+    for run in seeds(&setup(scenario), 1..robots + 1) {
         let start = start(&run, from_s, signs);
         assert!(
             start.apart_s <= apart_s && start.ahead_rad <= ahead_deg.to_radians(),

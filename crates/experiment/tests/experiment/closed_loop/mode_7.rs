@@ -16,7 +16,7 @@ fn the_square_is_driven_within_2_5_cm_of_itself_by_odometry_and_in_20_s() {
 #[test]
 fn a_robot_that_has_calibrated_itself_closes_the_square_within_5_cm_and_others_do_not() {
     let mut setup = setup("mode7");
-    assert!(worst(&seeds(&setup, 1..51), "end_error_m") <= 0.05);
+    assert!(worst(&fifty("mode7"), "end_error_m") <= 0.05);
     setup.scenario.calibrated = false;
     assert!(worst(&seeds(&setup, 1..51), "end_error_m") > 0.1);
 }
@@ -24,7 +24,7 @@ fn a_robot_that_has_calibrated_itself_closes_the_square_within_5_cm_and_others_d
 #[test]
 fn pure_pursuit_drives_a_curve_without_stopping_and_nearer_to_it_than_the_baseline_to_its_square() {
     for scenario in ["pursuit-line", "pursuit-curve"] {
-        let runs = twenty(scenario);
+        let runs = seeds(&setup(scenario), 1..21);
         assert!(worst(&runs, "odometry_worst_m") <= 0.03, "{scenario}");
         assert!(worst(&runs, "odometry_rms_m") <= 0.015, "{scenario}");
         for run in &runs {
