@@ -32,8 +32,6 @@ pub(crate) fn serve(args: &ConnectArgs) -> Result<Lab, Failure> {
         recording: logs::recording(args.session.out.as_deref()),
         echo: Some(output::aside),
         tuner: None,
-        #[cfg(feature = "foxglove")]
-        bridge: crate::lab::bridge(args.session.bridge)?,
     };
     let robot: Box<dyn Target> = match &args.ghost {
         Some(scenario) => Box::new(WithGhost::new(robot, scenario)?),

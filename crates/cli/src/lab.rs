@@ -85,8 +85,6 @@ fn config(args: &LabArgs, echo: Option<Print>) -> Result<LabConfig, Failure> {
             args.setting.robot.as_deref(),
             &args.scenario,
         )),
-        #[cfg(feature = "foxglove")]
-        bridge: bridge(args.session.bridge)?,
     })
 }
 
@@ -158,17 +156,4 @@ fn debugging(port: u16, args: &LabArgs) -> Result<Debugging, Failure> {
         "a debugger may come at any time: avr-gdb {image} -ex 'target remote :{port}'"
     ));
     Ok(debugging)
-}
-
-/// Starts the bridge, if requested, and prints its address.
-#[cfg(feature = "foxglove")]
-pub(crate) fn bridge(
-    args: crate::args::BridgeArgs,
-) -> Result<Option<rumbo_station::Bridge>, Failure> {
-    let Some(port) = args.foxglove else {
-        return Ok(None);
-    };
-    let bridge = rumbo_station::Bridge::start(port).map_err(Failure::input)?;
-    output::aside(&format!("for Foxglove or Lichtblick: {}", bridge.address()));
-    Ok(Some(bridge))
 }

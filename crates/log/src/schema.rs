@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 /// Where messages of one kind go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Topic {
+pub(crate) enum Topic {
     /// The signals.
     Telemetry,
     /// What changes slowly.

@@ -109,54 +109,11 @@ pub trait Bridge {
     fn trouble(&mut self) -> Option<String>;
 }
 
-/// A bridge of either kind.
-impl<B: Bridge + ?Sized> Bridge for Box<B> {
-    fn advertise(
-        &mut self,
-        name: &str,
-        of: &Definition,
-        quality: Quality,
-    ) -> Result<Channel, BridgeError> {
-        (**self).advertise(name, of, quality)
-    }
-
-    fn publish(&mut self, topic: Channel, data: &[u8]) -> Result<(), BridgeError> {
-        (**self).publish(topic, data)
-    }
-
-    fn subscribe(
-        &mut self,
-        name: &str,
-        of: &Definition,
-        quality: Quality,
-    ) -> Result<Channel, BridgeError> {
-        (**self).subscribe(name, of, quality)
-    }
-
-    fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError> {
-        (**self).serve(name, of)
-    }
-
-    fn receive(&mut self) -> Option<Incoming> {
-        (**self).receive()
-    }
-
-    fn answer(&mut self, caller: Caller, data: &[u8]) -> Result<(), BridgeError> {
-        (**self).answer(caller, data)
-    }
-
-    fn trouble(&mut self) -> Option<String> {
-        (**self).trouble()
-    }
-}
-
 /// Why a middleware refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BridgeError {
     /// The domain cannot be joined: which, and why.
     Domain(u16, String),
-    /// An endpoint of Zenoh is of no use: which, what cannot be done with it, and why.
-    Endpoint(String, &'static str, String),
     /// A topic or service cannot be announced: which, and why.
     Announce(String, String),
     /// Something cannot be sent: why.
@@ -169,10 +126,6 @@ impl fmt::Display for BridgeError {
             Self::Domain(domain, why) => write!(
                 f,
                 "domain {domain} of ROS 2 cannot be joined ({why}); is a network up, and are its ports free? --domain takes another"
-            ),
-            Self::Endpoint(endpoint, does, why) => write!(
-                f,
-                "cannot {does} {endpoint} ({why}); start a router there, rmw_zenohd, or give another endpoint to --zenoh"
             ),
             Self::Announce(name, why) => write!(f, "{name} cannot be announced: {why}"),
             Self::Send(why) => write!(f, "nothing can be sent: {why}"),

@@ -9,7 +9,7 @@
 //! bag        the bag: an MCAP file and its metadata
 //! service_messages, parameters, navigate   parameters and *go to goal*, by the services that ROS 2 has for them
 //! node       a robot as a node: topics, services and an action on a bridge
-//! bridge     what a node asks of a middleware; dds: over DDS; zenoh: over Zenoh (features of these names)
+//! bridge     what a node asks of a middleware; dds: over DDS (feature of this name)
 //! ```
 //!
 //! Frames follow REP 103 (x forward, y left, counter-clockwise; metres, radians) and REP 105 (`map`, `odom`,
@@ -28,5 +28,3 @@ pub mod parameters;
 pub mod service_messages;
 pub mod topics;
 pub mod types;
-#[cfg(feature = "zenoh")]
-pub mod zenoh;

@@ -67,9 +67,6 @@ pub struct LabConfig {
     pub echo: Option<Print>,
     /// What searches for parameters, for the page in control.
     pub tuner: Option<Box<dyn Tuner>>,
-    /// A bridge to viewers of Foxglove's protocol.
-    #[cfg(feature = "foxglove")]
-    pub bridge: Option<crate::bridge::Bridge>,
 }
 
 impl Default for LabConfig {
@@ -80,8 +77,6 @@ impl Default for LabConfig {
             recording: None,
             echo: None,
             tuner: None,
-            #[cfg(feature = "foxglove")]
-            bridge: None,
         }
     }
 }
@@ -195,7 +190,6 @@ pub fn serve_fleet(
         recording,
         echo,
         tuner,
-        ..
     } = config;
     let recordings =
         recording.map(|recording| Arc::new(Recordings::new(recording.folder, serve_replay)));
@@ -207,17 +201,12 @@ pub fn serve_fleet(
     let speakers = names.clone();
     start(at, beside, names, move |chairs| {
         let echo = echo.and_then(Echo::start);
-        #[cfg(feature = "foxglove")]
-        let mut bridge = config.bridge;
         let robots = speakers.into_iter().zip(targets).zip(chairs);
         let seats = robots.map(|((name, target), (board, orders))| Seat {
             target,
             subscribers: Subscribers {
                 board,
                 echo: echo.as_ref().map(|echo| echo.of(name)),
-                // That of the first robot.
-                #[cfg(feature = "foxglove")]
-                bridge: bridge.take(),
                 recorder: None,
             },
             orders,

@@ -105,7 +105,7 @@ const STEPS: [Step; 19] = [
     },
     Step {
         name: "test",
-        what: "the tests of all crates, the bridge to Foxglove and the node of ROS 2 included",
+        what: "the tests of all crates, the node of ROS 2 included",
         check: tests,
     },
     Step {

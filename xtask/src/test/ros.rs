@@ -5,18 +5,14 @@ use std::env::consts::EXE_SUFFIX;
 use super::{Stop, tools};
 use crate::project::{Project, run};
 
-/// Packages of PyPI: rclpy of Jazzy with Fast DDS, its messages, Cyclone DDS; Zenoh, and what decodes
-/// messages and hashes for it.
-const PACKAGES: [&str; 9] = [
+/// Packages of PyPI: rclpy of Jazzy with Fast DDS, its messages, Cyclone DDS.
+const PACKAGES: [&str; 6] = [
     "ros-jazzy-rclpy[fastrtps]==7.1.6",
     "ros-jazzy-geometry-msgs==5.3.6",
     "ros-jazzy-nav-msgs==5.3.6",
     "ros-jazzy-sensor-msgs==5.3.6",
     "ros-jazzy-std-srvs==5.3.6",
     "cyclonedds==11.0.1",
-    "eclipse-zenoh==1.10.2",
-    "rosbags==0.11.9",
-    "xxhash==4.1.0",
 ];
 
 /// Builds `rumbo` as the step `test` does, and has the peers meet it.
@@ -38,11 +34,7 @@ pub(super) fn check(project: &Project) -> Result<(), Stop> {
     let rumbo = project.target.join(format!("debug/rumbo{EXE_SUFFIX}"));
     let logs = project.target.join("tmp/ros");
     std::fs::create_dir_all(&logs).map_err(|error| format!("{}: {error}", logs.display()))?;
-    // The second one needs the type that the first one makes.
-    for script in ["check_ros.py", "check_ros_zenoh.py"] {
-        let mut check = project.command(&python);
-        check.env("RUMBO_COMMAND", &rumbo);
-        run(check.arg(format!("xtask/src/test/{script}")).arg(&logs))?;
-    }
-    Ok(())
+    let mut check = project.command(&python);
+    check.env("RUMBO_COMMAND", &rumbo);
+    Ok(run(check.arg("xtask/src/test/check_ros.py").arg(&logs))?)
 }

@@ -1,10 +1,13 @@
 """What the checks of ROS 2 share: a robot that runs, and its peers, a node of rclpy, Cyclone DDS and a page."""
 
+import atexit
 import base64
 import json
 import math
 import os
 import socket
+import subprocess
+import sys
 import threading
 import time
 from dataclasses import dataclass
@@ -28,8 +31,51 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 from geometry_msgs.msg import Twist, TwistStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from ros_programs import PATIENCE_S, Program, lab, wait_for
 from std_srvs.srv import Trigger
+
+# Long enough for any machine; nothing is judged by it.
+PATIENCE_S = 40
+
+
+def wait_for(what, condition):
+    """The first true value of `condition`."""
+    until = time.monotonic() + PATIENCE_S
+    while time.monotonic() < until:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.02)
+    raise AssertionError(f"not seen: {what}")
+
+
+class Program:
+    """A `rumbo` that runs until it is asked to end; what it prints."""
+
+    def __init__(self, *arguments, ready):
+        command = [os.environ["RUMBO_COMMAND"], *arguments]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        atexit.register(self.process.kill)
+        self.lines = []
+        threading.Thread(target=self._read, daemon=True).start()
+        self.ready = wait_for(f"{ready} of {arguments}", lambda: self.said(ready) or self.process.poll() is not None)
+        assert self.process.poll() is None, self.lines
+
+    def _read(self):
+        for line in self.process.stdout:
+            self.lines.append(line.rstrip())
+
+    def said(self, text):
+        return next((line for line in list(self.lines) if text in line), None)
+
+    def end(self):
+        self.process.terminate()
+        status = self.process.wait(PATIENCE_S)
+        assert status == 0, (status, self.lines)
+
+
+def lab(*arguments):
+    folder = ["--out", sys.argv[1]]
+    return Program("ros", "lab", "--no-browser", "--port", "0", *folder, *arguments, ready="http://")
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

@@ -9,8 +9,6 @@ mod runs;
 mod studies;
 mod values;
 
-#[cfg(feature = "foxglove")]
-pub(crate) use groups::BridgeArgs;
 pub(crate) use groups::{OverwriteArgs, ServeArgs, board};
 pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs};
 pub(crate) use logs::{
@@ -256,15 +254,9 @@ fn left_out(error: &clap::Error) -> Option<String> {
             Some(ContextValue::String(word)) => Some(word),
             _ => None,
         })?;
-    let (feature, page) = match word.as_str() {
-        "ros" if cfg!(not(feature = "ros")) => ("ros", "docs/ros2.md"),
-        "--zenoh" if cfg!(not(feature = "zenoh")) => ("zenoh", "docs/ros2.md"),
-        "--foxglove" if cfg!(not(feature = "foxglove")) => ("foxglove", "docs/logs.md"),
-        _ => return None,
-    };
-    Some(format!(
-        "{word}: this rumbo is built without it; in a checkout, `cargo install --path crates/cli --features {feature}` builds one with it ({page})"
-    ))
+    (word == "ros" && cfg!(not(feature = "ros"))).then(|| {
+        "ros: this rumbo is built without it; in a checkout, `cargo install --path crates/cli --features ros` builds one with it (docs/ros2.md)".to_owned()
+    })
 }
 
 impl Cli {
@@ -401,8 +393,7 @@ mod tests {
 
     /// Whether a command is of a feature that this build does not have.
     fn is_left_out(line: &str) -> bool {
-        let foxglove = cfg!(not(feature = "foxglove")) && line.contains("--foxglove");
-        foxglove || cfg!(not(feature = "ros")) && line.starts_with("rumbo ros")
+        cfg!(not(feature = "ros")) && line.starts_with("rumbo ros")
     }
 
     #[test]

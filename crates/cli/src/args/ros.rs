@@ -27,18 +27,11 @@ pub(crate) struct RosArgs {
 }
 
 impl RosArgs {
-    /// A robot that is offered as a serial port has no session that could be a node; over Zenoh the hash of an action's
-    /// type is part of its key, and there is one of them.
+    /// A robot that is offered as a serial port has no session that could be a node.
     ///
     /// # Errors
     /// That one is asked for.
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        #[cfg(feature = "zenoh")]
-        if self.node.zenoh.is_some() && !matches!(self.node.distribution, Distribution::Jazzy) {
-            return Err(Failure::input(
-                "--distribution: over Zenoh navigate_to_pose has the type of Jazzy; leave --distribution or --zenoh out",
-            ));
-        }
         match &self.source {
             #[cfg(unix)]
             RosSource::Lab(lab) if lab.pty => Err(Failure::input(
@@ -77,10 +70,6 @@ pub(crate) struct NodeArgs {
     /// Domain, 0..232 [default: ROS_DOMAIN_ID, or else 0]
     #[arg(long, value_name = "N", global = true, value_parser = domain)]
     pub(crate) domain: Option<u16>,
-    /// Over Zenoh instead of DDS, as rmw_zenoh: connects to the router there, or listens in its place if there is none
-    #[cfg(feature = "zenoh")]
-    #[arg(long, value_name = "ENDPOINT", global = true, num_args = 0..=1, require_equals = true, default_missing_value = "tcp/localhost:7447")]
-    pub(crate) zenoh: Option<rumbo_ros::zenoh::Endpoint>,
     /// Velocities on cmd_vel are geometry_msgs/TwistStamped instead of Twist
     #[arg(long, global = true)]
     pub(crate) stamped: bool,

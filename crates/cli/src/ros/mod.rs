@@ -11,12 +11,10 @@ mod session;
 use crate::args::{Distribution, NodeArgs, RosArgs, RosSource, ServeArgs};
 use crate::failure::Failure;
 use crate::{browser, connect, lab, output};
-use rumbo_ros::bridge::{Bridge, BridgeError, Reach};
+use rumbo_ros::bridge::{BridgeError, Reach};
 use rumbo_ros::dds::{Dds, Domain};
 use rumbo_ros::navigate;
 use rumbo_ros::node::{self, Node};
-#[cfg(feature = "zenoh")]
-use rumbo_ros::zenoh;
 use rumbo_station::Lab;
 use session::{Live, Times};
 use std::thread::JoinHandle;
@@ -29,7 +27,7 @@ const LAST_DOMAIN: u16 = 232;
 /// Between two looks at what is new.
 const WAKE: Duration = Duration::from_millis(4);
 
-type RosNode = Node<Box<dyn Bridge + Send>>;
+type RosNode = Node<Dds>;
 
 /// Joins the domain first: where that is refused, nothing is opened.
 pub(crate) fn ros(args: &mut RosArgs) -> Result<(), Failure> {
@@ -47,7 +45,7 @@ pub(crate) fn ros(args: &mut RosArgs) -> Result<(), Failure> {
             beside(served, live, connect.session.serve)
         }
         RosSource::Replay(log) => {
-            let node = joined.node(&args.node.namespace)?;
+            let node = joined.node(&args.node.namespace);
             joined.say(&[node.speaker()]);
             play::play(log, node)
         }
@@ -56,49 +54,9 @@ pub(crate) fn ros(args: &mut RosArgs) -> Result<(), Failure> {
 
 /// A domain that is joined.
 struct Joined {
-    middleware: Middleware,
+    domain: Domain,
     number: u16,
     reach: Reach,
-}
-
-enum Middleware {
-    Dds(Domain),
-    #[cfg(feature = "zenoh")]
-    Zenoh(zenoh::Session, zenoh::Endpoint),
-}
-
-impl Middleware {
-    fn join(args: &NodeArgs, number: u16, reach: Reach) -> Result<Self, BridgeError> {
-        #[cfg(feature = "zenoh")]
-        if let Some(endpoint) = &args.zenoh {
-            let session = zenoh::Session::open(number, reach, endpoint)?;
-            return Ok(Self::Zenoh(session, endpoint.clone()));
-        }
-        #[cfg(not(feature = "zenoh"))]
-        let _ = args;
-        Domain::join(number, reach).map(Self::Dds)
-    }
-
-    /// Without `--network` other computers do not hear of it.
-    fn is_here(&self) -> bool {
-        match self {
-            Self::Dds(_) => true,
-            #[cfg(feature = "zenoh")]
-            Self::Zenoh(session, _) => session.is_here(),
-        }
-    }
-
-    /// How others get there, for a person; nothing, if there is nothing to say.
-    fn way(&self) -> String {
-        match self {
-            Self::Dds(_) => String::new(),
-            #[cfg(feature = "zenoh")]
-            Self::Zenoh(session, endpoint) => match session.listens() {
-                true => format!(" over Zenoh, at {endpoint} itself, since no router is there"),
-                false => format!(" over Zenoh by {endpoint}"),
-            },
-        }
-    }
 }
 
 impl Joined {
@@ -113,24 +71,16 @@ impl Joined {
             true => Reach::Networks,
             false => Reach::Computer,
         };
-        let middleware = Middleware::join(args, number, reach).map_err(Failure::input)?;
+        let domain = Domain::join(number, reach).map_err(Failure::input)?;
         Ok(Self {
-            middleware,
+            domain,
             number,
             reach,
         })
     }
 
-    fn node(&self, namespace: &str) -> Result<RosNode, Failure> {
-        let bridge: Box<dyn Bridge + Send> = match &self.middleware {
-            Middleware::Dds(domain) => Box::new(Dds::new(domain, namespace, node::NAME)),
-            #[cfg(feature = "zenoh")]
-            Middleware::Zenoh(session, _) => {
-                let node = zenoh::Zenoh::new(session, namespace, node::NAME);
-                Box::new(node.map_err(Failure::input)?)
-            }
-        };
-        Ok(Node::new(bridge, namespace))
+    fn node(&self, namespace: &str) -> RosNode {
+        Node::new(Dds::new(&self.domain, namespace, node::NAME), namespace)
     }
 
     /// A node for each robot of a session: in the namespace asked for, and of several each in its own below it.
@@ -146,7 +96,7 @@ impl Joined {
                     "robot {robot}: a name of ROS 2 begins with a letter or _; give it another name in its [[fleet]]"
                 ))
             })?;
-            let node = self.node(&(args.namespace.clone() + &own))?;
+            let node = self.node(&(args.namespace.clone() + &own));
             let node = node.in_world(&args.namespace);
             let times = match times {
                 Times::Simulated if !lives.is_empty() => Times::SimulatedWithOthers,
@@ -163,14 +113,12 @@ impl Joined {
     fn say(&self, speakers: &[String]) {
         let whom = match self.reach {
             Reach::Networks => "for all in its networks",
-            Reach::Computer if self.middleware.is_here() => "for this computer",
-            Reach::Computer => "for all whom that reaches",
+            Reach::Computer => "for this computer",
         };
         let node = if speakers.len() > 1 { "nodes" } else { "node" };
         let (speakers, number) = (speakers.join(", /"), self.number);
-        let way = self.middleware.way();
         output::aside(&format!(
-            "ROS 2: {node} /{speakers} on domain {number}{way}, {whom}"
+            "ROS 2: {node} /{speakers} on domain {number}, {whom}"
         ));
     }
 }

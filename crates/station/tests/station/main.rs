@@ -6,7 +6,6 @@
     reason = "helpers of tests too"
 )]
 
-mod bridge;
 mod client;
 mod door;
 mod lab;
