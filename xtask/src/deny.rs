@@ -12,7 +12,12 @@ use spdx::{Expression, ParseMode};
 use crate::project::{Project, all_metadata};
 
 /// The workspaces.
-const MANIFESTS: [&str; 3] = ["Cargo.toml", "firmware/Cargo.toml", "fuzz/Cargo.toml"];
+const MANIFESTS: [&str; 4] = [
+    "Cargo.toml",
+    "firmware/Cargo.toml",
+    "fuzz/Cargo.toml",
+    "ros/Cargo.toml",
+];
 
 /// The part of `deny.toml` used here.
 #[derive(Deserialize)]

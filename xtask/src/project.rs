@@ -52,11 +52,10 @@ impl Project {
         command
     }
 
-    /// A command of cargo on the whole workspace with the node of ROS 2, which the usual build leaves out. Cargo builds a dependency once for each set of features: what the tests share with it is not built
-    /// again.
+    /// A command of cargo on the whole workspace. Cargo builds a dependency once for each set of features: what the
+    /// tests share with it is not built again.
     pub(crate) fn whole(&self, command: &str) -> Command {
-        let features = "--features=rumbo-cli/ros";
-        self.cargo(&[command, "--workspace", features, "--locked"])
+        self.cargo(&[command, "--workspace", "--locked"])
     }
 
     /// Builds a program of the workspace as the tests are built, so that they share all crates, and returns its path.

@@ -5,7 +5,6 @@
 
 mod assets;
 mod board;
-mod client;
 mod door;
 mod echo;
 mod ending;
@@ -29,7 +28,6 @@ mod web;
 
 pub use rumbo_session::Extras;
 
-pub use client::Client;
 pub use echo::Print;
 pub use ending::asked_to_end;
 pub use error::{ServeError, SessionError};

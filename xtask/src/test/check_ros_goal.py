@@ -91,7 +91,7 @@ def check_refusals(peer, goals, robot):
 
 def check_ends(peer, goals, odometry, robot):
     """A client cancels; a page stops."""
-    page = Page(robot.ready)
+    page = Page(robot.url)
     for cancel, status in [(True, GoalStatus.STATUS_CANCELED), (False, GoalStatus.STATUS_ABORTED)]:
         handle, feedback, result = goals.must(-1.5, 0.4)
         wait_for("the way", lambda: len(feedback) > 3 and abs(odometry[-1].twist.twist.linear.x) > 0.1)

@@ -105,12 +105,12 @@ const STEPS: [Step; 19] = [
     },
     Step {
         name: "test",
-        what: "the tests of all crates, the node of ROS 2 included",
+        what: "the tests of all crates",
         check: tests,
     },
     Step {
         name: "ros",
-        what: "robots as nodes of ROS 2, as genuine peers see them",
+        what: "the node of ROS 2: lints, tests, and as genuine peers see it",
         check: ros::check,
     },
     Step {

@@ -1,4 +1,5 @@
-//! Robots as nodes of ROS 2: peers with the middlewares of genuine installations, in an environment made for them.
+//! The node of ROS 2, a workspace of its own, and peers with the middlewares of genuine installations, in an environment
+//! made for them.
 
 use std::env::consts::EXE_SUFFIX;
 
@@ -15,8 +16,28 @@ const PACKAGES: [&str; 6] = [
     "cyclonedds==11.0.1",
 ];
 
-/// Builds `rumbo` as the step `test` does, and has the peers meet it.
+/// The workspace of the node.
+const MANIFEST: [&str; 2] = ["--manifest-path", "ros/Cargo.toml"];
+
+/// Lints, tests and builds the node, then `rumbo` as the step `test` does, and has the peers meet both.
 pub(super) fn check(project: &Project) -> Result<(), Stop> {
+    tools::component(project, "fmt", "rustfmt")?;
+    tools::component(project, "clippy", "clippy")?;
+    let folder = project.target.join("rumbo-ros");
+    let cargo = |command: &str, rest: &[&str]| {
+        let mut cargo = project.cargo(&[command]);
+        run(cargo
+            .args(MANIFEST)
+            .args(rest)
+            .env("CARGO_TARGET_DIR", &folder))
+    };
+    cargo("fmt", &["--check"])?;
+    cargo(
+        "clippy",
+        &["--all-targets", "--locked", "--", "-D", "warnings"],
+    )?;
+    cargo("test", &["--locked"])?;
+    cargo("build", &["--locked"])?;
     let python = tools::python_with(project, "ros", &PACKAGES)?;
     // For the type of Nav2's action.
     tools::compiler(project)?;
@@ -35,6 +56,9 @@ pub(super) fn check(project: &Project) -> Result<(), Stop> {
     let logs = project.target.join("tmp/ros");
     std::fs::create_dir_all(&logs).map_err(|error| format!("{}: {error}", logs.display()))?;
     let mut check = project.command(&python);
-    check.env("RUMBO_COMMAND", &rumbo);
+    check.env("RUMBO_COMMAND", &rumbo).env(
+        "RUMBO_ROS_COMMAND",
+        folder.join(format!("debug/rumbo-ros{EXE_SUFFIX}")),
+    );
     Ok(run(check.arg("xtask/src/test/check_ros.py").arg(&logs))?)
 }

@@ -33,6 +33,7 @@ from geometry_msgs.msg import Twist, TwistStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_srvs.srv import Trigger
 
+COMMANDS = {"rumbo": os.environ["RUMBO_COMMAND"], "rumbo-ros": os.environ["RUMBO_ROS_COMMAND"]}
 # Long enough for any machine; nothing is judged by it.
 PATIENCE_S = 40
 
@@ -49,11 +50,10 @@ def wait_for(what, condition):
 
 
 class Program:
-    """A `rumbo` that runs until it is asked to end; what it prints."""
+    """A program that runs until it is asked to end; what it prints."""
 
-    def __init__(self, *arguments, ready):
-        command = [os.environ["RUMBO_COMMAND"], *arguments]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    def __init__(self, name, *arguments, ready):
+        self.process = subprocess.Popen([COMMANDS[name], *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         atexit.register(self.process.kill)
         self.lines = []
         threading.Thread(target=self._read, daemon=True).start()
@@ -67,15 +67,33 @@ class Program:
     def said(self, text):
         return next((line for line in list(self.lines) if text in line), None)
 
-    def end(self):
-        self.process.terminate()
+    def end(self, ask=True):
+        if ask:
+            self.process.terminate()
         status = self.process.wait(PATIENCE_S)
         assert status == 0, (status, self.lines)
 
 
-def lab(*arguments):
-    folder = ["--out", sys.argv[1]]
-    return Program("ros", "lab", "--no-browser", "--port", "0", *folder, *arguments, ready="http://")
+class Robot:
+    """A `rumbo` that serves a robot, or several, and the node that joins it."""
+
+    def __init__(self, *arguments, node=()):
+        options = ["--no-browser", "--port", "0", "--out", sys.argv[1]]
+        self.rumbo = Program("rumbo", *arguments, *options, ready="http://")
+        self.url = self.rumbo.ready
+        # The address without its token, which is for the page: the key is in a file.
+        self.node = Program("rumbo-ros", self.url.split("?")[0], *node, ready="ROS 2: node")
+        self.said = self.node.said
+
+    def end(self):
+        """The node ends with its robot."""
+        self.rumbo.end()
+        self.node.end(ask=False)
+
+
+def lab(*arguments, node=()):
+    return Robot("lab", *arguments, node=node)
+
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

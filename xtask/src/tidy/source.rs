@@ -74,8 +74,8 @@ fn lints(path: &str, text: &str) -> Option<Finding> {
         .skip(1);
     let inherited = lines.find(|line| !line.is_empty()) == Some("workspace = true");
     let remedy = "add `[lints]` with `workspace = true`";
-    // The firmware's workspace has a lint table of its own.
-    let own = ["firmware/", "fuzz/", "tools/rapier/"]
+    // Other workspaces have a lint table of their own.
+    let own = ["firmware/", "fuzz/", "ros/", "tools/rapier/"]
         .iter()
         .any(|other| path.starts_with(other));
     (!inherited && !own).then(|| {

@@ -3,8 +3,6 @@
 mod groups;
 mod live;
 mod logs;
-#[cfg(feature = "ros")]
-mod ros;
 mod runs;
 mod studies;
 mod values;
@@ -14,8 +12,6 @@ pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs};
 pub(crate) use logs::{
     CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
 };
-#[cfg(feature = "ros")]
-pub(crate) use ros::{Distribution, NodeArgs, PlayArgs, RosArgs, RosSource};
 pub(crate) use runs::{
     CalibrateArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, RunArgs,
 };
@@ -56,9 +52,6 @@ pub(crate) enum Command {
     Lab(LabArgs),
     /// Drive a real robot from the same dashboard, over a serial port or TCP
     Connect(ConnectArgs),
-    /// Show a robot, or the log of one, to ROS 2 as a node, and let it be driven from there
-    #[cfg(feature = "ros")]
-    Ros(Box<RosArgs>),
     /// Write the firmware to an Arduino Mega
     Flash(FlashArgs),
     /// Run scenarios as fast as the machine can and judge their metrics
@@ -228,7 +221,7 @@ pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
     if !error.use_stderr() {
         return Ok(error.print()?);
     }
-    if let Some(remedy) = left_out(error) {
+    if let Some(remedy) = elsewhere(error) {
         return Err(Failure::Input(remedy));
     }
     let text = error.to_string();
@@ -246,16 +239,11 @@ pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
     )))
 }
 
-/// How to get what a word asks for, if it is of a feature that this build does not have.
-fn left_out(error: &clap::Error) -> Option<String> {
-    let word = [ContextKind::InvalidSubcommand, ContextKind::InvalidArg]
-        .into_iter()
-        .find_map(|kind| match error.get(kind) {
-            Some(ContextValue::String(word)) => Some(word),
-            _ => None,
-        })?;
-    (word == "ros" && cfg!(not(feature = "ros"))).then(|| {
-        "ros: this rumbo is built without it; in a checkout, `cargo install --path crates/cli --features ros` builds one with it (docs/ros2.md)".to_owned()
+/// Where what a word asks for is, if it is in another program.
+fn elsewhere(error: &clap::Error) -> Option<String> {
+    let word = error.get(ContextKind::InvalidSubcommand)?;
+    (*word == ContextValue::String("ros".to_owned())).then(|| {
+        "ros: the node of ROS 2 is a program of its own, beside `rumbo lab` or `rumbo connect`; in a checkout, `cargo install --path ros` installs it: rumbo-ros (docs/ros2.md)".to_owned()
     })
 }
 
@@ -391,11 +379,6 @@ mod tests {
         files.into_iter().map(read).collect()
     }
 
-    /// Whether a command is of a feature that this build does not have.
-    fn is_left_out(line: &str) -> bool {
-        cfg!(not(feature = "ros")) && line.starts_with("rumbo ros")
-    }
-
     #[test]
     fn every_command_in_a_block_of_the_documents_is_valid() {
         let mut seen = 0;
@@ -404,7 +387,7 @@ mod tests {
             let mut in_block = false;
             for line in joined.lines().map(str::trim) {
                 in_block ^= line.starts_with("```");
-                if !in_block || !line.starts_with("rumbo ") || is_left_out(line) {
+                if !in_block || !line.starts_with("rumbo ") {
                     continue;
                 }
                 let place = path.display();

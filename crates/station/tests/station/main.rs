@@ -6,7 +6,7 @@
     reason = "helpers of tests too"
 )]
 
-mod client;
+mod beside;
 mod door;
 mod lab;
 #[path = "../support/page.rs"]

@@ -7,21 +7,19 @@
 //! A newer goal replaces the one on the way, which is aborted. Mode 8 makes each goal reached its origin, from which goals
 //! count: near its goal the robot gets the next one when it stands there and the new origin is known.
 
-use super::aim::{Aim, is_task, order};
-use super::report;
-use super::session::{Live, PATIENCE, TAKEN};
+use crate::aim::{Aim, is_task, order};
+use crate::bridge::Caller;
+use crate::live::{Live, PATIENCE, TAKEN, report};
+use crate::navigate::{Distribution, Goal, Goals, Id, NAME, Question, Status};
+use crate::station::Order;
 use rumbo_log::{End, Level, LoggedEvent};
-use rumbo_ros::bridge::Caller;
 use rumbo_ros::convert::stamp;
 use rumbo_ros::geometry::{ODOM, pose};
 use rumbo_ros::messages::{Header, Time};
-use rumbo_ros::navigate::{Distribution, Goal, Goals, Id, NAME, Question, Status};
 use rumbo_ros::service_messages::{
     Accepted, Duration as Lasting, Ended, FeedbackMessage, NavigateFeedback, PoseStamped, Uuid,
 };
 use rumbo_ros::topics::Topic;
-use rumbo_session::Order;
-use rumbo_wire::Command;
 use std::time::{Duration, Instant};
 
 /// Nearer than this the robot may be there before a new goal arrives: the way in a second, and a little [m].
@@ -104,7 +102,7 @@ impl Live {
             && active.id == id
         {
             active.canceling.get_or_insert_with(Instant::now);
-            let stopped = self.give(Order::Robot(Command::Stop));
+            let stopped = self.station.order(Order::Stop);
             if let Err(why) = stopped {
                 self.note(&format!("{NAME}: {why}"));
             }
@@ -140,11 +138,11 @@ impl Live {
             Ok(aim) => aim,
             Err(why) => return self.reject(&asked, &why),
         };
-        let order = order(&aim, self.state.robot.mode);
+        let order = order(&aim, self.mode());
         let order = order.ok_or_else(|| {
             "the robot is in another mode; call mode/mission, or mode/waypoints".to_owned()
         });
-        match order.and_then(|order| self.give(order)) {
+        match order.and_then(|order| self.station.order(order)) {
             Ok(()) => self.navigation.ordered = Some((asked, aim, Instant::now())),
             Err(why) => self.reject(&asked, &why),
         }
@@ -227,7 +225,7 @@ impl Live {
         }
         // It may still arrive: nobody would know of it.
         self.reject(&asked, "the robot has not confirmed it; it is stopped");
-        let _ = self.give(Order::Robot(Command::Stop));
+        let _ = self.station.order(Order::Stop);
     }
 
     fn accept(&mut self, asked: &Asked, aim: Aim) {
@@ -263,7 +261,7 @@ impl Live {
             Some((status, why)) => {
                 if !self.state.link.connected {
                     // Its messages are lost; ours may still arrive.
-                    let _ = self.give(Order::Robot(Command::Stop));
+                    let _ = self.station.order(Order::Stop);
                 }
                 self.end(active.id, status, &why);
             }

@@ -1,36 +1,27 @@
 //! What a node asks of a middleware: to publish, to subscribe, to serve. All data are bytes in CDR with their header of
-//! four bytes, as [`encode`](crate::types::encode) makes them.
+//! four bytes, as [`encode`](rumbo_ros::types::encode) makes them.
 
-use crate::topics::Quality;
-use crate::types::Definition;
+use rumbo_ros::topics::Quality;
+use rumbo_ros::types::Definition;
 use std::fmt;
 
-/// The type of a service.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ServiceType {
-    /// Package and name: `std_srvs/srv/Trigger`.
-    pub name: &'static str,
-    /// The hash of request, response and event (REP 2016), as distributions from Iron on have it: `RIHS01_…`.
-    pub hash: &'static str,
-}
-
 /// Something a bridge carries, numbered by the bridge.
-pub type Channel = usize;
+pub(crate) type Channel = usize;
 
 /// Who asked a service, by the bridge's own account; the answer goes there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Caller {
+pub(crate) struct Caller {
     /// The service.
-    pub service: Channel,
+    pub(crate) service: Channel,
     /// The client, 16 bytes that are its own.
-    pub client: [u8; 16],
+    pub(crate) client: [u8; 16],
     /// Its request.
-    pub number: i64,
+    pub(crate) number: i64,
 }
 
 /// What has come in.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Incoming {
+pub(crate) enum Incoming {
     /// A message of a subscription.
     Message {
         /// The subscription.
@@ -53,7 +44,7 @@ pub enum Incoming {
 
 /// Who may find the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
+pub(crate) enum Reach {
     /// This computer. No wall: they are only not announced elsewhere.
     Computer,
     /// All networks that this computer is in.
@@ -61,7 +52,7 @@ pub enum Reach {
 }
 
 /// A middleware with one node on it. Names are absolute: `/odom`.
-pub trait Bridge {
+pub(crate) trait Bridge {
     /// Announces a topic to publish on.
     ///
     /// # Errors
@@ -90,11 +81,11 @@ pub trait Bridge {
         quality: Quality,
     ) -> Result<Channel, BridgeError>;
 
-    /// Offers a service.
+    /// Offers a service of this type, by package and name: `std_srvs/srv/Trigger`.
     ///
     /// # Errors
     /// If the middleware refuses.
-    fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError>;
+    fn serve(&mut self, name: &str, kind: &str) -> Result<Channel, BridgeError>;
 
     /// The next message or request, without waiting.
     fn receive(&mut self) -> Option<Incoming>;
@@ -111,7 +102,7 @@ pub trait Bridge {
 
 /// Why a middleware refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum BridgeError {
+pub(crate) enum BridgeError {
     /// The domain cannot be joined: which, and why.
     Domain(u16, String),
     /// A topic or service cannot be announced: which, and why.
