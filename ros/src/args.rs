@@ -1,7 +1,7 @@
 //! The command line.
 
+use crate::address::Address;
 use crate::navigate::Distribution;
-use crate::station::Address;
 use clap::Parser;
 
 /// The environment's variable that names the domain.

@@ -1,7 +1,7 @@
 //! Services of ROS 2 without a question: each call is an order. It is answered when the robot's state shows what was
 //! asked for, or the robot has refused it.
 
-use crate::live::{Live, PATIENCE, TAKEN, report};
+use crate::live::{Live, PATIENCE, report};
 use crate::node::Call;
 use crate::station::{Mode, Order};
 use rumbo_log::RobotState;
@@ -40,6 +40,7 @@ pub(super) fn services(modes: &[Mode]) -> Vec<(String, Service)> {
 /// A call that waits for the robot.
 pub(super) struct Waiting {
     call: Call,
+    order: u64,
     since: Instant,
 }
 
@@ -55,11 +56,12 @@ impl Live {
         };
         let for_robot = !matches!(service, Service::Control(_));
         match self.station.order(order) {
-            Ok(()) if for_robot => self.waiting.push(Waiting {
+            Ok(order) if for_robot => self.waiting.push(Waiting {
                 call,
+                order,
                 since: Instant::now(),
             }),
-            given => self.answer(call, given),
+            given => self.answer(call, given.map(drop)),
         }
     }
 
@@ -72,7 +74,7 @@ impl Live {
     pub(super) fn settle(&mut self, has_state: bool) {
         for waiting in std::mem::take(&mut self.waiting) {
             let lasts = waiting.since.elapsed();
-            let known = has_state && lasts > TAKEN;
+            let known = has_state && self.station.has_taken(waiting.order);
             let outcome = known.then(|| self.outcome(waiting.call)).flatten();
             let late = || Err("the robot has not confirmed it".to_owned());
             match outcome.or_else(|| (lasts > PATIENCE).then(late)) {

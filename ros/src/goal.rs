@@ -9,7 +9,7 @@
 
 use crate::aim::{Aim, is_task, order};
 use crate::bridge::Caller;
-use crate::live::{Live, PATIENCE, TAKEN, report};
+use crate::live::{Live, PATIENCE, report};
 use crate::navigate::{Distribution, Goal, Goals, Id, NAME, Question, Status};
 use crate::station::Order;
 use rumbo_log::{End, Level, LoggedEvent};
@@ -35,6 +35,15 @@ struct Asked {
     goal: Goal,
 }
 
+/// A goal that the robot has not acknowledged yet.
+struct Ordered {
+    asked: Asked,
+    aim: Aim,
+    /// The number of its order.
+    order: u64,
+    since: Instant,
+}
+
 /// A goal on its way.
 struct Active {
     id: Id,
@@ -56,7 +65,7 @@ pub(super) struct Navigation {
     /// The next goal, which waits.
     next: Option<Asked>,
     /// A goal that the robot has not acknowledged yet.
-    ordered: Option<(Asked, Aim, Instant)>,
+    ordered: Option<Ordered>,
     active: Option<Active>,
 }
 
@@ -143,7 +152,14 @@ impl Live {
             "the robot is in another mode; call mode/mission, or mode/waypoints".to_owned()
         });
         match order.and_then(|order| self.station.order(order)) {
-            Ok(()) => self.navigation.ordered = Some((asked, aim, Instant::now())),
+            Ok(order) => {
+                self.navigation.ordered = Some(Ordered {
+                    asked,
+                    aim,
+                    order,
+                    since: Instant::now(),
+                });
+            }
             Err(why) => self.reject(&asked, &why),
         }
     }
@@ -206,25 +222,24 @@ impl Live {
 
     /// Accepts the goal that the robot has acknowledged.
     fn confirm(&mut self) {
-        let Some((asked, aim, since)) = self.navigation.ordered.take() else {
+        let Some(ordered) = self.navigation.ordered.take() else {
             return;
         };
-        let lasts = since.elapsed();
-        let is_known = lasts > TAKEN && self.state.link.unacknowledged == 0;
-        if lasts > TAKEN
-            && let Some(why) = self.state.refused.clone()
-        {
-            return self.reject(&asked, &why);
+        let Ordered { asked, aim, .. } = &ordered;
+        let is_taken = self.station.has_taken(ordered.order);
+        let is_known = is_taken && self.state.link.unacknowledged == 0;
+        if is_taken && let Some(why) = self.state.refused.clone() {
+            return self.reject(asked, &why);
         }
-        if is_known && is_task(&aim, &self.state.robot) {
-            return self.accept(&asked, aim);
+        if is_known && is_task(aim, &self.state.robot) {
+            return self.accept(asked, *aim);
         }
-        if lasts < PATIENCE {
-            self.navigation.ordered = Some((asked, aim, since));
+        if ordered.since.elapsed() < PATIENCE {
+            self.navigation.ordered = Some(ordered);
             return;
         }
         // It may still arrive: nobody would know of it.
-        self.reject(&asked, "the robot has not confirmed it; it is stopped");
+        self.reject(asked, "the robot has not confirmed it; it is stopped");
         let _ = self.station.order(Order::Stop);
     }
 
@@ -323,7 +338,7 @@ impl Live {
     pub(super) fn end_run(&mut self) {
         let navigation = &mut self.navigation;
         let asked = navigation.next.take().into_iter();
-        let ordered = navigation.ordered.take().map(|(asked, ..)| asked);
+        let ordered = navigation.ordered.take().map(|ordered| ordered.asked);
         for asked in asked.chain(ordered).collect::<Vec<_>>() {
             self.reject(&asked, "the simulation was started again");
         }

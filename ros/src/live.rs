@@ -3,6 +3,7 @@
 //! The node takes control with an order, as a page does, and releases it when nothing lasts that needs it: no call, no
 //! velocity, no goal; calling `take_control` keeps it.
 
+use crate::address::StationError;
 use crate::args::Args;
 use crate::bridge::BridgeError;
 use crate::calls::{Service, Waiting, services};
@@ -12,7 +13,7 @@ use crate::goal::Navigation;
 use crate::node::{Node, Wish};
 use crate::output;
 use crate::settings::Settings;
-use crate::station::{News, Order, Seat, Station, StationError};
+use crate::station::{News, Order, Seat, Station};
 use rumbo_log::{Level, LoggedEvent, Scene, State};
 use rumbo_ros::convert::{ConvertError, Converter, Sent, clock};
 use rumbo_ros::geometry::Geometry;
@@ -32,8 +33,6 @@ pub(super) const SHOWN: Duration = Duration::from_secs(4);
 const WAKE: Duration = Duration::from_millis(4);
 /// Most requests and velocities taken in a row: a flood of them does not keep messages from going out.
 const AT_ONCE: usize = 64;
-/// A state that comes so long after an order is from after the session has taken it.
-pub(super) const TAKEN: Duration = Duration::from_millis(100);
 /// The clock of a simulation is published this often at least: a pause has a time too.
 const CLOCK: Duration = Duration::from_millis(200);
 

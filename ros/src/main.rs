@@ -1,6 +1,7 @@
 //! `rumbo-ros`: the robots of a running `rumbo` as nodes of ROS 2 over DDS.
 //!
 //! ```text
+//! address    where a station is, and the key to it
 //! station    the session, over the WebSocket of a page: what is new, orders
 //! live       its node: what is new becomes messages; calls, velocities, settings and goals become orders
 //! node       topics, services and an action on a bridge; parameters, navigate: what they carry
@@ -10,6 +11,7 @@
 //! It is one of the clients of the dashboard: the same messages, the same lease of control. The messages of ROS 2 are
 //! those that bags of logs have, made by the same code (`rumbo_ros`).
 
+mod address;
 mod aim;
 mod args;
 mod bridge;

@@ -2,7 +2,7 @@
 //! other; the robot's own answer is the outcome.
 
 use crate::bridge::Caller;
-use crate::live::{Live, PATIENCE, TAKEN, report};
+use crate::live::{Live, PATIENCE, report};
 use crate::parameters::{self, ParameterState, Question, Value};
 use crate::station::Order;
 use rumbo_ros::convert::stamp;
@@ -27,8 +27,8 @@ struct Request {
     atomically: bool,
     /// Number and value of each that is not set yet, or why it cannot be; the first one is in turn.
     left: VecDeque<Result<(u8, f32), String>>,
-    /// When the first one was ordered, and whether it was seen on its way.
-    ordered: Option<(Instant, bool)>,
+    /// The order for the first one, when it was given, and whether it was seen on its way.
+    ordered: Option<(u64, Instant, bool)>,
     done: Vec<Result<(), String>>,
 }
 
@@ -127,15 +127,19 @@ impl Live {
             Ok(wanted) => *wanted,
             Err(why) => return Some(Err(why.clone())),
         };
-        let Some((since, on_its_way)) = &mut request.ordered else {
-            let given = self.station.order(Order::SetParam { id, value });
-            request.ordered = Some((Instant::now(), false));
-            return given.err().map(Err);
+        let Some((order, since, on_its_way)) = &mut request.ordered else {
+            return match self.station.order(Order::SetParam { id, value }) {
+                Ok(order) => {
+                    request.ordered = Some((order, Instant::now(), false));
+                    None
+                }
+                Err(why) => Some(Err(why)),
+            };
         };
         let known = self.settings.known.get(usize::from(id))?;
         let ended = *on_its_way && !known.pending;
         *on_its_way |= known.pending;
-        let is_taken = has_state && since.elapsed() > TAKEN;
+        let is_taken = has_state && self.station.has_taken(*order);
         let is_settled = is_taken && !known.pending && self.state.link.unacknowledged == 0;
         let name = &known.name;
         if is_taken && let Some(why) = &self.state.refused {

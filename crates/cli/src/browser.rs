@@ -13,12 +13,12 @@ use tempfile::NamedTempFile;
 
 /// Prints the address, opens the browser, and returns when the lab has ended.
 pub(crate) fn show(lab: Lab, serve: ServeArgs) -> Result<(), Failure> {
+    // Without it, programs beside the page are given the address.
+    let key = KeyFile::write(&lab).ok();
     output::line(lab.url())?;
     if serve.listen.is_some() {
         output::line(&format!("viewers: {}", lab.viewers_url()))?;
     }
-    // Without it, programs beside the page are given the address.
-    let key = KeyFile::write(&lab).ok();
     open_while(lab.url(), serve, "the dashboard", || lab.until_opened());
     let ended = lab.wait();
     drop(key);

@@ -1,6 +1,7 @@
 //! The station's side: addresses, and orders as a page writes them.
 
-use crate::station::{Address, Order, Waypoint};
+use crate::address::Address;
+use crate::station::{Order, Waypoint};
 
 #[test]
 fn an_address_is_as_rumbo_prints_it_or_shorter() {

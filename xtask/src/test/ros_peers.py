@@ -46,13 +46,18 @@ def wait_for(what, condition):
         if value:
             return value
         time.sleep(0.02)
-    raise AssertionError(f"not seen: {what}")
+    said = [(program.name, program.lines[-20:]) for program in Program.all]
+    raise AssertionError(f"not seen: {what}; what was said: {said}")
 
 
 class Program:
     """A program that runs until it is asked to end; what it prints."""
 
+    all = []
+
     def __init__(self, name, *arguments, ready):
+        self.name = name
+        self.all.append(self)
         self.process = subprocess.Popen([COMMANDS[name], *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         atexit.register(self.process.kill)
         self.lines = []

@@ -5,7 +5,7 @@ use crate::page;
 use crate::support::Toy;
 use page::*;
 use rumbo_station::{Extras, Lab, LabConfig, ServeAt, serve_fleet};
-use serde_json::json;
+use serde_json::{Value, json};
 
 #[tokio::test]
 async fn a_program_with_the_key_arms_before_any_page_is_open_and_a_page_stops() {
@@ -20,6 +20,27 @@ async fn a_program_with_the_key_arms_before_any_page_is_open_and_a_page_stops() 
     wait_for(&mut page, |message| armed(message, true)).await;
     say(&mut page, json!({"type": "stop"})).await;
     wait_for(&mut program, |message| armed(message, false)).await;
+}
+
+#[tokio::test]
+async fn a_state_says_how_many_orders_of_its_page_were_taken_before_it() {
+    let lab = start(4.0);
+    let mut driver = connect_own(&lab, lab.key()).await;
+    wait_for(&mut driver, |message| event(message, "connected")).await;
+    let mut other = connect_own(&lab, lab.key()).await;
+    let seen = |message: &Value, orders: u64, is_armed: bool| {
+        let state = armed(message, is_armed)?;
+        (message["orders"] == orders).then_some(state)
+    };
+    wait_for(&mut other, |message| seen(message, 0, false)).await;
+    say(&mut driver, json!({"type": "arm"})).await;
+    wait_for(&mut driver, |message| seen(message, 1, true)).await;
+    // Of another page none; what is refused counts, since nothing will come of it.
+    wait_for(&mut other, |message| seen(message, 0, true)).await;
+    say(&mut other, json!({"type": "disarm"})).await;
+    wait_for(&mut other, |message| seen(message, 1, true)).await;
+    say(&mut driver, json!({"type": "disarm"})).await;
+    wait_for(&mut driver, |message| seen(message, 2, false)).await;
 }
 
 /// The lab of two robots.
