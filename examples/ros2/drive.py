@@ -1,6 +1,7 @@
 """Drives a robot forward and to the left from ROS 2: mode, ON, velocities, STOP.
 
-    rumbo ros lab --scenario free
+    rumbo lab --scenario free        in one terminal
+    rumbo-ros                        in another
     python3 drive.py                 where rclpy is; or ros2 run from a package of your own
 """
 

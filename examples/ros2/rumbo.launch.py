@@ -1,6 +1,6 @@
 """A simulated robot and RViz: ros2 launch rumbo.launch.py [scenario:=mode8-goals] [namespace:=left]
 
-`rumbo` with the feature `ros` is on the PATH (docs/ros2.md). The layout is made for a robot without a namespace.
+`rumbo` and `rumbo-ros` are on the PATH (docs/ros2.md). The layout is made for a robot without a namespace.
 """
 
 from pathlib import Path
@@ -17,11 +17,13 @@ LAYOUT = str(Path(__file__).with_name("rumbo.rviz"))
 
 def generate_launch_description():
     robot = ExecuteProcess(
-        cmd=["rumbo", "ros", "lab", "--scenario", LaunchConfiguration("scenario"), "--namespace", LaunchConfiguration("namespace")],
+        cmd=["rumbo", "lab", "--scenario", LaunchConfiguration("scenario")],
         output="screen",
         # It ends as with Ctrl-C, and writes its log to the end.
         sigterm_timeout="10",
     )
+    # It waits for the robot, and ends with it.
+    node = ExecuteProcess(cmd=["rumbo-ros", "--namespace", LaunchConfiguration("namespace")], output="screen")
     rviz = Node(
         package="rviz2",
         executable="rviz2",
@@ -34,7 +36,8 @@ def generate_launch_description():
             DeclareLaunchArgument("scenario", default_value="free", description="what `rumbo list` names"),
             DeclareLaunchArgument("namespace", default_value="", description="of the robot's topics"),
             robot,
+            node,
             rviz,
-            RegisterEventHandler(OnProcessExit(target_action=robot, on_exit=[EmitEvent(event=Shutdown())])),
+            RegisterEventHandler(OnProcessExit(target_action=node, on_exit=[EmitEvent(event=Shutdown())])),
         ]
     )

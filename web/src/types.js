@@ -120,7 +120,7 @@
  * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[], robots?: string[], robot: number}
  *   | {type: 'scene', run: number, scene: Scene | null}
  *   | {type: 'parameters', parameters: Parameter[]}
- *   | {type: 'state', state: State}
+ *   | {type: 'state', run: number, orders: number, state: State}
  *   | {type: 'samples', run: number, heard: [number, number], rows: Cell[][]}
  *   | {type: 'readings', run: number, groups: ReadingGroup[]}
  *   | {type: 'events', events: LoggedEvent[]}

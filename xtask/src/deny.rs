@@ -12,10 +12,11 @@ use spdx::{Expression, ParseMode};
 use crate::project::{Project, all_metadata};
 
 /// The workspaces.
-const MANIFESTS: [&str; 4] = [
+const MANIFESTS: [&str; 5] = [
     "Cargo.toml",
     "firmware/Cargo.toml",
     "fuzz/Cargo.toml",
+    "ros/Cargo.toml",
     "tools/bindgen/Cargo.toml",
 ];
 

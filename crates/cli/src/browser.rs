@@ -7,18 +7,47 @@ use crate::args::ServeArgs;
 use crate::failure::Failure;
 use crate::output;
 use rumbo_station::{Folder, Lab};
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 /// Prints the address, opens the browser, and returns when the lab has ended.
 pub(crate) fn show(lab: Lab, serve: ServeArgs) -> Result<(), Failure> {
+    // Without it, programs beside the page are given the address.
+    let key = KeyFile::write(&lab).ok();
     output::line(lab.url())?;
     if serve.listen.is_some() {
         output::line(&format!("viewers: {}", lab.viewers_url()))?;
     }
     open_while(lab.url(), serve, "the dashboard", || lab.until_opened());
-    lab.wait().map_err(Failure::input)
+    let ended = lab.wait();
+    drop(key);
+    ended.map_err(Failure::input)
+}
+
+/// A file with the key of those who may drive, which only this user can read: for programs such as `rumbo-ros`, which
+/// find it by the port. Gone with the session.
+struct KeyFile(PathBuf);
+
+impl KeyFile {
+    fn write(lab: &Lab) -> io::Result<Self> {
+        let folder = dirs::runtime_dir().or_else(|| Some(dirs::data_local_dir()?.join("rumbo")));
+        let folder = folder.ok_or(ErrorKind::NotFound)?;
+        std::fs::create_dir_all(&folder)?;
+        let mut file = NamedTempFile::new_in(&folder)?;
+        file.write_all(lab.key().as_bytes())?;
+        let path = folder.join(format!("rumbo-{}.key", lab.port()));
+        // In place of that of a session that was killed.
+        file.persist(&path)?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for KeyFile {
+    fn drop(&mut self) {
+        // It is worth nothing from now on.
+        let _ = std::fs::remove_file(&self.0);
+    }
 }
 
 /// The same for a folder.

@@ -17,7 +17,7 @@ pub(crate) fn connect(args: &ConnectArgs) -> Result<(), Failure> {
 }
 
 /// Opens the port and serves the dashboard.
-pub(crate) fn serve(args: &ConnectArgs) -> Result<Lab, Failure> {
+fn serve(args: &ConnectArgs) -> Result<Lab, Failure> {
     if !args.address.starts_with(port::TCP) {
         let warning = rumbo_session::check_baud(args.baud)
             .map_err(|error| Failure::Input(format!("--baud: {error}")))?;
@@ -32,8 +32,6 @@ pub(crate) fn serve(args: &ConnectArgs) -> Result<Lab, Failure> {
         recording: logs::recording(args.session.out.as_deref()),
         echo: Some(output::aside),
         tuner: None,
-        #[cfg(feature = "foxglove")]
-        bridge: crate::lab::bridge(args.session.bridge)?,
     };
     let robot: Box<dyn Target> = match &args.ghost {
         Some(scenario) => Box::new(WithGhost::new(robot, scenario)?),

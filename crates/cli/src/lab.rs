@@ -12,7 +12,7 @@ use rumbo_experiment::files::{Kind, Library, Overrides, ScenarioFile};
 use rumbo_lab::{OwnProgram, SimulatedRobot};
 use rumbo_log::Choice;
 use rumbo_sim::debugging::Debugging;
-use rumbo_station::{Lab, LabConfig, Named, Print};
+use rumbo_station::{Lab, LabConfig, Named};
 
 /// Serves the dashboard, prints its address first thing, and opens the browser.
 pub(crate) fn lab(args: &mut LabArgs) -> Result<(), Failure> {
@@ -20,21 +20,17 @@ pub(crate) fn lab(args: &mut LabArgs) -> Result<(), Failure> {
     if args.pty && fleet(args)?.is_none() {
         return crate::pty::offer(simulated(args)?, args.speed);
     }
-    browser::show(serve(args, None)?, args.session.serve)
+    browser::show(serve(args)?, args.session.serve)
 }
 
-/// Serves the dashboard; `echo` prints warnings and faults, for one who looks at the terminal.
-pub(crate) fn serve(args: &mut LabArgs, echo: Option<Print>) -> Result<Lab, Failure> {
+/// Serves the dashboard.
+fn serve(args: &mut LabArgs) -> Result<Lab, Failure> {
     if let Some(scenario) = fleet(args)? {
-        return served_fleet(args, &scenario, echo);
+        return served_fleet(args, &scenario);
     }
     let robot = simulated(args)?;
-    rumbo_station::serve_with(
-        config(args, echo)?,
-        Box::new(robot),
-        calibrate::in_dashboard(),
-    )
-    .map_err(Failure::input)
+    rumbo_station::serve_with(config(args), Box::new(robot), calibrate::in_dashboard())
+        .map_err(Failure::input)
 }
 
 /// The scenario, if it is to have several robots.
@@ -75,27 +71,21 @@ fn simulated(args: &mut LabArgs) -> Result<SimulatedRobot, Failure> {
     Ok(robot)
 }
 
-fn config(args: &LabArgs, echo: Option<Print>) -> Result<LabConfig, Failure> {
-    Ok(LabConfig {
+fn config(args: &LabArgs) -> LabConfig {
+    LabConfig {
         at: args.session.serve.at(),
         speed: args.speed,
         recording: logs::recording(args.session.out.as_deref()),
-        echo,
+        echo: None,
         tuner: Some(tune::in_dashboard(
             args.setting.robot.as_deref(),
             &args.scenario,
         )),
-        #[cfg(feature = "foxglove")]
-        bridge: bridge(args.session.bridge)?,
-    })
+    }
 }
 
 /// Serves the dashboards of several robots in one world: those of the scenario, or as many as asked for.
-fn served_fleet(
-    args: &mut LabArgs,
-    scenario: &ScenarioFile,
-    echo: Option<Print>,
-) -> Result<Lab, Failure> {
+fn served_fleet(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Lab, Failure> {
     #[cfg(unix)]
     let alone = args.pty || args.usb_pty || args.gdb.is_some();
     #[cfg(not(unix))]
@@ -134,13 +124,8 @@ fn served_fleet(
         .next()
         .ok_or_else(|| Failure::Input("there is no robot".into()))?;
     let others = robots.collect();
-    rumbo_station::serve_fleet(
-        config(args, echo)?,
-        first,
-        others,
-        calibrate::in_dashboard(),
-    )
-    .map_err(Failure::input)
+    rumbo_station::serve_fleet(config(args), first, others, calibrate::in_dashboard())
+        .map_err(Failure::input)
 }
 
 /// The port for a debugger, printed to stderr.
@@ -158,17 +143,4 @@ fn debugging(port: u16, args: &LabArgs) -> Result<Debugging, Failure> {
         "a debugger may come at any time: avr-gdb {image} -ex 'target remote :{port}'"
     ));
     Ok(debugging)
-}
-
-/// Starts the bridge, if requested, and prints its address.
-#[cfg(feature = "foxglove")]
-pub(crate) fn bridge(
-    args: crate::args::BridgeArgs,
-) -> Result<Option<rumbo_station::Bridge>, Failure> {
-    let Some(port) = args.foxglove else {
-        return Ok(None);
-    };
-    let bridge = rumbo_station::Bridge::start(port).map_err(Failure::input)?;
-    output::aside(&format!("for Foxglove or Lichtblick: {}", bridge.address()));
-    Ok(Some(bridge))
 }

@@ -38,8 +38,6 @@ mod recorded;
 mod replay;
 mod rerun;
 mod results;
-#[cfg(feature = "ros")]
-mod ros;
 mod ros2bag;
 mod run;
 mod run_log;
@@ -90,8 +88,6 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
             experiments::experiments(&args)
         }
         Some(Command::Grade(args)) => grade::grade(&args),
-        #[cfg(feature = "ros")]
-        Some(Command::Ros(mut args)) => ros::ros(&mut args),
         Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::ExportPolicy(args)) => export_policy::export_policy(&args),

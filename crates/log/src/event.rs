@@ -1,9 +1,9 @@
 //! What happens, as people read it.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How an event is to be seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
     /// Something went on.
@@ -30,7 +30,7 @@ impl Level {
 }
 
 /// Something that happened, as people read it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoggedEvent {
     /// Session time \[s\].
     pub t_s: f64,

@@ -48,7 +48,6 @@ pub use error::ReadError;
 pub use event::{Level, LoggedEvent};
 pub use log::{Log, Sent};
 pub use manifest::{Kind, Manifest, Outcome};
-pub use messages::Sink;
 pub use parameters::{Parameter, ParameterState, parameter, parameters};
 pub use reading::{Names, Reading, Source};
 pub use recorded::{CSV, recorded_csv};
@@ -56,7 +55,6 @@ pub use scene::{
     Choice, Experiment, MapPose, Mover, Obstacle, Other, Place, Repeat, RoutePlan, Scene,
     SonarMount, TimedPose, Truth, compose,
 };
-pub use schema::Topic;
 pub use signals::{Cell, EARLIER_MS, Row, Sample, Spread};
 pub use state::{
     CalibrationState, Complaint, End, Finding, Findings, FunctionShare, InterruptShare, LinkState,

@@ -1,4 +1,4 @@
-//! Turns entries into messages; a [`Sink`] takes them: a file, or a viewer.
+//! Turns entries into messages; a [`Sink`] takes them.
 
 use crate::entry::{Burst, Entry, Said};
 use crate::event::{Level, LoggedEvent};
@@ -13,7 +13,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 
 /// Takes messages.
-pub trait Sink {
+pub(crate) trait Sink {
     /// Why it cannot.
     type Error;
 

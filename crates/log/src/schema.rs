@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 /// Where messages of one kind go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Topic {
+pub(crate) enum Topic {
     /// The signals.
     Telemetry,
     /// What changes slowly.
@@ -43,7 +43,7 @@ pub enum Topic {
 
 impl Topic {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 16] = [
+    pub(crate) const ALL: [Self; 16] = [
         Self::Telemetry,
         Self::State,
         Self::Parameters,
@@ -64,7 +64,7 @@ impl Topic {
 
     /// Its name in the log.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Telemetry => "/telemetry",
             Self::State => "/state",
@@ -87,13 +87,13 @@ impl Topic {
 
     /// The topic of this name.
     #[must_use]
-    pub fn find(name: &str) -> Option<Self> {
+    pub(crate) fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|topic| topic.name() == name)
     }
 
     /// Name and text of its schema.
     #[must_use]
-    pub fn schema(self) -> (&'static str, Value) {
+    pub(crate) fn schema(self) -> (&'static str, Value) {
         match self {
             Self::Telemetry => ("rumbo.Telemetry", telemetry()),
             Self::State => ("rumbo.State", state()),

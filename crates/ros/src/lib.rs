@@ -7,26 +7,18 @@
 //! topics     the topics of a robot: names, types, quality of service
 //! convert    a log, or what happens, as messages by topic
 //! bag        the bag: an MCAP file and its metadata
-//! service_messages, parameters, navigate   parameters and *go to goal*, by the services that ROS 2 has for them
-//! node       a robot as a node: topics, services and an action on a bridge
-//! bridge     what a node asks of a middleware; dds: over DDS; zenoh: over Zenoh (features of these names)
+//! service_messages   what services and an action carry, for a node
 //! ```
+//!
+//! The node itself is a program of its own, in `ros/`, which makes its messages with this crate.
 //!
 //! Frames follow REP 103 (x forward, y left, counter-clockwise; metres, radians) and REP 105 (`map`, `odom`,
 //! `base_link`). `base_link` is the middle of the wheels' axis, on the floor.
 
 pub mod bag;
-pub mod bridge;
 pub mod convert;
-#[cfg(feature = "dds")]
-pub mod dds;
 pub mod geometry;
 pub mod messages;
-pub mod navigate;
-pub mod node;
-pub mod parameters;
 pub mod service_messages;
 pub mod topics;
 pub mod types;
-#[cfg(feature = "zenoh")]
-pub mod zenoh;

@@ -283,15 +283,6 @@ impl Definition {
     }
 }
 
-/// A ROS 2 name of a type as DDS has it: `std_msgs/msg/String`, `std_msgs::msg::dds_::String_`.
-#[cfg(feature = "dds")]
-pub(crate) fn dds_type(name: &str, part: &str) -> String {
-    match name.rsplit_once('/') {
-        Some((package, name)) => format!("{}::dds_::{name}{part}_", package.replace('/', "::")),
-        None => name.to_owned(),
-    }
-}
-
 /// A message as bytes: CDR, little-endian, with its header of four bytes.
 ///
 /// # Errors

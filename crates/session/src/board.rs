@@ -88,6 +88,8 @@ pub struct News {
     pub bytes: Vec<Burst>,
     /// Events that left the ring before the page took them.
     pub events_gone: u64,
+    /// Orders of the page that the session had taken when the state was so; 0 where nobody counts them.
+    pub orders: u64,
 }
 
 impl Default for Board {
@@ -199,6 +201,7 @@ impl Board {
             bytes,
             // A new page has not missed what left the ring before it came.
             events_gone: if first_time { 0 } else { gone },
+            orders: 0,
         }
     }
 }

@@ -43,6 +43,10 @@ pub enum ToPage<'a> {
     },
     /// What changes slowly.
     State {
+        /// Number of the run.
+        run: u32,
+        /// Orders of this page that the session had taken by then.
+        orders: u64,
         /// All of it.
         state: &'a State,
     },
@@ -158,7 +162,12 @@ impl News {
         let run = self.run;
         let scene = self.scene.iter();
         let scene = scene.map(move |scene| ToPage::Scene { run, scene });
-        let state = self.state.iter().map(|state| ToPage::State { state });
+        let state = self.state.iter();
+        let state = state.map(move |state| ToPage::State {
+            run,
+            orders: self.orders,
+            state,
+        });
         let world = self.world.iter().map(ToPage::World);
         let parameters = self.parameters.iter();
         let parameters = parameters.map(|parameters| ToPage::Parameters { parameters });

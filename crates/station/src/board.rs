@@ -1,6 +1,8 @@
 //! The session's board, shared with the pages: the session writes, each page's connection reads on from where it was.
 
+use rumbo_log::Entry;
 use rumbo_session::{Cursor, Event, News};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 use tokio::sync::watch;
@@ -8,13 +10,22 @@ use tokio::sync::watch;
 /// What is to be shown.
 #[derive(Debug, Default)]
 pub(crate) struct Board {
-    board: Mutex<rumbo_session::Board>,
+    board: Mutex<Shown>,
+    /// Orders that the session has taken.
+    taken: AtomicU64,
     changed: watch::Sender<()>,
+}
+
+#[derive(Debug, Default)]
+struct Shown {
+    board: rumbo_session::Board,
+    /// Orders that it had taken when it published the state.
+    taken: u64,
 }
 
 impl Board {
     /// A poisoned lock holds whole values all the same: each is written in one move.
-    fn lock(&self) -> MutexGuard<'_, rumbo_session::Board> {
+    fn lock(&self) -> MutexGuard<'_, Shown> {
         self.board.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -27,13 +38,23 @@ impl Board {
     pub(crate) fn take(&self, event: &Event) {
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         let wall_ms = since.map_or(0.0, |since| since.as_secs_f64() * 1e3);
-        if self.lock().take(event, wall_ms) {
+        let mut shown = self.lock();
+        if matches!(event, Event::Entry(entry) if matches!(**entry, Entry::State(_))) {
+            shown.taken = self.taken.load(Ordering::Relaxed);
+        }
+        if shown.board.take(event, wall_ms) {
             self.changed.send_replace(());
         }
     }
 
-    /// What is new since `cursor`, which moves on.
-    pub(crate) fn news(&self, cursor: &mut Cursor) -> News {
-        self.lock().news(cursor)
+    /// The session, which calls this, has taken so many orders more.
+    pub(crate) fn took(&self, orders: usize) {
+        self.taken.fetch_add(orders as u64, Ordering::Relaxed);
+    }
+
+    /// What is new since `cursor`, which moves on; orders that had been taken when the state was so.
+    pub(crate) fn news(&self, cursor: &mut Cursor) -> (News, u64) {
+        let shown = self.lock();
+        (shown.board.news(cursor), shown.taken)
     }
 }

@@ -5,9 +5,6 @@
 
 mod assets;
 mod board;
-#[cfg(feature = "foxglove")]
-mod bridge;
-mod client;
 mod door;
 mod echo;
 mod ending;
@@ -31,9 +28,6 @@ mod web;
 
 pub use rumbo_session::Extras;
 
-#[cfg(feature = "foxglove")]
-pub use bridge::{BRIDGE_PORT, Bridge, BridgeError};
-pub use client::Client;
 pub use echo::Print;
 pub use ending::asked_to_end;
 pub use error::{ServeError, SessionError};

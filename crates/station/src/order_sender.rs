@@ -3,9 +3,9 @@
 use crate::session::Orders;
 use rumbo_session::Order;
 use rumbo_wire::Command;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Orders that may wait for the session, which takes them every few milliseconds.
 const WAITING: usize = 256;
@@ -16,6 +16,8 @@ pub(crate) const TOO_MANY: &str = "too many orders at once";
 #[derive(Debug)]
 pub(crate) struct OrderSender {
     queue: SyncSender<Order>,
+    /// Orders passed on.
+    sent: Mutex<u64>,
     /// Those of all robots in the world: STOP stops each.
     stops: Vec<Arc<AtomicBool>>,
 }
@@ -36,6 +38,7 @@ impl OrderSender {
             };
             let sender = Self {
                 queue: sender,
+                sent: Mutex::default(),
                 stops: stops.clone(),
             };
             (sender, orders)
@@ -44,14 +47,17 @@ impl OrderSender {
     }
 
     /// Passes an order on, without waiting. STOP has its own flags, also those of the other robots in the world: a full
-    /// queue does not keep it out, and wakes the session anyway.
-    pub(crate) fn send(&self, order: Order) -> Result<(), NotTaken> {
+    /// queue does not keep it out, and wakes the session anyway. Returns the order's number, from 1 on.
+    pub(crate) fn send(&self, order: Order) -> Result<u64, NotTaken> {
         if order == Order::Robot(Command::Stop) {
             for stop in &self.stops {
                 stop.store(true, Ordering::SeqCst);
             }
         }
-        self.queue.try_send(order).map_err(|_| NotTaken)
+        let mut sent = self.sent.lock().unwrap_or_else(PoisonError::into_inner);
+        self.queue.try_send(order).map_err(|_| NotTaken)?;
+        *sent += 1;
+        Ok(*sent)
     }
 }
 

@@ -1,7 +1,6 @@
 //! Starts the lab: binds the port, then runs the session and the web server in threads of their own.
 
 use crate::board::Board;
-use crate::client::Client;
 use crate::door;
 use crate::echo::{Echo, Print};
 use crate::error::{ServeError, SessionError};
@@ -67,9 +66,6 @@ pub struct LabConfig {
     pub echo: Option<Print>,
     /// What searches for parameters, for the page in control.
     pub tuner: Option<Box<dyn Tuner>>,
-    /// A bridge to viewers of Foxglove's protocol.
-    #[cfg(feature = "foxglove")]
-    pub bridge: Option<crate::bridge::Bridge>,
 }
 
 impl Default for LabConfig {
@@ -80,8 +76,6 @@ impl Default for LabConfig {
             recording: None,
             echo: None,
             tuner: None,
-            #[cfg(feature = "foxglove")]
-            bridge: None,
         }
     }
 }
@@ -94,10 +88,9 @@ pub type Named = (String, Box<dyn Target>);
 pub struct Lab {
     url: String,
     viewers_url: String,
+    key: String,
+    port: u16,
     opened: Receiver<()>,
-    /// What the robots are called, and what clients of theirs share; none once ended. The session runs while there are
-    /// senders of orders.
-    robots: Vec<(String, Hub)>,
     web_ends: Option<oneshot::Sender<()>>,
     session: Option<JoinHandle<Result<(), TargetError>>>,
     web: Option<JoinHandle<()>>,
@@ -114,14 +107,14 @@ impl Lab {
         &self.viewers_url
     }
 
-    /// A client beside the pages of each robot, with what the robot is called; `None`: too many are there.
-    #[must_use]
-    pub fn clients(&self) -> Option<Vec<(String, Client)>> {
-        let joined = self.robots.iter().map(|(name, hub)| {
-            let client = Client::join(&hub.board, &hub.orders, &hub.lease)?;
-            Some((name.clone(), client))
-        });
-        joined.collect()
+    /// The port of the dashboard.
+    pub fn port(&self) -> u16 {
+        self.port
+    }
+
+    /// The key of those who may drive: for programs of the user on this computer, which have no page to open.
+    pub fn key(&self) -> &str {
+        &self.key
     }
 
     /// Returns when [`Self::url`] has been opened, or when there is nothing to open any more.
@@ -136,7 +129,6 @@ impl Lab {
     /// [`SessionError`].
     pub fn wait(mut self) -> Result<(), SessionError> {
         // Asked to end, the web side lets go of the session, which stops the robot and completes the log.
-        self.robots.clear();
         match self.session.take().map(JoinHandle::join) {
             Some(Ok(ended)) => ended.map_err(SessionError::Target),
             Some(Err(_)) => Err(SessionError::Panicked),
@@ -150,7 +142,6 @@ impl Drop for Lab {
         // The web side first: its connections hold senders of orders.
         drop(self.web_ends.take());
         let web = self.web.take().map(JoinHandle::join);
-        self.robots.clear();
         let session = self.session.take().map(JoinHandle::join);
         // Nobody is left to read of a fault.
         drop((web, session));
@@ -195,7 +186,6 @@ pub fn serve_fleet(
         recording,
         echo,
         tuner,
-        ..
     } = config;
     let recordings =
         recording.map(|recording| Arc::new(Recordings::new(recording.folder, serve_replay)));
@@ -207,17 +197,12 @@ pub fn serve_fleet(
     let speakers = names.clone();
     start(at, beside, names, move |chairs| {
         let echo = echo.and_then(Echo::start);
-        #[cfg(feature = "foxglove")]
-        let mut bridge = config.bridge;
         let robots = speakers.into_iter().zip(targets).zip(chairs);
         let seats = robots.map(|((name, target), (board, orders))| Seat {
             target,
             subscribers: Subscribers {
                 board,
                 echo: echo.as_ref().map(|echo| echo.of(name)),
-                // That of the first robot.
-                #[cfg(feature = "foxglove")]
-                bridge: bridge.take(),
                 recorder: None,
             },
             orders,
@@ -297,9 +282,11 @@ fn start_on(
     session: impl FnOnce(Vec<Chair>) -> Result<(), TargetError> + Send + 'static,
 ) -> io::Result<Lab> {
     let (opens, opened) = mpsc::channel();
-    let local = listener.local_addr()?.ip().is_loopback();
-    let guard = Guard::new(listener.local_addr()?, opens.clone()).map_err(io::Error::other)?;
+    let at = listener.local_addr()?;
+    let (local, port) = (at.ip().is_loopback(), at.port());
+    let guard = Guard::new(at, opens.clone()).map_err(io::Error::other)?;
     let (url, viewers_url) = (guard.url(), guard.viewers_url());
+    let key = guard.drivers_key().to_owned();
 
     let several = names.len() > 1;
     let (mut chairs, mut hubs) = (Vec::new(), Vec::new());
@@ -318,7 +305,6 @@ fn start_on(
             tuning: beside.tuning.clone(),
         });
     }
-    let robots = std::iter::zip(names, hubs.iter().cloned()).collect();
     let session_over = opens.clone();
     let session = std::thread::Builder::new()
         .name("session".into())
@@ -340,8 +326,9 @@ fn start_on(
     Ok(Lab {
         url,
         viewers_url,
+        key,
+        port,
         opened,
-        robots,
         web_ends: Some(web_ends),
         session: Some(session),
         web: Some(web),

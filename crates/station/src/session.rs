@@ -165,18 +165,10 @@ impl Running {
                     return self.driver.obey(stop(), wall_us);
                 }
             };
-            let waiting = first
-                .into_iter()
-                .chain(self.orders.queue.try_iter())
-                .collect();
-            let stop = self.orders.stop.swap(false, Ordering::SeqCst);
-            let orders = stop_first(waiting, stop);
-            self.driver.obey(orders, self.wall_us())?;
-            let wall_us = self.wall_us();
+            obey(&mut self.driver, &self.orders, first, self.began)?;
             for Follower { driver, orders } in &mut self.followers {
                 driver.follow(&self.driver);
-                let stop = orders.stop.swap(false, Ordering::SeqCst);
-                driver.obey(stop_first(orders.queue.try_iter().collect(), stop), wall_us)?;
+                obey(driver, orders, None, self.began)?;
             }
             self.advance()?;
             if let Some(trouble) = self.driver.host().subscribers.recording_trouble() {
@@ -192,7 +184,7 @@ impl Running {
     }
 
     fn wall_us(&self) -> u64 {
-        u64::try_from(self.began.elapsed().as_micros()).unwrap_or(u64::MAX)
+        since_us(self.began)
     }
 
     /// Advances the target by the time due.
@@ -207,4 +199,21 @@ impl Running {
         }
         Ok(())
     }
+}
+
+fn since_us(began: Instant) -> u64 {
+    u64::try_from(began.elapsed().as_micros()).unwrap_or(u64::MAX)
+}
+
+/// Executes the orders that wait, after the `first` one.
+fn obey(
+    driver: &mut Driver<Around>,
+    orders: &Orders,
+    first: Option<Order>,
+    began: Instant,
+) -> Result<(), TargetError> {
+    let waiting: Vec<Order> = first.into_iter().chain(orders.queue.try_iter()).collect();
+    driver.host().subscribers.board.took(waiting.len());
+    let stop = orders.stop.swap(false, Ordering::SeqCst);
+    driver.obey(stop_first(waiting, stop), since_us(began))
 }

@@ -18,7 +18,8 @@ use futures_util::stream::SplitSink;
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
 use rumbo_log::{Level, LoggedEvent};
 use rumbo_session::{Cursor, MAX_ORDER, News, Order, ToPage, WORLD_ORDER};
-use std::sync::Arc;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::{interval, sleep, timeout};
@@ -63,6 +64,28 @@ impl Hub {
     }
 }
 
+/// The orders of a page, so that it knows which of them a state has seen.
+#[derive(Default)]
+struct Given(Mutex<(VecDeque<u64>, u64)>);
+
+impl Given {
+    /// An order has this number; one that is refused has none.
+    fn note(&self, number: Option<u64>) {
+        let mut given = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        given.0.push_back(number.unwrap_or_default());
+    }
+
+    /// How many of them are through when the session has taken all up to this number.
+    fn through(&self, taken: u64) -> u64 {
+        let mut given = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let (waiting, through) = &mut *given;
+        while waiting.pop_front_if(|number| *number <= taken).is_some() {
+            *through += 1;
+        }
+        *through
+    }
+}
+
 /// Why a connection ends.
 struct Closing {
     code: u16,
@@ -75,10 +98,11 @@ pub(crate) async fn talk(socket: WebSocket, hub: Hub, role: Role) {
     let closing = match hub.lease.join(role == Role::Controller) {
         Some(place) => {
             let (refuse, refusals) = mpsc::channel(REFUSALS_WAITING);
+            let given = Given::default();
             // Control goes with the page's place, however long closing takes.
             tokio::select! {
-                closing = publish_news(&mut out, &hub, &place, refusals) => closing,
-                closing = take_orders(&mut from_page, &hub, &place, &refuse) => closing,
+                closing = publish_news(&mut out, &hub, &place, &given, refusals) => closing,
+                closing = take_orders(&mut from_page, &hub, &place, &given, &refuse) => closing,
             }
         }
         None => Some(Closing {
@@ -125,6 +149,7 @@ async fn take_orders(
     mut from_page: impl Stream<Item = Result<Message, axum::Error>> + Unpin,
     hub: &Hub,
     place: &Place,
+    given: &Given,
     refuse: &mpsc::Sender<&'static str>,
 ) -> Option<Closing> {
     // After a silence nobody is left to read the reason.
@@ -158,14 +183,16 @@ async fn take_orders(
         if let Err(why) = admitted {
             // A page need not read each of many refusals.
             let _ = refuse.try_send(why);
+            given.note(None);
             continue;
         }
-        if hub.orders.send(order).is_err() {
+        let Ok(number) = hub.orders.send(order) else {
             return Some(Closing {
                 code: close_code::AGAIN,
                 text: TOO_MANY.into(),
             });
-        }
+        };
+        given.note(Some(number));
     }
     None
 }
@@ -175,6 +202,7 @@ async fn publish_news(
     out: &mut (impl Sink<Message> + Unpin),
     hub: &Hub,
     place: &Place,
+    given: &Given,
     mut refusals: mpsc::Receiver<&'static str>,
 ) -> Option<Closing> {
     let (mut changed, mut moved) = (hub.board.subscribe(), hub.lease.subscribe());
@@ -187,7 +215,8 @@ async fn publish_news(
         if shown.replace(view) != Some(view) {
             send(out, &ToPage::Control(view)).await?;
         }
-        let mut news = hub.board.news(&mut cursor);
+        let (mut news, taken) = hub.board.news(&mut cursor);
+        news.orders = given.through(taken);
         if news.events_gone > 0 {
             return Some(Closing {
                 code: close_code::AGAIN,
@@ -274,6 +303,7 @@ mod tests {
         let hub = hub();
         let place = hub.lease.join(true).unwrap();
         let (refuse, refusals) = mpsc::channel(1);
+        let given = Given::default();
         let (mut out, mut page) = connection();
         let begun = tokio::time::Instant::now();
         // It answers ten pings, then none.
@@ -282,8 +312,8 @@ mod tests {
             .enumerate()
             .filter_map(|(ping, _)| ready((ping < 10).then(|| Ok(Message::Pong(Bytes::new())))));
         let closing = tokio::select! {
-            _ = publish_news(&mut out, &hub, &place, refusals) => panic!("the page takes all"),
-            closing = take_orders(Box::pin(answers), &hub, &place, &refuse) => closing,
+            _ = publish_news(&mut out, &hub, &place, &given, refusals) => panic!("the page takes all"),
+            closing = take_orders(Box::pin(answers), &hub, &place, &given, &refuse) => closing,
         };
         assert!(closing.is_none());
         let lasted = begun.elapsed();
@@ -301,6 +331,7 @@ mod tests {
         let place = hub.lease.join(true).unwrap();
         let (mut out, mut page) = connection();
         let (_refuse, refusals) = mpsc::channel(1);
+        let given = Given::default();
         let reader = async {
             for round in 0..ROUNDS {
                 let rows: Vec<Row> = (0..100)
@@ -334,7 +365,7 @@ mod tests {
             (events, rows)
         };
         let (events, rows) = tokio::select! {
-            _ = publish_news(&mut out, &hub, &place, refusals) => panic!("the page was given up"),
+            _ = publish_news(&mut out, &hub, &place, &given, refusals) => panic!("the page was given up"),
             read = reader => read,
         };
         assert!(

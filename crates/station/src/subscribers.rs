@@ -1,4 +1,4 @@
-//! The subscribers of a session: pages, the log, the terminal, a bridge. Each gets every event and uses what it needs.
+//! The subscribers of a session: pages, the log, the terminal. Each gets every event and uses what it needs.
 
 use crate::board::Board;
 use crate::echo::Echo;
@@ -13,9 +13,6 @@ pub(crate) struct Subscribers {
     pub(crate) board: Arc<Board>,
     /// Prints warnings and faults on the terminal too.
     pub(crate) echo: Option<Echo>,
-    /// Publishes the entries to viewers of Foxglove's protocol.
-    #[cfg(feature = "foxglove")]
-    pub(crate) bridge: Option<crate::bridge::Bridge>,
     pub(crate) recorder: Option<Recorder>,
 }
 
@@ -28,10 +25,6 @@ impl Subscribers {
         };
         if let (Some(echo), Entry::Event(event)) = (&self.echo, &*entry) {
             echo.event(event);
-        }
-        #[cfg(feature = "foxglove")]
-        if let Some(bridge) = &self.bridge {
-            bridge.queue(&entry);
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.record(entry);

@@ -1,6 +1,6 @@
 """Robots as nodes of ROS 2, as genuine peers see them: rclpy on Fast DDS, and Cyclone DDS.
 
-Argument: a folder for logs. `RUMBO_COMMAND` names a `rumbo` with the feature `ros`.
+Argument: a folder for logs. `RUMBO_COMMAND` names a `rumbo`, `RUMBO_ROS_COMMAND` a `rumbo-ros`.
 """
 
 import math
@@ -10,13 +10,11 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-import check_ros_fleet
 import check_ros_goal
 import check_ros_others
 import check_ros_parameters
@@ -24,6 +22,7 @@ import rclpy
 import yaml
 from nav_msgs.msg import Odometry
 from ros_peers import (
+    COMMANDS,
     DOMAIN,
     LATCHED,
     PATIENCE_S,
@@ -41,7 +40,6 @@ from ros_peers import (
     moved_m,
     place,
     seconds,
-    stamped,
     twist,
     wait_for,
 )
@@ -156,7 +154,7 @@ def robot_is(diagnostics, what):
 def check_page(peer, cyclone, odometry, robot):
     """The robot is off, in the mode that takes velocities."""
     diagnostics = cyclone.read("rt/diagnostics", DiagnosticArray, cyclone.volatile)
-    page = Page(robot.ready)
+    page = Page(robot.url)
     page.order("arm")
     wait_for("the page's ON", lambda: robot_is(diagnostics, "on"))
     refused = peer.call("/rumbo/arm").message
@@ -222,48 +220,6 @@ def check_killed_peer(peer, odometry):
     peer.must("/rumbo/arm")
 
 
-def check_two(peer, first, first_odometry):
-    """The first robot is armed; the second one takes stamped velocities."""
-    second = lab("--namespace", "second", "--stamped", "--scenario", "mode1")
-    odometry = peer.listen(Odometry, "/second/odom")
-    clock = peer.listen(Clock, "/second/clock")
-    # A stamp of 0, 2 s before 2 s, would be none.
-    wait_for("the second robot", lambda: odometry and clock and clock[-1].clock.sec > 2)
-    nodes = {("rumbo", "/"), ("rumbo", "/second")}
-    wait_for("both nodes", lambda: nodes <= set(peer.node.get_node_names_and_namespaces()))
-    peer.must("/second/rumbo/mode/twist")
-    peer.must("/second/rumbo/arm")
-    old = moved_m(odometry, lambda: peer.drive("/second/cmd_vel", lambda: stamped(clock, 2), 0.7))
-    assert old < 1e-3, old
-    wait_for("what is old", lambda: second.said("refused, it was stamped 2."))
-    # Each has its own commands: the other one stands.
-    drive_second = lambda: peer.drive("/second/cmd_vel", lambda: stamped(clock, 0), 1.0)
-    first_stands = moved_m(first_odometry, lambda: check_moves(odometry, drive_second))
-    assert first_stands < 1e-3, first_stands
-    wait_for("standing still", lambda: check_ros_others.standing(odometry))
-    drive_first = lambda: peer.drive("/cmd_vel", lambda: twist(0.15), 1.0)
-    second_stands = moved_m(odometry, lambda: check_moves(first_odometry, drive_first))
-    assert second_stands < 1e-3, second_stands
-    check_ros_parameters.check_two(peer)
-    peer.must("/second/rumbo/stop")
-    # The first one is still armed.
-    refused = peer.call("/rumbo/mode/manual")
-    assert "disarm first" in refused.message, refused
-    peer.must("/rumbo/stop")
-    assert len(peer.seen("/second/")) > 50
-    second.end()
-    wait_for("one node less", lambda: ("rumbo", "/second") not in peer.node.get_node_names_and_namespaces())
-    # Before the lease of its participant is over, which is longer than any patience here.
-    wait_for("its topics and services to be gone", lambda: not peer.seen("/second/"))
-    assert ("rumbo", "/") in peer.node.get_node_names_and_namespaces()
-    assert first.process.poll() is None
-
-
-def check_moves(odometry, act):
-    moved = moved_m(odometry, act)
-    assert moved > 0.05, moved
-
-
 def check_examples():
     """What of the examples can be checked without RViz and `ros2 launch`, and the one that runs."""
     launch = Path("examples/ros2/rumbo.launch.py")
@@ -287,10 +243,14 @@ def check_examples():
 
 
 def check_connected(peer):
-    """A robot at a port: its messages have the time of day."""
-    simulated = Program("lab", "--pty", "--scenario", "mode1", ready="/dev/")
-    options = ["--no-browser", "--port", "0", "--out", sys.argv[1], "--namespace", "third"]
-    robot = Program("ros", "connect", simulated.ready.split()[-1], *options, ready="http://")
+    """A robot at a port: its messages have the time of day. The node may be there before the station."""
+    simulated = Program("rumbo", "lab", "--pty", "--scenario", "mode1", ready="/dev/")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = str(free.getsockname()[1])
+    node = Program("rumbo-ros", f"127.0.0.1:{port}", "--namespace", "third", ready="waiting: no rumbo at")
+    options = ["--no-browser", "--port", port, "--out", sys.argv[1]]
+    robot = Program("rumbo", "connect", simulated.ready.split()[-1], *options, ready="http://")
     odometry = peer.listen(Odometry, "/third/odom")
     description = peer.listen(String, "/third/robot_description", LATCHED)
     wait_for("the third robot", lambda: len(odometry) > 20 and description)
@@ -299,20 +259,32 @@ def check_connected(peer):
     assert "/third/clock" not in dict(peer.node.get_topic_names_and_types())
     peer.must("/third/rumbo/arm")
     peer.must("/third/rumbo/stop")
+    node.end()
+    # It comes again: what was before is not told again.
+    odometry.clear()
+    description.clear()
+    node = Program("rumbo-ros", f"127.0.0.1:{port}", "--namespace", "third", ready="ROS 2: node /third/rumbo")
+    began = time.time()
+    wait_for("the third robot again", lambda: len(odometry) > 20 and description)
+    assert seconds(odometry[0].header.stamp) > began - 3.0, (odometry[0].header, began)
     robot.end()
+    node.end(ask=False)
     simulated.process.terminate()
 
 
-def check_replayed(peer, folder):
-    run = subprocess.run([os.environ["RUMBO_COMMAND"], "run", "mode1", "--out", folder], stdout=subprocess.DEVNULL)
-    assert run.returncode < 2
-    odometry = peer.listen(Odometry, "/log/odom")
-    clock = peer.listen(Clock, "/log/clock")
-    log = str(Path(folder) / "mode1-1.mcap")
-    replay = Program("ros", "replay", log, "--speed", "10", "--namespace", "log", ready="ROS 2")
-    assert replay.process.wait(PATIENCE_S) == 0, replay.lines
-    wait_for("the end", lambda: clock and odometry and seconds(odometry[-1].header.stamp) > 5.0)
-    assert place(odometry)[0] > 0.1, place(odometry)
+def check_left(peer, robot, odometry):
+    """A node that is asked to end stops the robot on its way to a goal: nobody would follow it there."""
+    peer.must("/rumbo/mode/mission")
+    peer.must("/rumbo/arm")
+    check_ros_goal.Goals(peer).must(-1.5, 0.4)
+    wait_for("the way", lambda: abs(odometry[-1].twist.twist.linear.x) > 0.1)
+    robot.node.end()
+    again = Program("rumbo-ros", robot.url.split("?")[0], ready="ROS 2: node")
+    heard = len(odometry)
+    wait_for("the robot again, standing", lambda: len(odometry) > heard + 10 and abs(odometry[-1].twist.twist.linear.x) < 0.005)
+    robot.node, robot.said = again, again.said
+    # It is off.
+    peer.must("/rumbo/mode/manual")
 
 
 def fleet_of_names(folder, *names):
@@ -324,16 +296,33 @@ def fleet_of_names(folder, *names):
     return str(path)
 
 
+def refused(*arguments):
+    run = subprocess.run([COMMANDS["rumbo-ros"], *arguments], capture_output=True, text=True, timeout=PATIENCE_S)
+    assert run.returncode == 2, (arguments, run)
+    return run.stderr
+
+
 def check_refusals(folder):
-    for arguments, why in [
-        (["lab", "--domain", "233"], "0..232"),
-        (["lab", "--namespace", "2nd"], "no digit first"),
-        (["lab", "--pty"], "rumbo ros connect"),
-        (["lab", "--scenario", fleet_of_names(folder, "2nd")], "robot 2nd: a name of ROS 2 begins with a letter"),
-        (["replay", str(Path(folder) / "none.mcap")], "none.mcap"),
-    ]:
-        run = subprocess.run([os.environ["RUMBO_COMMAND"], "ros", *arguments], capture_output=True, text=True)
-        assert run.returncode == 2 and why in run.stderr, (arguments, run)
+    assert "0..232" in refused("--domain", "233")
+    assert "no digit first" in refused("--namespace", "2nd")
+    assert "as rumbo prints it" in refused("https://127.0.0.1:8360")
+    options = ["--no-browser", "--port", "0", "--out", folder]
+    named = Program("rumbo", "lab", "--scenario", fleet_of_names(folder, "first", "2nd"), *options, ready="http://")
+    address = named.ready
+    said = refused(address.replace("token=", "token=0"))
+    assert "was used already or is of an earlier start" in said, said
+    # The address with its token is enough.
+    said = refused(address)
+    assert "robot 2nd: a name of ROS 2 begins with a letter" in said, said
+    named.end()
+    # The file of the key is gone with it.
+    assert "no rumbo at" in refused(address.split("?")[0])
+    run = subprocess.run([COMMANDS["rumbo"], "run", "mode1", "--out", folder], stdout=subprocess.DEVNULL)
+    assert run.returncode < 2
+    log = Program("rumbo", "replay", str(Path(folder) / "mode1-1.mcap"), *options[:3], ready="http://")
+    said = refused(log.ready.split("?")[0])
+    assert "--ros2bag" in said, said
+    log.end()
 
 
 def main():
@@ -370,18 +359,17 @@ def main():
     done("garbage")
     check_killed_peer(peer, odometry)
     done("a killed peer")
-    check_two(peer, first, odometry)
+    check_ros_others.check_two(peer, first, odometry)
     done("two robots")
     check_examples()
     done("the examples")
+    check_left(peer, first, odometry)
+    done("a node that leaves")
     first.end()
-    check_ros_fleet.check(peer, cyclone)
+    check_ros_others.check_fleet(peer, cyclone)
     done("a fleet")
     check_connected(peer)
     done("a robot at a port")
-    with tempfile.TemporaryDirectory() as folder:
-        check_replayed(peer, folder)
-    done("a log")
     Peer.end()
 
 

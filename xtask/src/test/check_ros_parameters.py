@@ -142,7 +142,7 @@ def check_refusals(peer, client, robot):
     assert not done.successful and "disarm" in done.reason.lower(), done
     peer.must("/rumbo/disarm")
     # A page has control, until it releases it.
-    page = Page(robot.ready)
+    page = Page(robot.url)
     page.order("take_control")
     set_one = lambda: result("setting", client.set_parameters([double("front_kp", 6.0)])).results[0]
     wait_for("control of the page", lambda: "another page has control" in set_one().reason)

@@ -188,7 +188,7 @@ const STEPS: [Step; 22] = [
     },
     Step {
         name: "ros",
-        what: "robots as nodes of ROS 2, as genuine peers see them",
+        what: "the node of ROS 2: lints, tests, and as genuine peers see it",
         part_of: Check::Full,
         check: ros::check,
     },

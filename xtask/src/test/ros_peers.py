@@ -1,10 +1,13 @@
 """What the checks of ROS 2 share: a robot that runs, and its peers, a node of rclpy, Cyclone DDS and a page."""
 
+import atexit
 import base64
 import json
 import math
 import os
 import socket
+import subprocess
+import sys
 import threading
 import time
 from dataclasses import dataclass
@@ -28,8 +31,74 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 from geometry_msgs.msg import Twist, TwistStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from ros_programs import PATIENCE_S, Program, lab, wait_for
 from std_srvs.srv import Trigger
+
+COMMANDS = {"rumbo": os.environ["RUMBO_COMMAND"], "rumbo-ros": os.environ["RUMBO_ROS_COMMAND"]}
+# Long enough for any machine; nothing is judged by it.
+PATIENCE_S = 40
+
+
+def wait_for(what, condition):
+    """The first true value of `condition`."""
+    until = time.monotonic() + PATIENCE_S
+    while time.monotonic() < until:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.02)
+    said = [(program.name, program.lines[-20:]) for program in Program.all]
+    raise AssertionError(f"not seen: {what}; what was said: {said}")
+
+
+class Program:
+    """A program that runs until it is asked to end; what it prints."""
+
+    all = []
+
+    def __init__(self, name, *arguments, ready):
+        self.name = name
+        self.all.append(self)
+        self.process = subprocess.Popen([COMMANDS[name], *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        atexit.register(self.process.kill)
+        self.lines = []
+        threading.Thread(target=self._read, daemon=True).start()
+        self.ready = wait_for(f"{ready} of {arguments}", lambda: self.said(ready) or self.process.poll() is not None)
+        assert self.process.poll() is None, self.lines
+
+    def _read(self):
+        for line in self.process.stdout:
+            self.lines.append(line.rstrip())
+
+    def said(self, text):
+        return next((line for line in list(self.lines) if text in line), None)
+
+    def end(self, ask=True):
+        if ask:
+            self.process.terminate()
+        status = self.process.wait(PATIENCE_S)
+        assert status == 0, (status, self.lines)
+
+
+class Robot:
+    """A `rumbo` that serves a robot, or several, and the node that joins it."""
+
+    def __init__(self, *arguments, node=()):
+        options = ["--no-browser", "--port", "0", "--out", sys.argv[1]]
+        self.rumbo = Program("rumbo", *arguments, *options, ready="http://")
+        self.url = self.rumbo.ready
+        # The address without its token, which is for the page: the key is in a file.
+        self.node = Program("rumbo-ros", self.url.split("?")[0], *node, ready="ROS 2: node")
+        self.said = self.node.said
+
+    def end(self):
+        """The node ends with its robot."""
+        self.rumbo.end()
+        self.node.end(ask=False)
+
+
+def lab(*arguments, node=()):
+    return Robot("lab", *arguments, node=node)
+
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

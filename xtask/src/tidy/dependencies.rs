@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 25] = [
+const ARROWS: [(&str, &[&str]); 26] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
@@ -30,6 +30,7 @@ const ARROWS: [(&str, &[&str]); 25] = [
     ("rumbo-log", &["rumbo-wire"]),
     ("rumbo-session", &["rumbo-log"]),
     ("rumbo-ros", &["rumbo-log"]),
+    ("rumbo-ros-node", &["rumbo-ros"]),
     ("rumbo-lab", &["rumbo-experiment", "rumbo-session"]),
     ("rumbo-browser", &["rumbo-lab", "rumbo-flash"]),
     ("rumbo-sketch", &[]),

@@ -117,10 +117,12 @@ impl fmt::Display for Finding {
 pub(crate) fn run(project: &Project) -> Result<bool, String> {
     let tree = Tree::read(project)?;
     let mut findings = dependencies::check(&project.metadata);
-    // The firmware is a workspace of its own.
-    let firmware = project.root.join("firmware/Cargo.toml");
-    if firmware.is_file() {
-        findings.extend(dependencies::check(&metadata(&firmware)?));
+    // Workspaces of their own.
+    for other in ["firmware/Cargo.toml", "ros/Cargo.toml"] {
+        let manifest = project.root.join(other);
+        if manifest.is_file() {
+            findings.extend(dependencies::check(&metadata(&manifest)?));
+        }
     }
     for rule in [
         circles::check,

@@ -74,10 +74,11 @@ fn lints(path: &str, text: &str) -> Option<Finding> {
         .skip(1);
     let inherited = lines.find(|line| !line.is_empty()) == Some("workspace = true");
     let remedy = "add `[lints]` with `workspace = true`";
-    // The firmware's workspace has a lint table of its own.
+    // Other workspaces have a lint table of their own.
     let own = [
         "firmware/",
         "fuzz/Cargo.toml",
+        "ros/",
         "tools/bindgen/",
         "tools/rapier/",
     ]

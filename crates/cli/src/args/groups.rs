@@ -177,19 +177,7 @@ impl ServeArgs {
 pub(crate) struct SessionArgs {
     #[command(flatten)]
     pub(crate) serve: ServeArgs,
-    #[cfg(feature = "foxglove")]
-    #[command(flatten)]
-    pub(crate) bridge: BridgeArgs,
     /// Folder for the log, of a simulated robot one for each run; made if need be [default: rumbo/logs in the user's data folder]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-}
-
-/// The live bridge.
-#[cfg(feature = "foxglove")]
-#[derive(Args, Clone, Copy, Debug)]
-pub(crate) struct BridgeArgs {
-    /// Show the session to Foxglove or Lichtblick too, on this port of 127.0.0.1; read-only
-    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765")]
-    pub(crate) foxglove: Option<u16>,
 }

@@ -3,21 +3,15 @@
 mod groups;
 mod live;
 mod logs;
-#[cfg(feature = "ros")]
-mod ros;
 mod runs;
 mod studies;
 mod values;
 
-#[cfg(feature = "foxglove")]
-pub(crate) use groups::BridgeArgs;
 pub(crate) use groups::{OverwriteArgs, ServeArgs, board};
 pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs};
 pub(crate) use logs::{
     CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
 };
-#[cfg(feature = "ros")]
-pub(crate) use ros::{Distribution, NodeArgs, PlayArgs, RosArgs, RosSource};
 pub(crate) use runs::{
     CalibrateArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, RunArgs,
 };
@@ -58,9 +52,6 @@ pub(crate) enum Command {
     Lab(LabArgs),
     /// Drive a real robot from the same dashboard, over a serial port or TCP
     Connect(ConnectArgs),
-    /// Show a robot, or the log of one, to ROS 2 as a node, and let it be driven from there
-    #[cfg(feature = "ros")]
-    Ros(Box<RosArgs>),
     /// Write the firmware to an Arduino Mega
     Flash(FlashArgs),
     /// Run scenarios as fast as the machine can and judge their metrics
@@ -230,7 +221,7 @@ pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
     if !error.use_stderr() {
         return Ok(error.print()?);
     }
-    if let Some(remedy) = left_out(error) {
+    if let Some(remedy) = elsewhere(error) {
         return Err(Failure::Input(remedy));
     }
     let text = error.to_string();
@@ -248,23 +239,12 @@ pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
     )))
 }
 
-/// How to get what a word asks for, if it is of a feature that this build does not have.
-fn left_out(error: &clap::Error) -> Option<String> {
-    let word = [ContextKind::InvalidSubcommand, ContextKind::InvalidArg]
-        .into_iter()
-        .find_map(|kind| match error.get(kind) {
-            Some(ContextValue::String(word)) => Some(word),
-            _ => None,
-        })?;
-    let (feature, page) = match word.as_str() {
-        "ros" if cfg!(not(feature = "ros")) => ("ros", "docs/ros2.md"),
-        "--zenoh" if cfg!(not(feature = "zenoh")) => ("zenoh", "docs/ros2.md"),
-        "--foxglove" if cfg!(not(feature = "foxglove")) => ("foxglove", "docs/logs.md"),
-        _ => return None,
-    };
-    Some(format!(
-        "{word}: this rumbo is built without it; in a checkout, `cargo install --path crates/cli --features {feature}` builds one with it ({page})"
-    ))
+/// Where what a word asks for is, if it is in another program.
+fn elsewhere(error: &clap::Error) -> Option<String> {
+    let word = error.get(ContextKind::InvalidSubcommand)?;
+    (*word == ContextValue::String("ros".to_owned())).then(|| {
+        "ros: the node of ROS 2 is a program of its own, beside `rumbo lab` or `rumbo connect`; in a checkout, `cargo install --path ros` installs it: rumbo-ros (docs/ros2.md)".to_owned()
+    })
 }
 
 impl Cli {
@@ -399,12 +379,6 @@ mod tests {
         files.into_iter().map(read).collect()
     }
 
-    /// Whether a command is of a feature that this build does not have.
-    fn is_left_out(line: &str) -> bool {
-        let foxglove = cfg!(not(feature = "foxglove")) && line.contains("--foxglove");
-        foxglove || cfg!(not(feature = "ros")) && line.starts_with("rumbo ros")
-    }
-
     #[test]
     fn every_command_in_a_block_of_the_documents_is_valid() {
         let mut seen = 0;
@@ -413,7 +387,7 @@ mod tests {
             let mut in_block = false;
             for line in joined.lines().map(str::trim) {
                 in_block ^= line.starts_with("```");
-                if !in_block || !line.starts_with("rumbo ") || is_left_out(line) {
+                if !in_block || !line.starts_with("rumbo ") {
                     continue;
                 }
                 let place = path.display();
@@ -436,9 +410,6 @@ mod tests {
             }
             for rest in text.split("`rumbo ").skip(1) {
                 let line = format!("rumbo {}", rest.split('`').next().unwrap());
-                if is_left_out(&line) {
-                    continue;
-                }
                 // What is left out or stands for something is the reader's.
                 let known = Cli::try_parse_from(words(&line)).map_err(|error| error.kind());
                 let unknown = [ErrorKind::InvalidSubcommand, ErrorKind::UnknownArgument];

@@ -21,18 +21,6 @@ pub(super) fn speed(text: &str) -> Result<f64, Failure> {
     }
 }
 
-/// The same for what cannot be paused.
-#[cfg(feature = "ros")]
-pub(super) fn positive_speed(text: &str) -> Result<f64, Failure> {
-    let speed = speed(text)?;
-    match speed >= 0.01 {
-        true => Ok(speed),
-        false => Err(Failure::input(
-            "must be at least 0.01 times real time, e.g. 0.5",
-        )),
-    }
-}
-
 /// A line of text and its time: `REF 40@6`.
 pub(super) fn timed_text(text: &str) -> Result<TimedText, Failure> {
     let wrong = || Failure::input("write it as TEXT@SECONDS, e.g. 'REF 40@6'");

@@ -66,3 +66,23 @@ fn an_end_before_the_browser_came_leaves_no_file() {
     lab.end();
     assert!(!file.exists());
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_program_of_the_user_finds_the_key_by_the_port_as_long_as_the_session_lasts() {
+    let folder = tempfile::tempdir().unwrap();
+    let lab = Running::of(
+        program()
+            .args(["lab", "--no-browser", "--port", "0"])
+            .env("XDG_RUNTIME_DIR", folder.path()),
+    );
+    let host = lab.said.split('/').nth(2).unwrap().to_owned();
+    let (_, port) = host.rsplit_once(':').unwrap();
+    let file = folder.path().join(format!("rumbo-{port}.key"));
+    let mode = file.metadata().unwrap().permissions().mode();
+    assert_eq!(mode & 0o777, 0o600, "{}", file.display());
+    let key = std::fs::read_to_string(&file).unwrap();
+    Page::at(&host, "/ws", &key).wait_for_event("connected");
+    lab.end();
+    assert!(!file.exists());
+}

@@ -24,10 +24,11 @@ pub(crate) fn file(name: &str, text: &str) -> PathBuf {
     path
 }
 
-/// `rumbo`, with its logs kept out of the developer's own.
+/// `rumbo`, with its logs and keys kept out of the developer's own.
 pub(crate) fn program() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rumbo"));
     command.env("RUMBO_LOGS", folder().join("logs"));
+    command.env("XDG_RUNTIME_DIR", folder());
     command
 }
 
@@ -111,7 +112,7 @@ impl Page {
         Self::at(host, "/ws", key)
     }
 
-    fn at(host: &str, path: &str, key: &str) -> Self {
+    pub(crate) fn at(host: &str, path: &str, key: &str) -> Self {
         let uri = format!("ws://{host}{path}").parse().unwrap();
         let request = tungstenite::ClientRequestBuilder::new(uri)
             .with_header("Origin", format!("http://{host}"))

@@ -1,4 +1,4 @@
-//! A robot as a node of ROS 2.
+//! A robot in the messages of ROS 2.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -7,7 +7,4 @@
 )]
 
 mod convert;
-mod navigate;
-mod node;
-mod parameters;
 mod types;

@@ -6,8 +6,7 @@
     reason = "helpers of tests too"
 )]
 
-mod bridge;
-mod client;
+mod beside;
 mod door;
 mod lab;
 #[path = "../support/page.rs"]

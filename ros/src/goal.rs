@@ -7,21 +7,19 @@
 //! A newer goal replaces the one on the way, which is aborted. Mode 8 makes each goal reached its origin, from which goals
 //! count: near its goal the robot gets the next one when it stands there and the new origin is known.
 
-use super::aim::{Aim, is_task, order};
-use super::report;
-use super::session::{Live, PATIENCE, TAKEN};
+use crate::aim::{Aim, is_task, order};
+use crate::bridge::Caller;
+use crate::live::{Live, PATIENCE, report};
+use crate::navigate::{Distribution, Goal, Goals, Id, NAME, Question, Status};
+use crate::station::Order;
 use rumbo_log::{End, Level, LoggedEvent};
-use rumbo_ros::bridge::Caller;
 use rumbo_ros::convert::stamp;
 use rumbo_ros::geometry::{ODOM, pose};
 use rumbo_ros::messages::{Header, Time};
-use rumbo_ros::navigate::{Distribution, Goal, Goals, Id, NAME, Question, Status};
 use rumbo_ros::service_messages::{
     Accepted, Duration as Lasting, Ended, FeedbackMessage, NavigateFeedback, PoseStamped, Uuid,
 };
 use rumbo_ros::topics::Topic;
-use rumbo_session::Order;
-use rumbo_wire::Command;
 use std::time::{Duration, Instant};
 
 /// Nearer than this the robot may be there before a new goal arrives: the way in a second, and a little [m].
@@ -35,6 +33,15 @@ const STOPPING: Duration = Duration::from_secs(3);
 struct Asked {
     caller: Caller,
     goal: Goal,
+}
+
+/// A goal that the robot has not acknowledged yet.
+struct Ordered {
+    asked: Asked,
+    aim: Aim,
+    /// The number of its order.
+    order: u64,
+    since: Instant,
 }
 
 /// A goal on its way.
@@ -58,7 +65,7 @@ pub(super) struct Navigation {
     /// The next goal, which waits.
     next: Option<Asked>,
     /// A goal that the robot has not acknowledged yet.
-    ordered: Option<(Asked, Aim, Instant)>,
+    ordered: Option<Ordered>,
     active: Option<Active>,
 }
 
@@ -104,7 +111,7 @@ impl Live {
             && active.id == id
         {
             active.canceling.get_or_insert_with(Instant::now);
-            let stopped = self.give(Order::Robot(Command::Stop));
+            let stopped = self.station.order(Order::Stop);
             if let Err(why) = stopped {
                 self.note(&format!("{NAME}: {why}"));
             }
@@ -140,12 +147,19 @@ impl Live {
             Ok(aim) => aim,
             Err(why) => return self.reject(&asked, &why),
         };
-        let order = order(&aim, self.state.robot.mode);
+        let order = order(&aim, self.mode());
         let order = order.ok_or_else(|| {
             "the robot is in another mode; call mode/mission, or mode/waypoints".to_owned()
         });
-        match order.and_then(|order| self.give(order)) {
-            Ok(()) => self.navigation.ordered = Some((asked, aim, Instant::now())),
+        match order.and_then(|order| self.station.order(order)) {
+            Ok(order) => {
+                self.navigation.ordered = Some(Ordered {
+                    asked,
+                    aim,
+                    order,
+                    since: Instant::now(),
+                });
+            }
             Err(why) => self.reject(&asked, &why),
         }
     }
@@ -208,26 +222,25 @@ impl Live {
 
     /// Accepts the goal that the robot has acknowledged.
     fn confirm(&mut self) {
-        let Some((asked, aim, since)) = self.navigation.ordered.take() else {
+        let Some(ordered) = self.navigation.ordered.take() else {
             return;
         };
-        let lasts = since.elapsed();
-        let is_known = lasts > TAKEN && self.state.link.unacknowledged == 0;
-        if lasts > TAKEN
-            && let Some(why) = self.state.refused.clone()
-        {
-            return self.reject(&asked, &why);
+        let Ordered { asked, aim, .. } = &ordered;
+        let is_taken = self.station.has_taken(ordered.order);
+        let is_known = is_taken && self.state.link.unacknowledged == 0;
+        if is_taken && let Some(why) = self.state.refused.clone() {
+            return self.reject(asked, &why);
         }
-        if is_known && is_task(&aim, &self.state.robot) {
-            return self.accept(&asked, aim);
+        if is_known && is_task(aim, &self.state.robot) {
+            return self.accept(asked, *aim);
         }
-        if lasts < PATIENCE {
-            self.navigation.ordered = Some((asked, aim, since));
+        if ordered.since.elapsed() < PATIENCE {
+            self.navigation.ordered = Some(ordered);
             return;
         }
         // It may still arrive: nobody would know of it.
-        self.reject(&asked, "the robot has not confirmed it; it is stopped");
-        let _ = self.give(Order::Robot(Command::Stop));
+        self.reject(asked, "the robot has not confirmed it; it is stopped");
+        let _ = self.station.order(Order::Stop);
     }
 
     fn accept(&mut self, asked: &Asked, aim: Aim) {
@@ -263,7 +276,7 @@ impl Live {
             Some((status, why)) => {
                 if !self.state.link.connected {
                     // Its messages are lost; ours may still arrive.
-                    let _ = self.give(Order::Robot(Command::Stop));
+                    let _ = self.station.order(Order::Stop);
                 }
                 self.end(active.id, status, &why);
             }
@@ -325,7 +338,7 @@ impl Live {
     pub(super) fn end_run(&mut self) {
         let navigation = &mut self.navigation;
         let asked = navigation.next.take().into_iter();
-        let ordered = navigation.ordered.take().map(|(asked, ..)| asked);
+        let ordered = navigation.ordered.take().map(|ordered| ordered.asked);
         for asked in asked.chain(ordered).collect::<Vec<_>>() {
             self.reject(&asked, "the simulation was started again");
         }

@@ -1,10 +1,9 @@
 //! A node on a bridge that only notes what it is asked for.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-use rumbo_ros::bridge::{Bridge, BridgeError, Caller, Channel, Incoming, ServiceType};
+use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming};
+use crate::node::{BadVelocity, Node, Wish};
 use rumbo_ros::convert::clock;
 use rumbo_ros::messages::{Header, Time, Twist, TwistStamped, Vector3};
-use rumbo_ros::node::{BadVelocity, Node, Wish};
 use rumbo_ros::topics::{Quality, Topic};
 use rumbo_ros::types::{Definition, encode};
 use std::cell::RefCell;
@@ -55,8 +54,8 @@ impl Bridge for Noted {
         self.note(format!("reads {name} {} {how}", of.name))
     }
 
-    fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError> {
-        self.note(format!("serves {name} {}", of.name))
+    fn serve(&mut self, name: &str, kind: &str) -> Result<Channel, BridgeError> {
+        self.note(format!("serves {name} {kind}"))
     }
 
     fn receive(&mut self) -> Option<Incoming> {

@@ -1,9 +1,8 @@
 //! Velocities of ROS 2: the one way from `/cmd_vel` to the wheels.
 
-use super::session::{AGAIN, Live, SHOWN, is_due};
-use rumbo_control::mode::ModeId;
-use rumbo_ros::node::{BadVelocity, Velocity};
-use rumbo_session::Order;
+use crate::live::{AGAIN, Live, SHOWN, is_due};
+use crate::node::{BadVelocity, Velocity};
+use crate::station::Order;
 use std::time::{Duration, Instant};
 
 /// Oldest velocity that is passed on [s]; the robot judges by the same, from there on.
@@ -73,22 +72,21 @@ impl Live {
         }
         self.check_age(&velocity)?;
         // What would move nothing takes no control from the pages.
-        let robot = &self.state.robot;
-        if robot.mode != ModeId::Twist as u8 {
+        if self.mode() != "twist" {
             return Err("refused, the robot is in another mode; call mode/twist".into());
         }
-        if !robot.armed {
+        if !self.state.robot.armed {
             return Err("refused, the robot is off; call arm".into());
         }
         // What is out of range is refused by the session; a number that is none does not get there.
-        let number = |value: f64, what: &str| match value.is_finite() {
-            true => Ok(value as f32),
-            false => Err(format!("refused, its {what} is not a finite number")),
+        let number = |value: f64, what: &str| match value as f32 {
+            value if value.is_finite() => Ok(value),
+            _ => Err(format!("refused, its {what} is not a finite number")),
         };
-        self.give(Order::Velocity(rumbo_control::Velocity {
+        self.station.order(Order::Velocity {
             forward_m_s: number(velocity.forward_m_s, "forward speed")?,
             yaw_rad_s: number(velocity.yaw_rad_s, "yaw rate")?,
-        }))?;
+        })?;
         self.driving.passed = Some(now);
         Ok(())
     }

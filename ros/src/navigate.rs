@@ -8,40 +8,23 @@
 //! The type is Nav2's, which installations have. What later distributions have added to it stands at its end: a client
 //! reads as much of the feedback as its own definition has. Its result has a fixed size in earlier ones, and is cut to it.
 
-use crate::bridge::{Caller, ServiceType};
-use crate::messages::Time;
-use crate::service_messages::{
+use crate::bridge::Caller;
+use clap::ValueEnum;
+use rumbo_log::MapPose;
+use rumbo_ros::messages::Time;
+use rumbo_ros::service_messages::{
     Canceled, Ended, GoalInfo, GoalStatus, GoalStatusArray, NavigateResult, Uuid,
 };
-use crate::types::{decode, encode};
-use rumbo_log::MapPose;
+use rumbo_ros::types::{decode, encode};
 use std::collections::VecDeque;
 
 /// Name of the action below that of the node.
-pub const NAME: &str = "navigate_to_pose";
+pub(crate) const NAME: &str = "navigate_to_pose";
 /// Names and types of its services, in the order of [`question`].
-pub const SERVICES: [(&str, ServiceType); 3] = [
-    (
-        "send_goal",
-        ServiceType {
-            name: "nav2_msgs/action/NavigateToPose_SendGoal",
-            hash: "RIHS01_a4fcb3bee1bf32e21a0e541a943b221aa0826996e2c98f079b47022b256f48b5",
-        },
-    ),
-    (
-        "cancel_goal",
-        ServiceType {
-            name: "action_msgs/srv/CancelGoal",
-            hash: "RIHS01_573d8b0a534451d7bc2ac8c5ffde8ac14b8593b7001175d0cd6516dcbeb8689a",
-        },
-    ),
-    (
-        "get_result",
-        ServiceType {
-            name: "nav2_msgs/action/NavigateToPose_GetResult",
-            hash: "RIHS01_12dc670d3dac446019bb61a2bef1fd92ada02d582ca70922706d933a54b07f1c",
-        },
-    ),
+pub(crate) const SERVICES: [(&str, &str); 3] = [
+    ("send_goal", "nav2_msgs/action/NavigateToPose_SendGoal"),
+    ("cancel_goal", "action_msgs/srv/CancelGoal"),
+    ("get_result", "nav2_msgs/action/NavigateToPose_GetResult"),
 ];
 /// Goals that are remembered.
 const KEPT: usize = 20;
@@ -51,33 +34,33 @@ const MOST_WAITING: usize = 100;
 const FAILED: u16 = 9000;
 
 /// A goal's identity.
-pub type Id = [u8; 16];
+pub(crate) type Id = [u8; 16];
 
 /// Where a client wants the robot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Goal {
+pub(crate) struct Goal {
     /// Its identity.
-    pub id: Id,
+    pub(crate) id: Id,
     /// The frame of the pose.
-    pub frame: String,
+    pub(crate) frame: String,
     /// The pose.
-    pub at: MapPose,
+    pub(crate) at: MapPose,
     /// The pose has a heading: its quaternion is one.
-    pub has_heading: bool,
+    pub(crate) has_heading: bool,
 }
 
 /// Goals that somebody wants canceled: that of an identity, and all up to a time. Without both all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Cancel {
+pub(crate) struct Cancel {
     /// This one; zeros: by time.
-    pub id: Id,
+    pub(crate) id: Id,
     /// Accepted up to then: seconds and nanoseconds; zeros: by identity.
-    pub until: (i32, u32),
+    pub(crate) until: (i32, u32),
 }
 
 /// What somebody wants of the action.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Question {
+pub(crate) enum Question {
     /// The robot is to go there.
     Send(Goal),
     /// It is not to go on.
@@ -88,7 +71,7 @@ pub enum Question {
 
 /// The question in a request to the service of this number; `None`: it cannot be decoded.
 #[must_use]
-pub fn question(service: usize, data: &[u8]) -> Option<Question> {
+pub(crate) fn question(service: usize, data: &[u8]) -> Option<Question> {
     type Header = ((i32, u32), String);
     type Pose = ([f64; 3], [f64; 4]);
     match service {
@@ -119,14 +102,14 @@ pub fn question(service: usize, data: &[u8]) -> Option<Question> {
 }
 
 /// Whose definition of the result clients have.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Distribution {
-    /// An empty result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Distribution {
+    /// An empty result
     Humble,
-    /// An error's number; Iron too.
+    /// An error's number; Iron too
     #[default]
     Jazzy,
-    /// Its text too; and newer.
+    /// Its text too; and newer
     Kilted,
 }
 
@@ -135,7 +118,7 @@ impl Distribution {
     ///
     /// # Errors
     /// What CDR cannot express.
-    pub fn encode(self, ended: &Ended) -> Result<Vec<u8>, cdr_encoding::Error> {
+    pub(crate) fn encode(self, ended: &Ended) -> Result<Vec<u8>, cdr_encoding::Error> {
         let mut data = encode(ended)?;
         // Behind the header of four bytes: the status; what stands for nothing, or the number from the next even place.
         data.truncate(match self {
@@ -150,7 +133,7 @@ impl Distribution {
 /// How a goal stands, by the numbers of `action_msgs`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i8)]
-pub enum Status {
+pub(crate) enum Status {
     /// The robot is on its way.
     Executing = 2,
     /// It is to stop.
@@ -189,7 +172,7 @@ impl Known {
 
 /// The goals that were accepted, and those who wait for their ends.
 #[derive(Debug, Default)]
-pub struct Goals {
+pub(crate) struct Goals {
     known: VecDeque<Known>,
     waiting: Vec<(Id, Caller)>,
 }
@@ -203,12 +186,12 @@ impl Goals {
 
     /// Whether there has been this goal.
     #[must_use]
-    pub fn knows(&self, id: Id) -> bool {
+    pub(crate) fn knows(&self, id: Id) -> bool {
         self.find(id).is_some()
     }
 
     /// A goal is accepted: the robot is on its way.
-    pub fn begin(&mut self, id: Id, stamp: Time) {
+    pub(crate) fn begin(&mut self, id: Id, stamp: Time) {
         let info = GoalInfo {
             goal_id: Uuid { uuid: id },
             stamp,
@@ -224,7 +207,7 @@ impl Goals {
     }
 
     /// What to answer to a wish to cancel, and the goals that are now being canceled.
-    pub fn cancel(&mut self, cancel: Cancel) -> (Canceled, Vec<Id>) {
+    pub(crate) fn cancel(&mut self, cancel: Cancel) -> (Canceled, Vec<Id>) {
         let Cancel { id, until } = cancel;
         let (by_id, by_time) = (id != Id::default(), until != (0, 0));
         let mut answer = Canceled::default();
@@ -249,7 +232,7 @@ impl Goals {
     }
 
     /// A goal has ended, and why if it was not reached. Those who wait for it are to be answered.
-    pub fn end(&mut self, id: Id, status: Status, why: &str) -> Vec<(Caller, Ended)> {
+    pub(crate) fn end(&mut self, id: Id, status: Status, why: &str) -> Vec<(Caller, Ended)> {
         let own = |known: &&mut Known| known.info.goal_id.uuid == id;
         let Some(known) = self.known.iter_mut().find(own) else {
             return Vec::new();
@@ -262,7 +245,7 @@ impl Goals {
     }
 
     /// The end of a goal for one who asks; `None` while it lasts: the answer comes with [`Goals::end`].
-    pub fn result(&mut self, id: Id, caller: Caller) -> Option<Ended> {
+    pub(crate) fn result(&mut self, id: Id, caller: Caller) -> Option<Ended> {
         match self.find(id) {
             None => Some(Ended::default()),
             Some(known) if known.is_over() => Some(known.ended()),
@@ -278,7 +261,7 @@ impl Goals {
 
     /// How all stand.
     #[must_use]
-    pub fn status(&self) -> GoalStatusArray {
+    pub(crate) fn status(&self) -> GoalStatusArray {
         let status_list = self.known.iter().map(|known| GoalStatus {
             goal_info: known.info.clone(),
             status: known.status as i8,

@@ -3,58 +3,53 @@
 //! A number is a double with its range, a switch a bool, a choice one of some strings. A value that is not known yet is
 //! not set.
 
-use crate::bridge::ServiceType;
-use crate::messages::Time;
-use crate::service_messages::{
+use rumbo_ros::messages::Time;
+use rumbo_ros::service_messages::{
     Described, FloatingPointRange, ListParametersResult, Listed, Parameter, ParameterDescriptor,
     ParameterEvent, ParameterValue, Types, Values,
 };
-use crate::types::{decode, encode};
-use rumbo_log::{Parameter as Entry, ParameterState};
+use rumbo_ros::types::{decode, encode};
+use serde::Deserialize;
+
+/// A parameter of the robot, as the station has it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub(crate) struct ParameterState {
+    /// Its number.
+    pub(crate) id: u8,
+    pub(crate) name: String,
+    unit: String,
+    min: f32,
+    max: f32,
+    /// `number`, `switch` or `choice`.
+    #[serde(rename = "type")]
+    kind: String,
+    /// The names of the values of a choice.
+    choices: Vec<String>,
+    description: String,
+    /// Once it is known.
+    pub(crate) value: Option<f32>,
+    /// It is on its way to the robot.
+    pub(crate) pending: bool,
+    /// Why the robot has not taken it.
+    pub(crate) refused: Option<String>,
+}
 
 /// Names and types of the services, in the order of [`question`].
-pub const SERVICES: [(&str, ServiceType); 6] = [
-    (
-        "list_parameters",
-        ServiceType {
-            name: "rcl_interfaces/srv/ListParameters",
-            hash: "RIHS01_3e6062bfbb27bfb8730d4cef2558221f51a11646d78e7bb30a1e83afac3aad9d",
-        },
-    ),
+pub(crate) const SERVICES: [(&str, &str); 6] = [
+    ("list_parameters", "rcl_interfaces/srv/ListParameters"),
     (
         "describe_parameters",
-        ServiceType {
-            name: "rcl_interfaces/srv/DescribeParameters",
-            hash: "RIHS01_845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff",
-        },
+        "rcl_interfaces/srv/DescribeParameters",
     ),
-    (
-        "get_parameters",
-        ServiceType {
-            name: "rcl_interfaces/srv/GetParameters",
-            hash: "RIHS01_bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc",
-        },
-    ),
+    ("get_parameters", "rcl_interfaces/srv/GetParameters"),
     (
         "get_parameter_types",
-        ServiceType {
-            name: "rcl_interfaces/srv/GetParameterTypes",
-            hash: "RIHS01_da199c878688b3e530bdfe3ca8f74cb9fa0c303101e980a9e8f260e25e1c80ca",
-        },
+        "rcl_interfaces/srv/GetParameterTypes",
     ),
-    (
-        "set_parameters",
-        ServiceType {
-            name: "rcl_interfaces/srv/SetParameters",
-            hash: "RIHS01_56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f743a263bc734c154015d7e0",
-        },
-    ),
+    ("set_parameters", "rcl_interfaces/srv/SetParameters"),
     (
         "set_parameters_atomically",
-        ServiceType {
-            name: "rcl_interfaces/srv/SetParametersAtomically",
-            hash: "RIHS01_0e192ef259c07fc3c07a13191d27002222e65e00ccec653ca05e856f79285fcd",
-        },
+        "rcl_interfaces/srv/SetParametersAtomically",
     ),
 ];
 
@@ -67,7 +62,7 @@ const STRING: u8 = 4;
 
 /// A value that somebody sends.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub(crate) enum Value {
     /// `bool`.
     Bool(bool),
     /// `int64`.
@@ -82,7 +77,7 @@ pub enum Value {
 
 /// What somebody wants of the parameters.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Question {
+pub(crate) enum Question {
     /// The names, of those that begin with one of these and a dot, or are one of these; without any of all.
     List(Vec<String>),
     /// What these are.
@@ -113,7 +108,7 @@ type Raw = (
 
 /// The question in a request to the service of this number; `None`: it cannot be decoded.
 #[must_use]
-pub fn question(service: usize, data: &[u8]) -> Option<Question> {
+pub(crate) fn question(service: usize, data: &[u8]) -> Option<Question> {
     let names = || decode::<(Vec<String>,)>(data).ok().map(|(names,)| names);
     let values = || {
         let (sent,) = decode::<(Vec<(String, Raw)>,)>(data).ok()?;
@@ -147,14 +142,14 @@ pub fn question(service: usize, data: &[u8]) -> Option<Question> {
 /// # Errors
 /// What CDR cannot express.
 #[must_use]
-pub fn answer(
+pub(crate) fn answer(
     question: &Question,
     parameters: &[ParameterState],
 ) -> Option<Result<Vec<u8>, cdr_encoding::Error>> {
-    let find = |name: &String| parameters.iter().find(|each| each.entry.name == name);
+    let find = |name: &String| parameters.iter().find(|each| each.name == *name);
     Some(match question {
         Question::List(prefixes) => {
-            let names = parameters.iter().map(|each| each.entry.name.to_owned());
+            let names = parameters.iter().map(|each| each.name.clone());
             // None of the names has a dot.
             let names = names.filter(|name| prefixes.is_empty() || prefixes.contains(name));
             let names = names.collect();
@@ -164,7 +159,7 @@ pub fn answer(
         }
         Question::Describe(names) => {
             let descriptors = names.iter().map(|name| match find(name) {
-                Some(known) => descriptor(&known.entry),
+                Some(known) => descriptor(known),
                 None => ParameterDescriptor {
                     name: name.clone(),
                     ..ParameterDescriptor::default()
@@ -183,7 +178,7 @@ pub fn answer(
         }
         Question::Types(names) => {
             let types = names.iter().map(|name| match find(name) {
-                Some(known) => kind(&known.entry),
+                Some(known) => kind(known),
                 None => NOT_SET,
             });
             let types = types.collect();
@@ -193,8 +188,8 @@ pub fn answer(
     })
 }
 
-fn kind(entry: &Entry) -> u8 {
-    match entry.kind {
+fn kind(entry: &ParameterState) -> u8 {
+    match entry.kind.as_str() {
         "switch" => BOOL,
         "choice" => STRING,
         _ => DOUBLE,
@@ -206,9 +201,9 @@ fn double(value: f32) -> f64 {
     value.to_string().parse().unwrap_or_else(|_| value.into())
 }
 
-fn descriptor(entry: &Entry) -> ParameterDescriptor {
+fn descriptor(entry: &ParameterState) -> ParameterDescriptor {
     let kind = kind(entry);
-    let unit = match entry.unit {
+    let unit = match entry.unit.as_str() {
         "" => String::new(),
         unit => format!(" [{unit}]"),
     };
@@ -218,7 +213,7 @@ fn descriptor(entry: &Entry) -> ParameterDescriptor {
         step: 0.0,
     };
     ParameterDescriptor {
-        name: entry.name.to_owned(),
+        name: entry.name.clone(),
         kind,
         description: format!("{}{unit}", entry.description),
         additional_constraints: match kind {
@@ -235,14 +230,17 @@ fn value(known: &ParameterState) -> ParameterValue {
     let Some(number) = known.value else {
         return ParameterValue::default();
     };
-    let (kind, choices) = (kind(&known.entry), known.entry.choices);
+    let (kind, choices) = (kind(known), &known.choices);
     // As the robot reads it: the nearest.
-    let chosen = choices.get(number.round() as usize).copied();
+    let chosen = choices.get(number.round() as usize);
     ParameterValue {
         kind,
         bool_value: kind == BOOL && number > 0.5,
         double_value: if kind == DOUBLE { double(number) } else { 0.0 },
-        string_value: chosen.filter(|_| kind == STRING).unwrap_or("").to_owned(),
+        string_value: chosen
+            .filter(|_| kind == STRING)
+            .cloned()
+            .unwrap_or_default(),
         ..ParameterValue::default()
     }
 }
@@ -251,8 +249,8 @@ fn value(known: &ParameterState) -> ParameterValue {
 ///
 /// # Errors
 /// Why it is none.
-pub fn number(entry: &Entry, value: &Value) -> Result<f32, String> {
-    let Entry { min, max, unit, .. } = *entry;
+pub(crate) fn number(entry: &ParameterState, value: &Value) -> Result<f32, String> {
+    let ParameterState { min, max, unit, .. } = entry;
     let (wanted, given) = match (kind(entry), value) {
         (BOOL, Value::Bool(value)) => return Ok(f32::from(u8::from(*value))),
         (STRING, Value::Text(name)) => {
@@ -271,7 +269,7 @@ pub fn number(entry: &Entry, value: &Value) -> Result<f32, String> {
         return Err(format!("it is {wanted}"));
     }
     let number = given as f32;
-    match (min..=max).contains(&number) {
+    match (min..=max).contains(&&number) {
         true => Ok(number),
         false => Err(format!("{given} is not within {min} to {max} {unit}")
             .trim_end()
@@ -281,7 +279,7 @@ pub fn number(entry: &Entry, value: &Value) -> Result<f32, String> {
 
 /// What has changed between two states of the same table; `None`: nothing has.
 #[must_use]
-pub fn changes(
+pub(crate) fn changes(
     node: &str,
     stamp: Time,
     before: &[ParameterState],
@@ -293,9 +291,9 @@ pub fn changes(
         ..ParameterEvent::default()
     };
     for known in now {
-        let earlier = before.iter().find(|each| each.entry.id == known.entry.id);
+        let earlier = before.iter().find(|each| each.id == known.id);
         let parameter = || Parameter {
-            name: known.entry.name.to_owned(),
+            name: known.name.clone(),
             value: value(known),
         };
         match (earlier.and_then(|each| each.value), known.value) {

@@ -1,10 +1,7 @@
 //! A goal of ROS 2 in the robot's terms: the order for it, and whether it is what the robot does.
 
-use rumbo_control::mode::ModeId;
-use rumbo_control::mode::waypoints::Waypoint;
+use crate::station::{Order, Waypoint};
 use rumbo_log::{End, MapPose, RobotState};
-use rumbo_session::Order;
-use rumbo_wire::Command;
 
 /// A goal in the robot's terms.
 #[derive(Clone, Copy)]
@@ -16,28 +13,25 @@ pub(super) struct Aim {
     pub(super) heading_rad: Option<f32>,
 }
 
-/// The order for a goal in the robot's mode; `None`: that mode has no goals.
-pub(super) fn order(aim: &Aim, mode: u8) -> Option<Order> {
+/// The order for a goal in the robot's mode, by its name; `None`: that mode has no goals.
+pub(super) fn order(aim: &Aim, mode: &str) -> Option<Order> {
     let Aim {
         x_m,
         y_m,
         heading_rad,
         ..
     } = *aim;
-    match ModeId::from_number(mode)? {
-        ModeId::Mission => Some(Order::Robot(Command::Goal { x_m, y_m })),
-        ModeId::Waypoints => {
-            let route = Command::Route {
-                repeat: false,
-                relative: false,
-            };
-            let waypoint = Waypoint {
+    match mode {
+        "mission" => Some(Order::Goal { x_m, y_m }),
+        "waypoints" => Some(Order::Route {
+            repeat: false,
+            relative: false,
+            waypoints: [Waypoint {
                 x_m,
                 y_m,
                 heading_rad,
-            };
-            Some(Order::Route(vec![route, Command::Waypoint(waypoint)]))
-        }
+            }],
+        }),
         _ => None,
     }
 }

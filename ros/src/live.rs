@@ -1,24 +1,26 @@
-//! A session as a node of ROS 2 shows it: what is new on its board becomes messages, calls of services become orders.
+//! A session as a node of ROS 2 shows it: what is new becomes messages, calls of services become orders.
 //!
 //! The node takes control with an order, as a page does, and releases it when nothing lasts that needs it: no call, no
 //! velocity, no goal; calling `take_control` keeps it.
 
-use super::calls::{Service, Waiting, services};
-use super::drive::Driving;
-use super::goal::Navigation;
-use super::parameters::Parameters;
-use super::{RosNode, WAKE, definitions, report};
-use crate::args::NodeArgs;
+use crate::address::StationError;
+use crate::args::Args;
+use crate::bridge::BridgeError;
+use crate::calls::{Service, Waiting, services};
+use crate::dds::Dds;
+use crate::drive::Driving;
+use crate::goal::Navigation;
+use crate::node::{Node, Wish};
 use crate::output;
-use rumbo_log::{Scene, State};
-use rumbo_ros::bridge::BridgeError;
+use crate::settings::Settings;
+use crate::station::{News, Order, Seat, Station};
+use rumbo_log::{Level, LoggedEvent, Scene, State};
 use rumbo_ros::convert::{ConvertError, Converter, Sent, clock};
 use rumbo_ros::geometry::Geometry;
 use rumbo_ros::messages::DiagnosticStatus;
-use rumbo_ros::node::Wish;
 use rumbo_ros::types::Byte;
-use rumbo_session::{News, Order, Seat};
-use rumbo_station::Client;
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// The robot confirms an order within this time, or it is reported that it has not.
@@ -27,39 +29,55 @@ pub(super) const PATIENCE: Duration = Duration::from_secs(3);
 pub(super) const AGAIN: Duration = Duration::from_secs(2);
 /// Diagnostics show them for this long.
 pub(super) const SHOWN: Duration = Duration::from_secs(4);
+/// Between two looks at what is new.
+const WAKE: Duration = Duration::from_millis(4);
 /// Most requests and velocities taken in a row: a flood of them does not keep messages from going out.
 const AT_ONCE: usize = 64;
-/// The session has certainly taken an order after this time.
-pub(super) const TAKEN: Duration = Duration::from_millis(50);
 /// The clock of a simulation is published this often at least: a pause has a time too.
 const CLOCK: Duration = Duration::from_millis(200);
 
-/// What the times of a session are.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Times {
-    /// Of day.
-    OfDay,
-    /// Of a simulation, whose clock the node publishes.
-    Simulated,
-    /// Of a simulation, whose clock another robot's node publishes.
-    SimulatedWithOthers,
+/// Why a node has failed.
+#[derive(Debug)]
+pub(super) enum LiveError {
+    Station(StationError),
+    Convert(ConvertError),
+}
+
+impl fmt::Display for LiveError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Station(error) => error.fmt(f),
+            Self::Convert(error) => error.fmt(f),
+        }
+    }
+}
+
+impl From<StationError> for LiveError {
+    fn from(error: StationError) -> Self {
+        Self::Station(error)
+    }
+}
+
+impl From<ConvertError> for LiveError {
+    fn from(error: ConvertError) -> Self {
+        Self::Convert(error)
+    }
 }
 
 /// A session as a node.
 pub(super) struct Live {
-    pub(super) node: RosNode,
-    client: Client,
-    times: Times,
+    pub(super) node: Node<Dds>,
+    pub(super) station: Station,
+    /// It publishes the clock of a simulation, for all robots in it.
+    has_clock: bool,
     pub(super) services: Vec<(String, Service)>,
     pub(super) waiting: Vec<Waiting>,
     pub(super) driving: Driving,
     pub(super) navigation: Navigation,
-    pub(super) parameters: Parameters,
+    pub(super) settings: Settings,
     pub(super) converter: Converter,
-    /// Control was taken with an order, to be released after it.
-    borrows: bool,
     run: u32,
-    scene: Option<Scene>,
+    scene: Option<Box<Scene>>,
     pub(super) state: State,
     /// Telemetry frames of the run.
     pub(super) rows: u64,
@@ -76,30 +94,38 @@ pub(super) fn is_due(said: Option<&(String, Instant)>, after: Duration) -> bool 
     said.is_none_or(|(_, since)| since.elapsed() >= after)
 }
 
+/// A node that cannot publish is reported, and the session goes on.
+pub(super) fn report(outcome: Result<(), BridgeError>, reported: &mut bool) {
+    if let Err(error) = outcome
+        && !std::mem::replace(reported, true)
+    {
+        output::note(&error.to_string());
+    }
+}
+
 impl Live {
     /// Offers the services, the parameters and the action.
     pub(super) fn new(
-        mut node: RosNode,
-        client: Client,
-        times: Times,
-        args: &NodeArgs,
+        mut node: Node<Dds>,
+        station: Station,
+        has_clock: bool,
+        args: &Args,
     ) -> Result<Self, BridgeError> {
         node.take_velocities(args.stamped)?;
-        let services = services();
+        let services = services(&station.hello.modes);
         services.iter().try_for_each(|(name, _)| node.offer(name))?;
         node.offer_parameters()?;
         node.offer_navigation()?;
         Ok(Self {
             converter: Converter::new(&node.speaker(), String::new(), 0),
             node,
-            client,
-            times,
+            station,
+            has_clock,
             services,
             waiting: Vec::new(),
             driving: Driving::default(),
-            navigation: Navigation::new(definitions(args.distribution)),
-            parameters: Parameters::default(),
-            borrows: false,
+            navigation: Navigation::new(args.distribution),
+            settings: Settings::default(),
             run: 0,
             scene: None,
             state: State::default(),
@@ -111,42 +137,67 @@ impl Live {
         })
     }
 
-    /// Runs until the session is over.
-    pub(super) fn run(mut self) -> Result<(), ConvertError> {
-        while let Some(news) = self.client.news() {
-            let has_state = news.state.is_some();
-            self.convert(news)?;
-            for message in self.converter.take() {
-                self.publish(&message);
-            }
-            for _ in 0..AT_ONCE {
-                match self.node.wish() {
-                    Some(Wish::Call(call)) => self.begin(call),
-                    Some(Wish::Drive(velocity)) => self.drive(velocity),
-                    Some(Wish::Parameters(caller, question)) => self.ask(caller, &question),
-                    Some(Wish::Navigate(caller, question)) => self.navigate(caller, question),
-                    None => break,
-                }
-            }
-            self.settle(has_state);
-            self.set(has_state);
-            self.follow(has_state);
-            self.release();
-            if is_due(self.trouble.as_ref(), AGAIN)
-                && let Some(trouble) = self.node.trouble()
-            {
-                self.warn(trouble);
-            }
+    /// Runs until the session is over, or somebody wants the program to end.
+    pub(super) fn run(mut self, ends: &AtomicBool) -> Result<(), LiveError> {
+        while !ends.load(Ordering::Relaxed) {
+            let Some(news) = self.station.news()? else {
+                output::note("the session is over");
+                return Ok(());
+            };
+            self.turn(news)?;
             std::thread::sleep(WAKE);
         }
+        // Nobody would follow the robot to its goal.
+        if self.navigation.lasts() {
+            let _ = self.station.order(Order::Stop);
+        }
+        self.station.leave();
         Ok(())
+    }
+
+    fn turn(&mut self, news: News) -> Result<(), ConvertError> {
+        let has_state = news.state.is_some();
+        self.convert(news)?;
+        for message in self.converter.take() {
+            self.publish(&message);
+        }
+        for _ in 0..AT_ONCE {
+            match self.node.wish() {
+                Some(Wish::Call(call)) => self.begin(call),
+                Some(Wish::Drive(velocity)) => self.drive(velocity),
+                Some(Wish::Parameters(caller, question)) => self.ask(caller, &question),
+                Some(Wish::Navigate(caller, question)) => self.navigate(caller, question),
+                None => break,
+            }
+        }
+        self.settle(has_state);
+        self.set(has_state);
+        self.follow(has_state);
+        let needs = !self.waiting.is_empty()
+            || self.driving.lasts()
+            || self.settings.lasts()
+            || self.navigation.lasts();
+        self.station.release(needs);
+        if is_due(self.trouble.as_ref(), AGAIN)
+            && let Some(trouble) = self.node.trouble()
+        {
+            self.warn(trouble);
+        }
+        Ok(())
+    }
+
+    /// The name of the robot's mode.
+    pub(super) fn mode(&self) -> &str {
+        let modes = &self.station.hello.modes;
+        let of_robot = modes.iter().find(|mode| mode.id == self.state.robot.mode);
+        of_robot.map_or("", |mode| &mode.name)
     }
 
     /// Says something on the terminal.
     pub(super) fn note(&self, text: &str) {
         match self.node.namespace() {
-            "" => output::note(&format!("ROS 2: {text}")),
-            namespace => output::note(&format!("ROS 2, {namespace}: {text}")),
+            "" => output::note(text),
+            namespace => output::note(&format!("{namespace}: {text}")),
         }
     }
 
@@ -164,9 +215,9 @@ impl Live {
     /// Makes messages of what is new.
     fn convert(&mut self, news: News) -> Result<(), ConvertError> {
         let has_state = news.state.is_some();
-        self.state = news
-            .state
-            .unwrap_or_else(|| std::mem::take(&mut self.state));
+        if let Some(state) = news.state {
+            self.state = *state;
+        }
         if let Some(scene) = news.scene {
             self.scene = scene;
         }
@@ -176,18 +227,24 @@ impl Live {
         if let Some(parameters) = news.parameters {
             self.know(parameters);
         }
-        let parameter = |name: &str| self.parameters.value(name);
-        if let Some(geometry) = Geometry::new(self.scene.as_ref(), parameter) {
+        let parameter = |name: &str| self.settings.value(name);
+        if let Some(geometry) = Geometry::new(self.scene.as_deref(), parameter) {
             self.converter.know(geometry);
         }
-        if self.times != Times::OfDay
-            && (!news.samples.is_empty() || self.clocked.elapsed() >= CLOCK)
-        {
+        if self.state.simulated && (!news.samples.is_empty() || self.clocked.elapsed() >= CLOCK) {
             let state_ms = (self.state.t_s * 1e3) as i64;
-            self.clock_ms = self.clock_ms.max(news.received.1).max(state_ms);
+            self.clock_ms = self.clock_ms.max(news.heard_ms).max(state_ms);
             self.clocked = Instant::now();
-            if self.times == Times::Simulated {
+            if self.has_clock {
                 self.publish(&clock(self.clock_ms.unsigned_abs() * 1_000_000)?);
+            }
+        }
+        for row in &news.past {
+            self.converter.row(row)?;
+            for message in self.converter.take() {
+                if message.topic.quality().latched {
+                    self.publish(&message);
+                }
             }
         }
         for row in &news.samples {
@@ -195,6 +252,7 @@ impl Live {
         }
         self.rows += news.samples.len() as u64;
         for event in &news.events {
+            self.tell(event);
             self.converter.event(event)?;
         }
         if has_state {
@@ -204,15 +262,26 @@ impl Live {
         Ok(())
     }
 
+    /// Warnings and faults, for who looks at the terminal.
+    fn tell(&self, event: &LoggedEvent) {
+        if matches!(event.level, Level::Warning | Level::Fault) {
+            self.note(&format!(
+                "{:.1} s, {}: {}",
+                event.t_s,
+                event.level.name(),
+                event.text
+            ));
+        }
+    }
+
     fn begin_run(&mut self) {
         self.end_run();
         let scene = self.scene.as_ref().filter(|scene| !scene.of_ghost);
         let robot = scene.map(|scene| scene.robot.clone());
-        // A session without a state has just begun.
         let since_start = Duration::from_secs_f64(self.state.t_s.max(0.0));
-        let started_ns = match self.times {
-            Times::Simulated | Times::SimulatedWithOthers => 0,
-            Times::OfDay => since_1970_ns(SystemTime::now() - since_start),
+        let started_ns = match self.state.simulated {
+            true => 0,
+            false => since_1970_ns(SystemTime::now() - since_start),
         };
         let speaker = self.node.speaker();
         self.converter = Converter::new(&speaker, robot.unwrap_or_default(), started_ns);
@@ -222,42 +291,19 @@ impl Live {
 
     /// The time of messages: of the simulation, or of day \[ns\].
     pub(super) fn now_ns(&self) -> u64 {
-        match self.times {
-            Times::Simulated | Times::SimulatedWithOthers => {
-                self.clock_ms.unsigned_abs() * 1_000_000
-            }
-            Times::OfDay => since_1970_ns(SystemTime::now()),
-        }
-    }
-
-    /// Gives an order; the control that it takes is released after it.
-    pub(super) fn give(&mut self, order: Order) -> Result<(), String> {
-        let held = self.client.view().seat == Seat::Driver;
-        let keeps = order == Order::TakeControl;
-        self.client.order(order)?;
-        self.borrows = (self.borrows || !held) && !keeps;
-        Ok(())
-    }
-
-    /// Releases the control that was taken with an order, when nothing lasts that needs it.
-    fn release(&mut self) {
-        let needed = !self.waiting.is_empty()
-            || self.driving.lasts()
-            || self.parameters.lasts()
-            || self.navigation.lasts();
-        if self.borrows && !needed {
-            self.borrows = false;
-            // Releasing is never refused.
-            let _ = self.client.order(Order::ReleaseControl);
+        match self.state.simulated {
+            true => self.clock_ms.unsigned_abs() * 1_000_000,
+            false => since_1970_ns(SystemTime::now()),
         }
     }
 
     /// The node itself, for diagnostics.
     fn status(&self) -> DiagnosticStatus {
-        let control = match self.client.view().seat {
+        let control = match self.station.seat() {
             Seat::Driver => "ROS 2 has control",
             Seat::Free => "nobody has control",
-            Seat::Passenger | Seat::Viewer => "a page of the dashboard has control",
+            Seat::Passenger => "a page of the dashboard has control",
+            Seat::Viewer => "ROS 2 may watch, and stop the robot",
         };
         let trouble = self.trouble.as_ref();
         let trouble = trouble.filter(|(_, since)| since.elapsed() < SHOWN);

@@ -1,36 +1,27 @@
 //! What a node asks of a middleware: to publish, to subscribe, to serve. All data are bytes in CDR with their header of
-//! four bytes, as [`encode`](crate::types::encode) makes them.
+//! four bytes, as [`encode`](rumbo_ros::types::encode) makes them.
 
-use crate::topics::Quality;
-use crate::types::Definition;
+use rumbo_ros::topics::Quality;
+use rumbo_ros::types::Definition;
 use std::fmt;
 
-/// The type of a service.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ServiceType {
-    /// Package and name: `std_srvs/srv/Trigger`.
-    pub name: &'static str,
-    /// The hash of request, response and event (REP 2016), as distributions from Iron on have it: `RIHS01_…`.
-    pub hash: &'static str,
-}
-
 /// Something a bridge carries, numbered by the bridge.
-pub type Channel = usize;
+pub(crate) type Channel = usize;
 
 /// Who asked a service, by the bridge's own account; the answer goes there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Caller {
+pub(crate) struct Caller {
     /// The service.
-    pub service: Channel,
+    pub(crate) service: Channel,
     /// The client, 16 bytes that are its own.
-    pub client: [u8; 16],
+    pub(crate) client: [u8; 16],
     /// Its request.
-    pub number: i64,
+    pub(crate) number: i64,
 }
 
 /// What has come in.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Incoming {
+pub(crate) enum Incoming {
     /// A message of a subscription.
     Message {
         /// The subscription.
@@ -53,7 +44,7 @@ pub enum Incoming {
 
 /// Who may find the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
+pub(crate) enum Reach {
     /// This computer. No wall: they are only not announced elsewhere.
     Computer,
     /// All networks that this computer is in.
@@ -61,7 +52,7 @@ pub enum Reach {
 }
 
 /// A middleware with one node on it. Names are absolute: `/odom`.
-pub trait Bridge {
+pub(crate) trait Bridge {
     /// Announces a topic to publish on.
     ///
     /// # Errors
@@ -90,11 +81,11 @@ pub trait Bridge {
         quality: Quality,
     ) -> Result<Channel, BridgeError>;
 
-    /// Offers a service.
+    /// Offers a service of this type, by package and name: `std_srvs/srv/Trigger`.
     ///
     /// # Errors
     /// If the middleware refuses.
-    fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError>;
+    fn serve(&mut self, name: &str, kind: &str) -> Result<Channel, BridgeError>;
 
     /// The next message or request, without waiting.
     fn receive(&mut self) -> Option<Incoming>;
@@ -109,54 +100,11 @@ pub trait Bridge {
     fn trouble(&mut self) -> Option<String>;
 }
 
-/// A bridge of either kind.
-impl<B: Bridge + ?Sized> Bridge for Box<B> {
-    fn advertise(
-        &mut self,
-        name: &str,
-        of: &Definition,
-        quality: Quality,
-    ) -> Result<Channel, BridgeError> {
-        (**self).advertise(name, of, quality)
-    }
-
-    fn publish(&mut self, topic: Channel, data: &[u8]) -> Result<(), BridgeError> {
-        (**self).publish(topic, data)
-    }
-
-    fn subscribe(
-        &mut self,
-        name: &str,
-        of: &Definition,
-        quality: Quality,
-    ) -> Result<Channel, BridgeError> {
-        (**self).subscribe(name, of, quality)
-    }
-
-    fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError> {
-        (**self).serve(name, of)
-    }
-
-    fn receive(&mut self) -> Option<Incoming> {
-        (**self).receive()
-    }
-
-    fn answer(&mut self, caller: Caller, data: &[u8]) -> Result<(), BridgeError> {
-        (**self).answer(caller, data)
-    }
-
-    fn trouble(&mut self) -> Option<String> {
-        (**self).trouble()
-    }
-}
-
 /// Why a middleware refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum BridgeError {
+pub(crate) enum BridgeError {
     /// The domain cannot be joined: which, and why.
     Domain(u16, String),
-    /// An endpoint of Zenoh is of no use: which, what cannot be done with it, and why.
-    Endpoint(String, &'static str, String),
     /// A topic or service cannot be announced: which, and why.
     Announce(String, String),
     /// Something cannot be sent: why.
@@ -169,10 +117,6 @@ impl fmt::Display for BridgeError {
             Self::Domain(domain, why) => write!(
                 f,
                 "domain {domain} of ROS 2 cannot be joined ({why}); is a network up, and are its ports free? --domain takes another"
-            ),
-            Self::Endpoint(endpoint, does, why) => write!(
-                f,
-                "cannot {does} {endpoint} ({why}); start a router there, rmw_zenohd, or give another endpoint to --zenoh"
             ),
             Self::Announce(name, why) => write!(f, "{name} cannot be announced: {why}"),
             Self::Send(why) => write!(f, "nothing can be sent: {why}"),

@@ -1,9 +1,8 @@
 //! The goals of the action, as its clients see them.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-use rumbo_ros::bridge::Caller;
+use crate::bridge::Caller;
+use crate::navigate::{Cancel, Distribution, Goals, Id, Question, Status, question};
 use rumbo_ros::messages::Time;
-use rumbo_ros::navigate::{Cancel, Distribution, Goals, Id, Question, Status, question};
 use std::f64::consts::FRAC_PI_2;
 
 const FIRST: Id = [1; 16];

@@ -1,25 +1,29 @@
 //! A robot's parameters in the terms of ROS 2.
-#![allow(clippy::unwrap_used)]
 
-use rumbo_log::{Parameter, ParameterState, parameters};
+use crate::parameters::{ParameterState, Question, Value, answer, changes, number, question};
 use rumbo_ros::messages::Time;
-use rumbo_ros::parameters::{Question, Value, answer, changes, number, question};
 use rumbo_ros::service_messages::ParameterValue;
 use rumbo_ros::types::{decode, encode};
 
-fn entry(name: &str) -> Parameter {
-    parameters().find(|entry| entry.name == name).unwrap()
+fn entry(name: &str) -> ParameterState {
+    table()
+        .into_iter()
+        .find(|known| known.name == name)
+        .unwrap()
 }
 
-/// The whole table with the values of a new robot.
+/// The whole table with the values of a new robot, as the station sends it.
 fn table() -> Vec<ParameterState> {
-    let state = |entry: Parameter| ParameterState {
-        value: Some(entry.default),
-        pending: false,
-        refused: None,
-        entry,
+    let state = |entry: rumbo_log::Parameter| {
+        let sent = serde_json::to_string(&rumbo_log::ParameterState {
+            value: Some(entry.default),
+            pending: false,
+            refused: None,
+            entry,
+        });
+        serde_json::from_str(&sent.unwrap()).unwrap()
     };
-    parameters().map(state).collect()
+    rumbo_log::parameters().map(state).collect()
 }
 
 fn names(names: &[&str]) -> Vec<String> {
@@ -59,9 +63,9 @@ fn numbers_are_doubles_switches_bools_and_choices_strings() {
     assert_eq!(got[3].0, 0);
     let unread: Vec<ParameterState> = table()
         .into_iter()
-        .map(|known| ParameterState {
-            value: None,
-            ..known
+        .map(|mut known| {
+            known.value = None;
+            known
         })
         .collect();
     assert_eq!(values(&asked[..1], &unread)[0].0, 0);

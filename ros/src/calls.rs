@@ -1,49 +1,46 @@
 //! Services of ROS 2 without a question: each call is an order. It is answered when the robot's state shows what was
 //! asked for, or the robot has refused it.
 
-use super::report;
-use super::session::{Live, PATIENCE, TAKEN};
-use rumbo_control::mode::ModeId;
+use crate::live::{Live, PATIENCE, report};
+use crate::node::Call;
+use crate::station::{Mode, Order};
 use rumbo_log::RobotState;
-use rumbo_ros::node::Call;
-use rumbo_session::Order;
-use rumbo_wire::Command;
 use std::time::Instant;
 
-/// What a service is for.
+/// What a service is for: the order, and how the robot's state shows that it was done.
 pub(super) enum Service {
-    /// An order for the robot, and how its state shows that it was done.
-    Robot(Command, fn(&RobotState) -> bool),
-    Mode(ModeId),
-    TakeControl,
-    ReleaseControl,
+    Robot(Order, fn(&RobotState) -> bool),
+    Mode(u8),
+    /// It does not reach the robot.
+    Control(Order),
 }
 
 /// The services by name.
-pub(super) fn services() -> Vec<(String, Service)> {
+pub(super) fn services(modes: &[Mode]) -> Vec<(String, Service)> {
+    let off: fn(&RobotState) -> bool = |robot| !robot.armed;
     let services = [
-        ("arm", Service::Robot(Command::Arm, |robot| robot.armed)),
-        (
-            "disarm",
-            Service::Robot(Command::Disarm, |robot| !robot.armed),
-        ),
-        ("stop", Service::Robot(Command::Stop, |robot| !robot.armed)),
+        ("arm", Service::Robot(Order::Arm, |robot| robot.armed)),
+        ("disarm", Service::Robot(Order::Disarm, off)),
+        ("stop", Service::Robot(Order::Stop, off)),
         (
             "clear_fault",
-            Service::Robot(Command::ClearFault, |robot| robot.fault.is_none()),
+            Service::Robot(Order::ClearFault, |robot| robot.fault.is_none()),
         ),
-        ("reset_pose", Service::Robot(Command::ResetPose, |_| true)),
-        ("take_control", Service::TakeControl),
-        ("release_control", Service::ReleaseControl),
+        ("reset_pose", Service::Robot(Order::ResetPose, |_| true)),
+        ("take_control", Service::Control(Order::TakeControl)),
+        ("release_control", Service::Control(Order::ReleaseControl)),
     ];
     let services = services.map(|(name, service)| (name.to_owned(), service));
-    let modes = ModeId::ALL.map(|mode| (format!("mode/{}", mode.name()), Service::Mode(mode)));
+    let modes = modes
+        .iter()
+        .map(|mode| (format!("mode/{}", mode.name), Service::Mode(mode.id)));
     services.into_iter().chain(modes).collect()
 }
 
 /// A call that waits for the robot.
 pub(super) struct Waiting {
     call: Call,
+    order: u64,
     since: Instant,
 }
 
@@ -54,18 +51,17 @@ impl Live {
             return;
         };
         let order = match service {
-            Service::Robot(command, _) => Order::Robot(*command),
-            Service::Mode(mode) => Order::Robot(Command::Mode(*mode)),
-            Service::TakeControl => Order::TakeControl,
-            Service::ReleaseControl => Order::ReleaseControl,
+            Service::Robot(order, _) | Service::Control(order) => *order,
+            Service::Mode(mode) => Order::Mode { mode: *mode },
         };
-        let for_robot = matches!(order, Order::Robot(_));
-        match self.give(order) {
-            Ok(()) if for_robot => self.waiting.push(Waiting {
+        let for_robot = !matches!(service, Service::Control(_));
+        match self.station.order(order) {
+            Ok(order) if for_robot => self.waiting.push(Waiting {
                 call,
+                order,
                 since: Instant::now(),
             }),
-            given => self.answer(call, given),
+            given => self.answer(call, given.map(drop)),
         }
     }
 
@@ -78,7 +74,7 @@ impl Live {
     pub(super) fn settle(&mut self, has_state: bool) {
         for waiting in std::mem::take(&mut self.waiting) {
             let lasts = waiting.since.elapsed();
-            let known = has_state && lasts > TAKEN;
+            let known = has_state && self.station.has_taken(waiting.order);
             let outcome = known.then(|| self.outcome(waiting.call)).flatten();
             let late = || Err("the robot has not confirmed it".to_owned());
             match outcome.or_else(|| (lasts > PATIENCE).then(late)) {
@@ -96,8 +92,8 @@ impl Live {
         let robot = &self.state.robot;
         let is_done = match self.services.get(call.service)? {
             (_, Service::Robot(_, shows)) => shows(robot),
-            (_, Service::Mode(mode)) => robot.mode == *mode as u8,
-            (_, Service::TakeControl | Service::ReleaseControl) => true,
+            (_, Service::Mode(mode)) => robot.mode == *mode,
+            (_, Service::Control(_)) => true,
         };
         (is_done && self.state.link.unacknowledged == 0).then_some(Ok(()))
     }

@@ -5,7 +5,7 @@
 use super::farewell::{Farewell, multicast};
 use super::raw::{AsIs, Raw};
 use crate::bridge::{BridgeError, Reach};
-use crate::topics::Quality;
+use rumbo_ros::topics::Quality;
 use rustdds::no_key::{DataWriter, SimpleDataReader};
 use rustdds::policy::{Durability, History, Lifespan};
 use rustdds::{
@@ -48,7 +48,7 @@ struct NodeEntities<'a> {
 
 /// A domain of DDS that is joined, for any number of nodes ([`Dds::new`](super::Dds::new)).
 #[derive(Clone)]
-pub struct Domain {
+pub(crate) struct Domain {
     participant: DomainParticipant,
     publisher: Publisher,
     subscriber: Subscriber,
@@ -118,7 +118,7 @@ impl Domain {
     ///
     /// # Errors
     /// If there is no such domain, no network, or no free port.
-    pub fn join(domain: u16, reach: Reach) -> Result<Self, BridgeError> {
+    pub(crate) fn join(domain: u16, reach: Reach) -> Result<Self, BridgeError> {
         let refused = |error: &dyn fmt::Display| BridgeError::Domain(domain, error.to_string());
         let builder = DomainParticipantBuilder::new(domain);
         let builder = match reach {

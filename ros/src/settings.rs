@@ -1,16 +1,13 @@
 //! The robot's parameters for ROS 2: what is read is answered from the table, what is set becomes orders, one after the
 //! other; the robot's own answer is the outcome.
 
-use super::report;
-use super::session::{Live, PATIENCE, TAKEN};
-use rumbo_log::ParameterState;
-use rumbo_ros::bridge::Caller;
+use crate::bridge::Caller;
+use crate::live::{Live, PATIENCE, report};
+use crate::parameters::{self, ParameterState, Question, Value};
+use crate::station::Order;
 use rumbo_ros::convert::stamp;
-use rumbo_ros::parameters::{self, Question, Value};
 use rumbo_ros::service_messages::{Set, SetAtomically, SetParametersResult};
 use rumbo_ros::topics::Topic;
-use rumbo_session::Order;
-use rumbo_wire::Command;
 use std::collections::VecDeque;
 use std::time::Instant;
 
@@ -19,7 +16,7 @@ const MOST_WAITING: usize = 100;
 
 /// The parameters, and who wants to set them.
 #[derive(Default)]
-pub(super) struct Parameters {
+pub(super) struct Settings {
     pub(super) known: Vec<ParameterState>,
     requests: VecDeque<Request>,
 }
@@ -30,12 +27,12 @@ struct Request {
     atomically: bool,
     /// Number and value of each that is not set yet, or why it cannot be; the first one is in turn.
     left: VecDeque<Result<(u8, f32), String>>,
-    /// When the first one was ordered, and whether it was seen on its way.
-    ordered: Option<(Instant, bool)>,
+    /// The order for the first one, when it was given, and whether it was seen on its way.
+    ordered: Option<(u64, Instant, bool)>,
     done: Vec<Result<(), String>>,
 }
 
-impl Parameters {
+impl Settings {
     /// Some are being set.
     pub(super) fn lasts(&self) -> bool {
         !self.requests.is_empty()
@@ -43,19 +40,17 @@ impl Parameters {
 
     /// The value of a parameter, if it is known.
     pub(super) fn value(&self, name: &str) -> Option<f32> {
-        let of_name = |known: &&ParameterState| known.entry.name == name;
+        let of_name = |known: &&ParameterState| known.name == name;
         self.known.iter().find(of_name)?.value
     }
 
     /// Numbers and values by the table.
     fn wanted(&self, (name, value): &(String, Value)) -> Result<(u8, f32), String> {
-        let known = self.known.iter().find(|known| known.entry.name == name);
-        let entry = known
-            .ok_or_else(|| format!("there is no parameter {name}"))?
-            .entry;
-        let number = parameters::number(&entry, value);
+        let known = self.known.iter().find(|known| known.name == *name);
+        let known = known.ok_or_else(|| format!("there is no parameter {name}"))?;
+        let number = parameters::number(known, value);
         let number = number.map_err(|why| format!("{name}: {why}"))?;
-        Ok((entry.id, number))
+        Ok((known.id, number))
     }
 }
 
@@ -66,7 +61,7 @@ impl Live {
             Question::Set(values) => (values, false),
             Question::SetAtomically(values) => (values, true),
             read => {
-                if let Some(Ok(answer)) = parameters::answer(read, &self.parameters.known) {
+                if let Some(Ok(answer)) = parameters::answer(read, &self.settings.known) {
                     // One that is too long for its client.
                     if let Err(error) = self.node.reply_bytes(caller, &answer) {
                         self.warn(error.to_string());
@@ -75,16 +70,16 @@ impl Live {
                 return;
             }
         };
-        if self.parameters.requests.len() >= MOST_WAITING {
+        if self.settings.requests.len() >= MOST_WAITING {
             return;
         }
-        let wanted = values.iter().map(|value| self.parameters.wanted(value));
+        let wanted = values.iter().map(|value| self.settings.wanted(value));
         let mut left: VecDeque<_> = wanted.collect();
         // All or none: what is refused here comes before what the robot is asked for.
         if atomically && let Some(refused) = left.iter().find(|each| each.is_err()) {
             left = [refused.clone()].into();
         }
-        self.parameters.requests.push_back(Request {
+        self.settings.requests.push_back(Request {
             caller,
             atomically,
             left,
@@ -95,10 +90,10 @@ impl Live {
 
     /// Takes what is newly known of the parameters, and says what has changed.
     pub(super) fn know(&mut self, known: Vec<ParameterState>) {
-        let before = std::mem::replace(&mut self.parameters.known, known);
+        let before = std::mem::replace(&mut self.settings.known, known);
         let node = format!("/{}", self.node.speaker());
         let at = stamp(self.now_ns());
-        if let Some(event) = parameters::changes(&node, at, &before, &self.parameters.known) {
+        if let Some(event) = parameters::changes(&node, at, &before, &self.settings.known) {
             let sent = self.node.send(Topic::ParameterEvents, &event);
             report(sent, &mut self.reported);
         }
@@ -106,7 +101,7 @@ impl Live {
 
     /// Gives the orders that are due, and answers what is done; `has_state`: the state is new.
     pub(super) fn set(&mut self, has_state: bool) {
-        while let Some(mut request) = self.parameters.requests.pop_front() {
+        while let Some(mut request) = self.settings.requests.pop_front() {
             if let Some(done) = self.advance(&mut request, has_state) {
                 let is_refused = done.is_err();
                 request.done.push(done);
@@ -116,12 +111,12 @@ impl Live {
                     request.left.clear();
                 }
             } else if !request.left.is_empty() {
-                self.parameters.requests.push_front(request);
+                self.settings.requests.push_front(request);
                 return;
             }
             match request.left.is_empty() {
                 true => self.set_done(&request),
-                false => self.parameters.requests.push_front(request),
+                false => self.settings.requests.push_front(request),
             }
         }
     }
@@ -132,18 +127,21 @@ impl Live {
             Ok(wanted) => *wanted,
             Err(why) => return Some(Err(why.clone())),
         };
-        let Some((since, on_its_way)) = &mut request.ordered else {
-            let order = Order::Robot(Command::SetParam { id, value });
-            let given = self.give(order);
-            request.ordered = Some((Instant::now(), false));
-            return given.err().map(Err);
+        let Some((order, since, on_its_way)) = &mut request.ordered else {
+            return match self.station.order(Order::SetParam { id, value }) {
+                Ok(order) => {
+                    request.ordered = Some((order, Instant::now(), false));
+                    None
+                }
+                Err(why) => Some(Err(why)),
+            };
         };
-        let known = self.parameters.known.get(usize::from(id))?;
+        let known = self.settings.known.get(usize::from(id))?;
         let ended = *on_its_way && !known.pending;
         *on_its_way |= known.pending;
-        let is_taken = has_state && since.elapsed() > TAKEN;
+        let is_taken = has_state && self.station.has_taken(*order);
         let is_settled = is_taken && !known.pending && self.state.link.unacknowledged == 0;
-        let name = known.entry.name;
+        let name = &known.name;
         if is_taken && let Some(why) = &self.state.refused {
             return Some(Err(why.clone()));
         }

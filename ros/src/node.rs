@@ -1,26 +1,23 @@
 //! A robot as a node: its topics and services on a bridge.
 
-use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming, ServiceType};
-use crate::convert::Sent;
-use crate::messages::{Triggered, Twist, TwistStamped};
+use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming};
 use crate::navigate;
 use crate::parameters;
-use crate::topics::{Quality, Topic};
-use crate::types::{Message, decode, encode};
+use rumbo_ros::convert::Sent;
+use rumbo_ros::messages::{Triggered, Twist, TwistStamped};
+use rumbo_ros::topics::{Quality, Topic};
+use rumbo_ros::types::{Message, decode, encode};
 use std::collections::BTreeMap;
 
 /// The node's name.
-pub const NAME: &str = "rumbo";
+pub(crate) const NAME: &str = "rumbo";
 
 /// The type of its services: without a question, answered by yes or no, and why.
-const TRIGGER: ServiceType = ServiceType {
-    name: "std_srvs/srv/Trigger",
-    hash: "RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f",
-};
+const TRIGGER: &str = "std_srvs/srv/Trigger";
 
 /// A node. Topics are announced with their first message.
 #[derive(Debug)]
-pub struct Node<B> {
+pub(crate) struct Node<B> {
     bridge: B,
     namespace: String,
     /// Where the clock is.
@@ -43,7 +40,7 @@ enum Service {
 
 /// What others want.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Wish {
+pub(crate) enum Wish {
     /// A service is called.
     Call(Call),
     /// Something of the robot's parameters.
@@ -56,35 +53,35 @@ pub enum Wish {
 
 /// A velocity that the robot is to drive at.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Velocity {
+pub(crate) struct Velocity {
     /// \[m/s\].
-    pub forward_m_s: f64,
+    pub(crate) forward_m_s: f64,
     /// \[rad/s\], positive to the left.
-    pub yaw_rad_s: f64,
+    pub(crate) yaw_rad_s: f64,
     /// Its publisher.
-    pub sender: [u8; 16],
+    pub(crate) sender: [u8; 16],
     /// Time since it was sent, by the clocks of both computers \[s\]; `None`: the sender does not say.
-    pub age_s: Option<f64>,
+    pub(crate) age_s: Option<f64>,
     /// Its own time stamp, if it has one \[ns\].
-    pub stamp_ns: Option<i64>,
+    pub(crate) stamp_ns: Option<i64>,
 }
 
 /// A message that is no velocity: it cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BadVelocity;
+pub(crate) struct BadVelocity;
 
 /// Somebody has called a service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Call {
+pub(crate) struct Call {
     /// Which one, in the order in which they are offered.
-    pub service: usize,
+    pub(crate) service: usize,
     /// Who is to be answered.
-    pub caller: Caller,
+    pub(crate) caller: Caller,
 }
 
 impl<B: Bridge> Node<B> {
     /// A node in a namespace (empty, or `/name`).
-    pub fn new(bridge: B, namespace: &str) -> Self {
+    pub(crate) fn new(bridge: B, namespace: &str) -> Self {
         Self {
             bridge,
             namespace: namespace.to_owned(),
@@ -98,20 +95,20 @@ impl<B: Bridge> Node<B> {
 
     /// The same as one of several robots in a world, whose namespace (empty, or `/name`) has the clock of all.
     #[must_use]
-    pub fn in_world(self, namespace: &str) -> Self {
+    pub(crate) fn in_world(self, namespace: &str) -> Self {
         let world = namespace.to_owned();
         Self { world, ..self }
     }
 
     /// Its namespace: empty, or `/name`.
     #[must_use]
-    pub fn namespace(&self) -> &str {
+    pub(crate) fn namespace(&self) -> &str {
         &self.namespace
     }
 
     /// The node's name with its namespace, without the first slash: `rumbo`, `first/rumbo`.
     #[must_use]
-    pub fn speaker(&self) -> String {
+    pub(crate) fn speaker(&self) -> String {
         let name = format!("{}/{NAME}", self.namespace);
         name.trim_start_matches('/').to_owned()
     }
@@ -120,7 +117,7 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub fn offer(&mut self, service: &str) -> Result<(), BridgeError> {
+    pub(crate) fn offer(&mut self, service: &str) -> Result<(), BridgeError> {
         self.serve(service, TRIGGER, Service::Call(self.calls))?;
         self.calls += 1;
         Ok(())
@@ -130,7 +127,7 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub fn offer_parameters(&mut self) -> Result<(), BridgeError> {
+    pub(crate) fn offer_parameters(&mut self) -> Result<(), BridgeError> {
         for (number, (name, of)) in parameters::SERVICES.into_iter().enumerate() {
             self.serve(name, of, Service::Parameters(number))?;
         }
@@ -141,7 +138,7 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub fn offer_navigation(&mut self) -> Result<(), BridgeError> {
+    pub(crate) fn offer_navigation(&mut self) -> Result<(), BridgeError> {
         for (number, (name, of)) in navigate::SERVICES.into_iter().enumerate() {
             let name = format!("{}/_action/{name}", navigate::NAME);
             self.serve(&name, of, Service::Navigate(number))?;
@@ -150,9 +147,9 @@ impl<B: Bridge> Node<B> {
         self.announce(Topic::GoalStatus).map(drop)
     }
 
-    fn serve(&mut self, name: &str, of: ServiceType, is: Service) -> Result<(), BridgeError> {
+    fn serve(&mut self, name: &str, kind: &str, is: Service) -> Result<(), BridgeError> {
         let name = format!("/{}/{name}", self.speaker());
-        let channel = self.bridge.serve(&name, of)?;
+        let channel = self.bridge.serve(&name, kind)?;
         self.services.insert(channel, is);
         Ok(())
     }
@@ -161,7 +158,7 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub fn announce(&mut self, topic: Topic) -> Result<Channel, BridgeError> {
+    pub(crate) fn announce(&mut self, topic: Topic) -> Result<Channel, BridgeError> {
         if let Some(channel) = self.topics.get(&topic) {
             return Ok(*channel);
         }
@@ -180,7 +177,7 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub fn publish(&mut self, message: &Sent) -> Result<(), BridgeError> {
+    pub(crate) fn publish(&mut self, message: &Sent) -> Result<(), BridgeError> {
         let channel = self.announce(message.topic)?;
         self.bridge.publish(channel, &message.data)
     }
@@ -190,7 +187,7 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub fn take_velocities(&mut self, stamped: bool) -> Result<(), BridgeError> {
+    pub(crate) fn take_velocities(&mut self, stamped: bool) -> Result<(), BridgeError> {
         let definition = match stamped {
             true => TwistStamped::DEFINITION,
             false => Twist::DEFINITION,
@@ -207,7 +204,7 @@ impl<B: Bridge> Node<B> {
     }
 
     /// What others want next, without waiting.
-    pub fn wish(&mut self) -> Option<Wish> {
+    pub(crate) fn wish(&mut self) -> Option<Wish> {
         while let Some(incoming) = self.bridge.receive() {
             match incoming {
                 Incoming::Request { caller, data } => {
@@ -246,7 +243,11 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub fn answer(&mut self, call: Call, done: Result<(), String>) -> Result<(), BridgeError> {
+    pub(crate) fn answer(
+        &mut self,
+        call: Call,
+        done: Result<(), String>,
+    ) -> Result<(), BridgeError> {
         let answer = Triggered {
             success: done.is_ok(),
             message: done.err().unwrap_or_default(),
@@ -258,7 +259,11 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub fn reply<M: Message>(&mut self, caller: Caller, answer: &M) -> Result<(), BridgeError> {
+    pub(crate) fn reply<M: Message>(
+        &mut self,
+        caller: Caller,
+        answer: &M,
+    ) -> Result<(), BridgeError> {
         let data = encode(answer).map_err(|error| BridgeError::Send(error.to_string()))?;
         self.reply_bytes(caller, &data)
     }
@@ -267,7 +272,7 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub fn reply_bytes(&mut self, caller: Caller, data: &[u8]) -> Result<(), BridgeError> {
+    pub(crate) fn reply_bytes(&mut self, caller: Caller, data: &[u8]) -> Result<(), BridgeError> {
         self.bridge.answer(caller, data)
     }
 
@@ -275,14 +280,18 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub fn send<M: Message>(&mut self, topic: Topic, message: &M) -> Result<(), BridgeError> {
+    pub(crate) fn send<M: Message>(
+        &mut self,
+        topic: Topic,
+        message: &M,
+    ) -> Result<(), BridgeError> {
         let data = encode(message).map_err(|error| BridgeError::Send(error.to_string()))?;
         let channel = self.announce(topic)?;
         self.bridge.publish(channel, &data)
     }
 
     /// What a person should know of the others since the last call.
-    pub fn trouble(&mut self) -> Option<String> {
+    pub(crate) fn trouble(&mut self) -> Option<String> {
         self.bridge.trouble()
     }
 }

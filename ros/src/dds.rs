@@ -15,13 +15,13 @@ mod domain;
 mod farewell;
 mod raw;
 
-pub use domain::Domain;
+pub(crate) use domain::Domain;
 
-use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming, ServiceType};
-use crate::topics::Quality;
-use crate::types::{Definition, dds_type};
+use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming};
 use domain::{NodeName, Reader, Writer};
 use raw::Raw;
+use rumbo_ros::topics::Quality;
+use rumbo_ros::types::Definition;
 use rustdds::no_key::DeserializedCacheChange;
 use rustdds::{
     GUID, RepresentationIdentifier, SampleIdentity, Timestamp, WriteOptionsBuilder, bytes::Bytes,
@@ -57,7 +57,7 @@ enum Carrier {
 }
 
 /// A node on a domain of DDS. Dropping it takes it off the graph.
-pub struct Dds {
+pub(crate) struct Dds {
     domain: Domain,
     node: NodeName,
     /// Names of the topics used, as DDS has them.
@@ -77,7 +77,7 @@ impl fmt::Debug for Dds {
 impl Dds {
     /// The node of this name in a namespace (empty, or `/name`); no other on this domain has both.
     #[must_use]
-    pub fn new(domain: &Domain, namespace: &str, name: &str) -> Self {
+    pub(crate) fn new(domain: &Domain, namespace: &str, name: &str) -> Self {
         let namespace = if namespace.is_empty() { "/" } else { namespace };
         let node = (namespace.to_owned(), name.to_owned());
         domain.add(&node);
@@ -112,6 +112,14 @@ impl Drop for Dds {
         self.domain.remove(&self.node);
         // Before the domain, which may be left with it.
         self.carriers.clear();
+    }
+}
+
+/// A ROS 2 name of a type as DDS has it: `std_msgs/msg/String`, `std_msgs::msg::dds_::String_`.
+fn dds_type(name: &str, part: &str) -> String {
+    match name.rsplit_once('/') {
+        Some((package, name)) => format!("{}::dds_::{name}{part}_", package.replace('/', "::")),
+        None => name.to_owned(),
     }
 }
 
@@ -216,11 +224,8 @@ impl Bridge for Dds {
         self.add(name, reader.map(Carrier::Subscription))
     }
 
-    fn serve(&mut self, name: &str, of: ServiceType) -> Result<Channel, BridgeError> {
-        let (request, reply) = (
-            dds_type(of.name, "_Request"),
-            dds_type(of.name, "_Response"),
-        );
+    fn serve(&mut self, name: &str, kind: &str) -> Result<Channel, BridgeError> {
+        let (request, reply) = (dds_type(kind, "_Request"), dds_type(kind, "_Response"));
         let (asked, answered) = (format!("rq{name}Request"), format!("rr{name}Reply"));
         let requests = self.domain.reader(&self.node, asked, request, SERVICE);
         let answers = self.domain.writer(&self.node, answered, reply, SERVICE);
