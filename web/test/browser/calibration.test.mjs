@@ -64,5 +64,8 @@ test('the simulated robot calibrates itself: what was found is shown, and its pa
   assert.equal(before, '0.1');
   assert.ok(Math.abs(Number(now) - 0.1) < 0.004 && now !== before, now);
   await page.waitForFunction((value) => /** @type {HTMLInputElement} */ (document.querySelector('#parameter-base_m')).value === value, now);
+  await page.setViewportSize({ width: 390, height: 844 });
+  const [wanted = 0, given = 0] = await page.locator('#calibration-dialog').evaluate(({ scrollWidth, clientWidth }) => [scrollWidth, clientWidth]);
+  assert.ok(wanted <= given, `on a telephone the tables take ${wanted} px of ${given}`);
   assert.deepEqual(dashboard.complaints, []);
 });

@@ -28,9 +28,8 @@ async function says(url, locale, text) {
   await context.close();
 }
 
-test('an address that was opened before is reported with the remedy, in the language of the page', async () => {
+test('an address that was opened before is reported with the remedy', async () => {
   await says(dashboard.url, 'en-GB', 'This address opens once, and was opened before.');
-  await says(dashboard.url, 'es-ES', 'Esta dirección solo se abre una vez, y ya se abrió.');
   // In the browser that opened it, it opens again.
   await (await showPage(dashboard.page.context(), dashboard.url)).close();
 });
