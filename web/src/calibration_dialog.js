@@ -20,12 +20,8 @@ export class CalibrationDialog {
   #since = create('output');
   /** The parameters as they are. @type {Parameter[]} */
   #parameters = [];
-  /** Their values when the calibration began, by number. @type {Map<number, number | null>} */
-  #before = new Map();
   /** What is shown now. */
   #shown = '';
-  /** When the calibration was started whose end has not been shown [s]. @type {number | null} */
-  #asked_s = null;
   /** @type {State | null} */
   #state = null;
 
@@ -49,7 +45,7 @@ export class CalibrationDialog {
 
   /** @param {State} state */
   show(state) {
-    const before = this.#state?.calibration?.phase;
+    const known = this.#state?.calibration;
     this.#state = state;
     const { calibration } = state;
     if (calibration?.phase === 'running') {
@@ -57,10 +53,13 @@ export class CalibrationDialog {
       const passed_s = Math.max(0, state.t_s - calibration.since_s);
       this.#progress.value = passed_s;
       setText(this.#since, t('{} s of about {} s', format(passed_s, 0), ABOUT_S));
-    } else if (calibration && (before === 'running' || (this.#asked_s !== null && calibration.at_s > this.#asked_s))) {
-      // One that ended at once was never shown as running.
-      this.#asked_s = null;
+    } else if (calibration && (calibration.number !== known?.number || calibration.phase !== known.phase)) {
+      // One that ended at once was never shown as running; the one before may have ended the same way.
+      this.#shown = '';
       this.#layOut(calibration.phase);
+    } else if (!calibration && this.#shown === 'running') {
+      // The robot was put elsewhere meanwhile.
+      this.#layOut('begin');
     }
   }
 
@@ -80,11 +79,7 @@ export class CalibrationDialog {
   }
 
   #begin() {
-    const start = this.#button(t('Begin the calibration'), () => {
-      this.#before = new Map(this.#parameters.map(({ id, value }) => [id, value]));
-      this.#asked_s = this.#state?.t_s ?? 0;
-      this.#send({ type: 'calibrate' });
-    }, 'go');
+    const start = this.#button(t('Begin the calibration'), () => this.#send({ type: 'calibrate' }), 'go');
     const put = this.#state?.simulated
       ? [this.#button(t('Put the simulated robot there'), () => this.#send({ type: 'reset', scenario: 'calibration', world: null, rig: null, seed: 1 }))] : [];
     return [
@@ -110,19 +105,16 @@ export class CalibrationDialog {
 
   #done() {
     const { calibration } = this.#state ?? {};
-    const { rows = [], parameters = [] } = calibration?.phase === 'done' ? calibration.findings : {};
+    const { rows = [], parameters = [], before = [] } = calibration?.phase === 'done' ? calibration.findings : {};
     const named = (/** @type {number} */ id) => this.#parameters.find((each) => each.id === id)?.name ?? String(id);
-    const was = (/** @type {number} */ id) => this.#before.get(id) ?? null;
+    // A log of an earlier version is without them.
+    const was = new Map(before);
     const found = rows.map(({ name, found: value, standard_error }) => [said(name), numberAs(value.toPrecision(5)), standard_error === null ? '' : `± ${numberAs(standard_error.toPrecision(2))}`]);
-    const set = parameters.map(([id, value]) => [named(id), formatFloat(was(id)), formatFloat(value)]);
+    const set = parameters.map(([id, value]) => [named(id), formatFloat(was.get(id) ?? null), formatFloat(value)]);
     const back = this.#button(t('Put the old values back'), () => {
-      for (const [id] of parameters) {
-        const value = was(id);
-        if (value !== null) this.#send({ type: 'set_param', id, value });
-      }
+      for (const [id, value] of before) this.#send({ type: 'set_param', id, value });
       this.#made.dialog.close();
     });
-    back.disabled = parameters.some(([id]) => was(id) === null);
     return [
       create('p', { className: 'passed', textContent: t('Done. The parameters are set; save them to make that last.') }),
       create('div', { className: 'help-lists' }, table([t('found'), t('value'), t('standard error')], found), table([t('parameter'), t('before'), t('now')], set)),

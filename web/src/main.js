@@ -351,6 +351,8 @@ Object.assign(window, {
     series: (name) => store.series(name),
     /** The sample that the map shows. */
     shown: () => store.latest,
+    /** The states of the run, one after the other. */
+    stretches: () => store.stretches,
     /** The slow state last received. */
     state: () => state,
     /** Where a place from the robot's origin is on the map [px]. @param {[number, number]} at */

@@ -49,7 +49,7 @@ export class TuneDialog {
   #set = create('button', { type: 'button', id: 'tune-set', className: 'go', textContent: t('Set on the robot') });
   /** @type {Offer[]} */
   #offers = [];
-  /** By the names of their parameters. @type {Map<string, {box: HTMLInputElement, now: number, from: number}>} */
+  /** By the names of their parameters: the value of the robot's file, and that to search from. @type {Map<string, {box: HTMLInputElement, value: HTMLElement, now: number, from: number}>} */
   #boxes = new Map();
   /** The robot's, by their names. @type {Map<string, Parameter>} */
   #table = new Map();
@@ -110,6 +110,8 @@ export class TuneDialog {
   /** @param {Parameter[]} parameters */
   setParameters(parameters) {
     this.#table = new Map(parameters.map((each) => [each.name, each]));
+    // A robot that has just started tells its values one by one.
+    if (!this.#search) this.#showValues();
     for (const name of this.#sent) {
       const refused = this.#table.get(name)?.refused;
       if (refused) setText(this.#complaint, `${name}: ${t('refused: {}', said(refused))}`);
@@ -172,18 +174,27 @@ export class TuneDialog {
       create('h3', { textContent: said(title) }),
       create('div', { className: 'tune-choice' }, ...parameters.map(({ name, now }, index) => this.#line(name, now, ticked?.includes(name) ?? (group === 0 && index < TICKED)))),
     ]));
+    this.#showValues();
     if (ticked === null) this.#runs.value = String(offer.runs);
   }
 
-  /** A parameter to choose, with the value to search from: the robot's, else that of its file. @param {string} name @param {number} now @param {boolean} checked */
+  /** A parameter to choose. @param {string} name @param {number} now @param {boolean} checked */
   #line(name, now, checked) {
     const parameter = this.#table.get(name);
-    const held = parameter?.value ?? now;
-    const from = Math.fround(held) === Math.fround(now) ? now : held;
     const box = create('input', { type: 'checkbox', checked });
-    this.#boxes.set(name, { box, now, from });
-    const value = create('span', { className: 'hint', textContent: `${formatFloat(from)} ${unitWords(parameter?.unit ?? '')}`.trim() });
+    const value = create('span', { className: 'hint' });
+    this.#boxes.set(name, { box, value, now, from: now });
     return create('label', { title: parameter ? said(parameter.description) : '' }, box, ` ${name} `, value);
+  }
+
+  /** The values to search from, as far as the robot has told its own. */
+  #showValues() {
+    for (const [name, line] of this.#boxes) {
+      const parameter = this.#table.get(name);
+      const held = parameter?.value ?? line.now;
+      line.from = Math.fround(held) === Math.fround(line.now) ? line.now : held;
+      setText(line.value, `${formatFloat(line.from)} ${unitWords(parameter?.unit ?? '')}`.trim());
+    }
   }
 
   #begin() {

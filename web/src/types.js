@@ -79,7 +79,7 @@
  * @property {[number, number, number] | null} from Where it stood when it was armed: x, y [m] and heading [rad].
  * @property {'reached' | 'unreachable' | null} end
  *
- * @typedef {{rows: {name: string, found: number, standard_error: number | null}[], parameters: [number, number][]}} Findings Of a calibration.
+ * @typedef {{rows: {name: string, found: number, standard_error: number | null}[], parameters: [number, number][], before: [number, number][]}} Findings Of a calibration: what was found, and the parameters set, with their values before.
  *
  * @typedef {object} State
  * @property {number} t_s
@@ -88,7 +88,7 @@
  * @property {number} achieved_speed
  * @property {string} [refused] The last order, if it was refused or dropped, and why.
  * @property {string[]} [alarms] Alarms that need action at once.
- * @property {{phase: 'running', since_s: number} | {phase: 'done', findings: Findings, at_s: number} | {phase: 'failed', why: string, at_s: number}} [calibration]
+ * @property {{number: number} & ({phase: 'running', since_s: number} | {phase: 'done', findings: Findings} | {phase: 'failed', why: string})} [calibration]
  * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', watched: boolean, complaints?: {place: string | null, text: string, line: string | null}[], profile?: Profile}} [program] Of an emulated robot; what the compiler rejects of it; where its time goes, while that is counted.
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,

@@ -1,13 +1,15 @@
 // @ts-check
 /**
  * The dashboard of a `rumbo` in a real browser, for the tests: RUMBO_BIN is the program, CHROMIUM the browser (default /usr/bin/chromium).
- * With WEB=1 the page's files are those of this folder, not those built into the program.
+ * With WEB=1 the page's files are those of this folder, not those built into the program. All tests of a process share one browser, with
+ * a context for each page that they open.
  */
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { extname, join } from 'node:path';
+import { after, test } from 'node:test';
 import { createInterface } from 'node:readline';
 import { chromium } from 'playwright-core';
 
@@ -17,6 +19,8 @@ const BROWSER_ARGS = [
   // A page whose files come from the folder has no address that the browser knows for local.
   ...(process.env['WEB'] ? ['--disable-features=LocalNetworkAccessChecks'] : []),
 ];
+/** The pages have a slow display: drawing sixty frames in a second would be most of the work of a test [ms]. */
+const FRAME_MS = 100;
 /** Long enough for any machine; nothing is judged by it [ms]. */
 export const PATIENCE_MS = 120_000;
 
@@ -37,8 +41,24 @@ export async function eventually(check) {
   }
 }
 
-/** A browser of its own. */
-export const launch = () => chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS, timeout: PATIENCE_MS });
+/** A path that is rare, and whose kind another test finds too: driven by the full check only. @type {(...all: any[]) => unknown} */
+export const rare = process.env['FULL'] ? test : () => {};
+
+/** @type {Promise<import('playwright-core').Browser> | null} */
+let browser = null;
+
+/** The browser of all tests of this process. */
+export function launch() {
+  browser ??= chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: BROWSER_ARGS, timeout: PATIENCE_MS });
+  return browser;
+}
+
+/** What a test that has failed leaves open, which would keep its file from ending. @type {Set<() => unknown>} */
+export const left = new Set();
+after(async () => {
+  for (const close of left) await close();
+  await (await browser)?.close();
+});
 
 /** The program to test. */
 export function program() {
@@ -57,6 +77,9 @@ export const folder = () => mkdtempSync(join(tmpdir(), 'rumbo-'));
  */
 export async function start(options, port = 0) {
   const server = spawn(program(), [...options, '--no-browser', '--port', String(port)], { stdio: ['ignore', 'pipe', 'inherit'] });
+  const end = () => server.kill();
+  left.add(end);
+  server.on('exit', () => left.delete(end));
   assert.ok(server.stdout);
   const addresses = createInterface({ input: server.stdout })[Symbol.asyncIterator]();
   /** The next address that the program prints. */
@@ -92,7 +115,7 @@ export async function open(options, browserOptions = {}, firstTime = false) {
   });
   await page.goto(url);
   const close = async () => {
-    await browser.close();
+    await context.close();
     server.kill();
   };
   /** The address for viewers, which `--listen` prints after the other. */
@@ -112,6 +135,10 @@ export async function showPage(context, url) {
 async function prepare(page, firstTime = false) {
   page.setDefaultTimeout(PATIENCE_MS);
   if (!firstTime) await page.addInitScript(() => localStorage.setItem('rumbo.tour', 'seen'));
+  await page.addInitScript((frame_ms) => {
+    window.requestAnimationFrame = (draw) => window.setTimeout(() => draw(performance.now()), frame_ms);
+    window.cancelAnimationFrame = (id) => clearTimeout(id);
+  }, FRAME_MS);
   if (process.env['WEB']) await serveFolder(page);
 }
 

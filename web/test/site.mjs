@@ -3,8 +3,7 @@
 import { createReadStream, existsSync, readFileSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
-import { after } from 'node:test';
-import { PATIENCE_MS, launch } from './dashboard.mjs';
+import { PATIENCE_MS, launch, left } from './dashboard.mjs';
 
 export const FOLDER = process.env['SITE'] ?? '';
 /** Why there is nothing to test, or false. */
@@ -49,10 +48,6 @@ function serve(robot) {
   });
 }
 
-/** What a test that has failed leaves open, which would keep its file from ending. @type {Set<() => Promise<void>>} */
-const left = new Set();
-after(() => Promise.all([...left].map((close) => close())));
-
 /**
  * Opens the site. What its scripts complain of is in `complaints`, and requests that leave it are in `abroad`.
  * @param {import('playwright-core').BrowserContextOptions} [options]
@@ -81,7 +76,7 @@ export async function open(options = {}, link = '', path = '', robot = undefined
   });
   const close = async () => {
     left.delete(close);
-    await browser.close();
+    await context.close();
     server.close();
   };
   left.add(close);

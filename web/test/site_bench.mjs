@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * Figures of the site for docs/browser.md: SITE=../site HASHES=../target/release/hashes node test/site_bench.mjs. HASHES is
+ * Figures of the site for docs/browser.md: SITE=../site TOOLS=../target/release/rumbo-tools node test/site_bench.mjs. TOOLS is
  * the native program, `cargo build --release -p rumbo-tools --bin hashes`; avr-gcc compiles the program of the image. Times
  * of the processor hardly depend on what else the machine does; that of the first plot does.
  */
@@ -66,7 +66,7 @@ const headless = (page) => page.evaluate(async (seeds) => {
 
 /** The same natively: time of the processor [s]. */
 function native() {
-  const { stdout } = spawnSync('sh', ['-c', '"$HASHES" "$0" > /dev/null && times', String(SEEDS)], { encoding: 'utf8' });
+  const { stdout } = spawnSync('sh', ['-c', '"$TOOLS" hashes "$0" > /dev/null && times', String(SEEDS)], { encoding: 'utf8' });
   const [, minutes, seconds] = /\n(\d+)m([\d.]+)s/.exec(stdout) ?? [];
   return 60 * Number(minutes) + Number(seconds);
 }

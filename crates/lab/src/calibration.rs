@@ -1,5 +1,6 @@
 //! The robot's own calibration as a guest of the session.
 
+use rumbo_control::params::ParamId;
 use rumbo_experiment::calibrate::{self, Calibration, Calibrator};
 use rumbo_log::{Finding, Findings};
 use rumbo_session::{CalibrationError, Guest};
@@ -31,7 +32,10 @@ pub fn calibration(now_us: u64) -> Box<dyn Guest> {
 
 fn findings(found: &Calibration) -> Findings {
     let rows = calibrate::rows(found, None).into_iter();
-    let parameters = found.parameters().into_iter();
+    let numbered = |parameters: &[(ParamId, f32)]| {
+        let each = parameters.iter();
+        each.map(|(id, value)| (*id as u8, *value)).collect()
+    };
     Findings {
         rows: rows
             .map(|row| Finding {
@@ -40,6 +44,7 @@ fn findings(found: &Calibration) -> Findings {
                 standard_error: row.standard_error,
             })
             .collect(),
-        parameters: parameters.map(|(id, value)| (id as u8, value)).collect(),
+        parameters: numbered(&found.parameters()),
+        before: numbered(&found.before),
     }
 }

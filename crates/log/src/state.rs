@@ -232,6 +232,9 @@ pub struct Findings {
     pub rows: Vec<Finding>,
     /// The parameters set, by number.
     pub parameters: Vec<(u8, f32)>,
+    /// The same before.
+    #[serde(default)]
+    pub before: Vec<(u8, f32)>,
 }
 
 /// A quantity that was found.
@@ -245,10 +248,21 @@ pub struct Finding {
     pub standard_error: Option<f64>,
 }
 
-/// State of a calibration, for the page.
+/// A calibration of a session, for the page.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CalibrationState {
+    /// Counts those asked for in the session, from 1: the page tells a new one from the last one that ended the same way.
+    #[serde(default)]
+    pub number: u32,
+    /// How far it is.
+    #[serde(flatten)]
+    pub phase: CalibrationPhase,
+}
+
+/// How far a calibration is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "phase", rename_all = "snake_case")]
-pub enum CalibrationState {
+pub enum CalibrationPhase {
     /// It goes on.
     Running {
         /// Since then, in session time \[s\].
@@ -258,16 +272,10 @@ pub enum CalibrationState {
     Done {
         /// What it found.
         findings: Findings,
-        /// When, by the session's time: one that ended at once was never seen running.
-        #[serde(default)]
-        at_s: f64,
     },
     /// It was given up.
     Failed {
         /// Why.
         why: String,
-        /// When \[s\].
-        #[serde(default)]
-        at_s: f64,
     },
 }

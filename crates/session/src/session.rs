@@ -98,6 +98,8 @@ pub struct Session {
     /// The running calibration and its start \[us\], and the state of the last one.
     calibrating: Option<(Box<dyn Guest>, u64)>,
     calibration: Option<CalibrationState>,
+    /// Calibrations asked for, in all runs.
+    calibrations: u32,
     state_noted_us: Option<u64>,
     /// The movement held by a key, and when it expires unless the page repeats it \[us\].
     held: Option<(Command, u64)>,
@@ -124,6 +126,7 @@ impl Session {
             observer: Observer::new(),
             calibrating: None,
             calibration: None,
+            calibrations: 0,
             state_noted_us: None,
             held: None,
             velocity_refused_us: None,

@@ -196,7 +196,7 @@ const STEPS: [Step; 22] = [
         name: "site",
         what: "the site, and all browser tests",
         part_of: Check::Full,
-        check: web::browser,
+        check: web::browser_full,
     },
     Step {
         name: "fuzz",

@@ -1,15 +1,10 @@
-//! The dashboard: its types by `tsc --checkJs`, and its behaviour in Chromium. Node is needed for these tests only.
+//! The dashboard: its types by `tsc --checkJs`, and its behaviour in Node and in Chromium. Node is needed for these tests
+//! only.
 
-use std::{
-    collections::BTreeSet,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use super::{Stop, tools};
 use crate::project::{Project, run};
-
-/// More files than these fail for a reason of their own.
-const MOST_TRIED_AGAIN: usize = 3;
 
 /// Checks the types that the JSDoc comments of `web/` declare.
 pub(crate) fn types(project: &Project) -> Result<(), Stop> {
@@ -22,52 +17,46 @@ pub(crate) fn types(project: &Project) -> Result<(), Stop> {
     ]))?)
 }
 
-/// Runs `web/test` against the release build of `rumbo`, and against the site. Files with a test that failed run once
-/// more, alone: two browsers, a station and a robot on a busy machine can each come too late for the other. A test that
-/// passes only then is named, to be mended.
+/// Runs the tests of `web/test` that need no browser, then those of `web/test/browser` against `rumbo` as the tests
+/// build it.
 pub(crate) fn browser(project: &Project) -> Result<(), Stop> {
     let node = tools::node(project)?;
-    let chromium = tools::chromium(project)?;
-    let rumbo = project.release_binary()?;
-    let site = crate::site::build(project)?;
-    let hashes = project.program("hashes")?;
     let web = project.root.join("web");
-    let folder = project.target.join("tmp");
-    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let failures = folder.join("browser-failures.txt");
-    let tests = |at_once: usize, files: &[PathBuf]| {
-        let mut test = project.command(&node);
-        test.current_dir(&web)
-            .env("RUMBO_BIN", &rumbo)
-            .env("CHROMIUM", &chromium)
-            .env("SKETCHES", project.target.join("sketches"))
-            .env("SITE", &site)
-            .env("FIRMWARE", project.target.join("firmware/rumbo.elf"))
-            .env("HASHES", &hashes)
-            .arg("--test")
-            .arg(format!("--test-concurrency={at_once}"))
-            .args(["--test-reporter=spec", "--test-reporter-destination=stdout"])
-            .arg("--test-reporter=./test/failed.mjs")
-            .arg(format!(
-                "--test-reporter-destination={}",
-                failures.display()
-            ))
-            .args(files);
-        run(&mut test)
-    };
-    let Err(error) = tests(3, &test_files(&web.join("test"))?) else {
-        return Ok(());
-    };
-    let failed = std::fs::read_to_string(&failures).unwrap_or_default();
-    let failed: BTreeSet<_> = failed.lines().map(PathBuf::from).collect();
-    if failed.is_empty() || failed.len() > MOST_TRIED_AGAIN {
-        return Err(Stop::Failed(error));
-    }
-    let failed: Vec<_> = failed.into_iter().collect();
-    println!("once more, alone: {failed:?}");
-    tests(1, &failed)?;
-    println!("FLAKY, passed alone and not beside others: {failed:?}");
-    Ok(())
+    let files = test_files(&web.join("test"))?;
+    run(project
+        .command(&node)
+        .current_dir(&web)
+        .args(["--test", "--test-reporter=spec"])
+        .args(files))?;
+    Ok(run(
+        &mut in_chromium(project, &node)?.args(["test/run.mjs", "test/browser"])
+    )?)
+}
+
+/// Runs all tests in the browser, the rare paths and those of the site too, which it builds.
+pub(crate) fn browser_full(project: &Project) -> Result<(), Stop> {
+    let node = tools::node(project)?;
+    let site = crate::site::build(project)?;
+    let tools = project.program("rumbo-tools")?;
+    Ok(run(in_chromium(project, &node)?
+        .env("FULL", "1")
+        .env("SITE", site)
+        .env("SKETCHES", project.target.join("sketches"))
+        .env("FIRMWARE", project.target.join("firmware/rumbo.elf"))
+        .env("TOOLS", tools)
+        .args(["test/run.mjs", "test/browser", "test/full"]))?)
+}
+
+/// Node with what every test in the browser takes.
+fn in_chromium(project: &Project, node: &Path) -> Result<std::process::Command, Stop> {
+    let chromium = tools::chromium(project)?;
+    let rumbo = project.program("rumbo")?;
+    let mut test = project.command(node);
+    test.current_dir(project.root.join("web"))
+        .env("RUMBO_BIN", rumbo)
+        .env("CHROMIUM", chromium)
+        .arg("--test-reporter=spec");
+    Ok(test)
 }
 
 /// The test files, named one by one: what `node --test` makes of a folder differs between its versions.

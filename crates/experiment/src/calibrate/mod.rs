@@ -50,6 +50,8 @@ pub struct Calibration {
     pub duration_s: f64,
     /// Distance driven along the wall [m].
     pub way_m: f64,
+    /// The parameters that it set, with their values before.
+    pub before: Vec<(ParamId, f32)>,
 }
 
 impl Calibration {

@@ -50,6 +50,8 @@ struct Course<'s> {
     ahead_m: f64,
     radius_m: Wheels<f64>,
     base_m: f64,
+    /// Parameters that it sets on its way, with their values before.
+    before: Vec<(ParamId, f64)>,
     /// Heading to the wall where the last leg ended, to the left positive [rad].
     heading_rad: f64,
     legs: usize,
@@ -85,6 +87,11 @@ impl<'s> Course<'s> {
             ahead_m,
             radius_m,
             base_m,
+            before: vec![
+                (ParamId::RadiusLeft, radius_m.left),
+                (ParamId::RadiusRight, radius_m.right),
+                (ParamId::Base, base_m),
+            ],
             heading_rad: 0.0,
             legs: 0,
             ratios: Vec::new(),
@@ -111,7 +118,7 @@ impl<'s> Course<'s> {
         }
         let ratio = mean(&self.ratios).ok_or(CalibrateError::NotDetermined("the wheels' radii"))?;
         let scale = mean(&self.scales);
-        let calibration = Calibration {
+        let mut calibration = Calibration {
             ratio: Measured {
                 value: ratio.value.exp(),
                 error: ratio.error,
@@ -129,8 +136,15 @@ impl<'s> Course<'s> {
             feedforward: fit::feedforward(&self.steady)?,
             duration_s: self.station.now_s() - start_s,
             way_m: self.ratios.iter().map(|(_, way_m)| way_m).sum(),
+            before: Vec::new(),
         };
         for (id, value) in calibration.parameters() {
+            let known = self.before.iter().find(|(known, _)| *known == id);
+            let before = match known {
+                Some((_, before)) => *before,
+                None => self.station.parameter(id).await?,
+            };
+            calibration.before.push((id, before as f32));
             self.station.set_parameter(id, f64::from(value)).await?;
         }
         Ok(calibration)

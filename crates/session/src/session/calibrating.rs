@@ -4,7 +4,7 @@ use super::{Ask, Now, Session};
 use crate::error::CalibrationError;
 use crate::guest::Guest;
 use crate::orders::Order;
-use rumbo_log::{CalibrationState, Findings, Level};
+use rumbo_log::{CalibrationPhase, CalibrationState, Findings, Level};
 use rumbo_wire::Command;
 
 impl Session {
@@ -27,21 +27,22 @@ impl Session {
 
     /// A calibration starts, or why not. It gets the received bytes, and drives the robot by its own.
     pub fn calibration_begun(&mut self, begun: Result<Box<dyn Guest>, CalibrationError>, now: Now) {
-        let at_s = now.target_us as f64 / 1e6;
         let guest = match begun {
             Ok(guest) => guest,
             Err(why) => {
                 self.note(Level::Warning, format!("calibration: refused, {why}"), now);
                 if self.calibrating.is_none() {
                     let why = format!("it was refused: {why}");
-                    self.calibration = Some(CalibrationState::Failed { why, at_s });
+                    self.calibrations += 1;
+                    self.show_calibration(CalibrationPhase::Failed { why });
                 }
                 return;
             }
         };
         self.calibrating = Some((guest, now.target_us));
-        let since_s = at_s;
-        self.calibration = Some(CalibrationState::Running { since_s });
+        self.calibrations += 1;
+        let since_s = now.target_us as f64 / 1e6;
+        self.show_calibration(CalibrationPhase::Running { since_s });
         let text = "calibration: the robot drives by itself";
         self.note(Level::Info, text.into(), now);
     }
@@ -68,21 +69,26 @@ impl Session {
         let Some((_, since_us)) = self.calibrating.take() else {
             return;
         };
-        let at_s = now.target_us as f64 / 1e6;
-        self.calibration = Some(match found {
+        let phase = match found {
             Ok(findings) => {
                 let passed_s = (now.target_us - since_us) as f64 / 1e6;
                 let text = format!("calibration: done in {passed_s:.0} s, the parameters are set");
                 self.note(Level::Good, text, now);
-                CalibrationState::Done { findings, at_s }
+                CalibrationPhase::Done { findings }
             }
             Err(why) => {
                 let why = why.to_string();
                 self.note(Level::Warning, format!("calibration: given up, {why}"), now);
-                CalibrationState::Failed { why, at_s }
+                CalibrationPhase::Failed { why }
             }
-        });
+        };
+        self.show_calibration(phase);
         self.client.read_parameters();
+    }
+
+    fn show_calibration(&mut self, phase: CalibrationPhase) {
+        let number = self.calibrations;
+        self.calibration = Some(CalibrationState { number, phase });
     }
 
     /// Whether an order is for the robot, and a calibration in its way. One that stops the robot ends the calibration.

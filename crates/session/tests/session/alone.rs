@@ -5,7 +5,7 @@ use crate::support;
 use proptest::prelude::*;
 use rumbo_control::Velocity;
 use rumbo_control::mode::ModeId;
-use rumbo_log::{CalibrationState, Entry, Findings, Log, LogWriter, Manifest, Row, Source};
+use rumbo_log::{CalibrationPhase, Choice, Entry, Findings, Log, LogWriter, Manifest, Row, Source};
 use rumbo_session::{
     About, Ask, Board, CalibrationError, Cursor, Event, Going, Guest, LinkNews, Now, Order,
     SLICE_US, Session, Sight, Target,
@@ -83,6 +83,20 @@ impl Bench {
             self.session.update(Going::default(), now);
             self.events.extend(self.session.take_events());
         }
+    }
+
+    /// Number and reason of the failed calibration that the page shows.
+    fn failed_calibration(&self) -> (u32, String) {
+        let mut board = Board::default();
+        for event in &self.events {
+            board.take(event, 0.0);
+        }
+        let state = board.news(&mut Cursor::default()).state.unwrap();
+        let calibration = state.calibration.clone().unwrap();
+        let CalibrationPhase::Failed { why } = calibration.phase else {
+            panic!("{calibration:?}");
+        };
+        (calibration.number, why)
     }
 
     fn armed(&self) -> usize {
@@ -365,16 +379,25 @@ fn a_calibration_that_is_refused_is_shown_with_the_reason() {
     bench.pass(2_000);
     assert!(bench.order(Order::Calibrate).is_none());
     bench.pass(1_000);
-    let mut board = Board::default();
-    for event in &bench.events {
-        board.take(event, 0.0);
-    }
-    let state = board.news(&mut Cursor::default()).state.unwrap();
-    let Some(CalibrationState::Failed { why, at_s }) = &state.calibration else {
-        panic!("{:?}", state.calibration);
-    };
+    let (number, why) = bench.failed_calibration();
     assert_eq!(why, "it was refused: the robot is armed: switch OFF first");
-    assert!((*at_s - 4.0).abs() < 0.1, "{at_s}");
+    assert_eq!(number, 1);
+}
+
+#[test]
+fn a_calibration_that_is_refused_after_a_reset_is_another_one() {
+    let mut bench = Bench::new();
+    bench.order(Order::Calibrate);
+    bench.pass(400);
+    let (before, _) = bench.failed_calibration();
+    let choice = Choice::default();
+    let again = Ok(About::of(&bench.toy));
+    bench.session.restart(&choice, again, 8, bench.now());
+    bench.order(Order::Calibrate);
+    bench.pass(400);
+    let (number, why) = bench.failed_calibration();
+    assert_eq!(why, "it was refused: no robot answers");
+    assert_eq!((before, number), (1, 2));
 }
 
 #[test]

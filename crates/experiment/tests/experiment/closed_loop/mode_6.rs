@@ -63,6 +63,14 @@ fn a_calibration_finds_the_wheels_and_their_distance_within_its_own_error_and_to
 }
 
 #[test]
+fn a_calibration_tells_what_the_parameters_were_that_it_sets() {
+    let (found, _) = calibrated(1);
+    let set = found.parameters().into_iter();
+    let before: Vec<_> = set.map(|(id, _)| (id, id.limits().default)).collect();
+    assert_eq!(found.before, before);
+}
+
+#[test]
 fn a_calibration_that_is_recorded_finds_the_same() {
     let plan = calibration_setup(&Overrides::default()).unwrap();
     let run = run_calibration(&plan, 4).unwrap();

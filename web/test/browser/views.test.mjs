@@ -1,0 +1,88 @@
+// @ts-check
+/** Parts of the page with messages made for them, in a page that is there for its language and its elements. */
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { folder, open } from '../dashboard.mjs';
+
+/** @type {Awaited<ReturnType<typeof open>>} */
+let dashboard;
+/** @type {import('playwright-core').Page} */
+let page;
+
+before(async () => {
+  dashboard = await open(['lab', '--scenario', 'mode1', '--out', folder()]);
+  page = dashboard.page;
+  await page.waitForSelector('#connection.good');
+});
+
+after(() => dashboard?.close());
+
+/** What the calibration's page says after each of these states, and what it sends when the old values are put back. @param {unknown[]} calibrations */
+const calibrated = (calibrations) => page.evaluate(async ({ calibrations, module }) => {
+  /** @type {unknown[]} */
+  const sent = [];
+  const view = new (await import(module)).CalibrationDialog((/** @type {unknown} */ order) => sent.push(order));
+  view.setParameters([{ id: 3, name: 'base_m', value: null }]);
+  view.open();
+  const body = [...document.querySelectorAll('#calibration-step')].at(-1);
+  const seen = calibrations.map((calibration) => {
+    view.show({ t_s: 1, simulated: true, calibration });
+    return /** @type {HTMLElement} */ (body).innerText;
+  });
+  /** @type {HTMLButtonElement | undefined} */ ([...body?.querySelectorAll('button') ?? []].find(({ textContent }) => textContent === 'Put the old values back'))?.click();
+  body?.closest('dialog')?.remove();
+  return { seen, sent };
+}, { calibrations, module: '/src/calibration_dialog.js' });
+
+test('a calibration shows the values before, whether or not the page had read them, and puts them back', async () => {
+  const findings = { rows: [{ name: 'distance between the wheels [m]', found: 0.0987, standard_error: null }], parameters: [[3, 0.0987]], before: [[3, 0.1]] };
+  const { seen, sent } = await calibrated([{ number: 1, phase: 'running', since_s: 0 }, { number: 1, phase: 'done', findings }]);
+  assert.match(seen[1] ?? '', /base_m\s+0\.1\s+0\.0987/);
+  assert.deepEqual(sent, [{ type: 'set_param', id: 3, value: 0.1 }]);
+});
+
+test('a calibration that ends as the one before is shown, and one that a reset took away is over', async () => {
+  const failed = (/** @type {number} */ number, /** @type {string} */ why) => ({ number, phase: 'failed', why });
+  const { seen } = await calibrated([failed(1, 'first'), failed(2, 'second'), { number: 3, phase: 'running', since_s: 0 }, undefined, failed(4, 'fourth')]);
+  assert.deepEqual(seen.map((text) => text.match(/first|second|fourth|Stay out of its way|Begin the calibration/)?.[0]), ['first', 'second', 'Stay out of its way', 'Begin the calibration', 'fourth']);
+});
+
+test('a search begins with what the robot has, though its values come after the dialog was opened', async () => {
+  await page.locator('#tune').click();
+  const offered = page.locator('#tune-parameters label', { hasText: 'front_kp' });
+  await offered.waitFor();
+  const before = await offered.innerText();
+  await page.locator('#tune-dialog').getByRole('button', { name: 'Close' }).click();
+  const field = page.locator('#parameter-front_kp');
+  await field.fill('1.5');
+  await page.locator('#tune').click();
+  await offered.waitFor();
+  assert.equal(await offered.innerText(), before);
+  await field.evaluate((field) => field.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter' })));
+  await page.locator('#tune-parameters label', { hasText: /front_kp\s+1\.5\s/ }).waitFor();
+  await page.keyboard.press('Escape');
+});
+
+/** A judgement of the page's. @param {string} name @param {unknown[]} values @returns {Promise<any>} */
+const judged = (name, ...values) => page.evaluate(async ({ name, values, module }) => (await import(module))[name](...values), { name, values, module: '/src/checkup.js' });
+
+test('each pair of what was counted and what was seen has its remedy', async () => {
+  for (const [count, seen, remedy] of [
+    ['own', 'backward', /left wheel turns backward\. Swap the two wires of its motor/], ['other', 'forward', /two encoders are exchanged/], ['other', 'other', /two motors are exchanged/],
+    ['own', 'other', /Motors and encoders are both exchanged/], ['none', 'forward', /left encoder is silent/], ['none', 'none', /left wheel does not turn/], ['own', 'none', /picks up noise/],
+    ['both', 'forward', /Both encoders count/],
+  ]) {
+    const verdict = await judged('judgeMotor', 'left', count, seen);
+    assert.equal(verdict.good, false);
+    assert.match(verdict.text, /** @type {RegExp} */ (remedy));
+  }
+  assert.equal((await judged('judgeMotor', 'right', 'own', 'forward')).good, true);
+  assert.deepEqual([await judged('counted', 'left', 80, 0), await judged('counted', 'right', 80, 0), await judged('counted', 'left', 1, 2), await judged('counted', 'left', 50, 50)], ['own', 'other', 'none', 'both']);
+});
+
+test('a hand before a sonar is found, also by the wrong one', async () => {
+  assert.equal((await judged('judgeSonar', 0, [20, 'clear', 150], ['clear', 'clear', 150])).good, true);
+  assert.match((await judged('judgeSonar', 0, ['clear', 150, 20], ['clear', 150, 180])).text, /front sonar sees the hand instead of the left one\. Swap/);
+  assert.equal(await judged('judgeSonar', 0, ['clear', 15, 150], ['clear', 15, 150]), null, 'what stood there before is no hand');
+  assert.match((await judged('sonarInVain', 1, null)).text, /right sonar gives no reading/);
+});
