@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * Figures of the site for docs/browser.md: SITE=../site TOOLS=../target/release/rumbo-tools node test/site_bench.mjs. TOOLS is
- * the native program, `cargo build --release -p rumbo-tools --bin hashes`; avr-gcc compiles the program of the image. Times
+ * the native program, `cargo build --release -p rumbo-tools`; avr-gcc compiles the program of the image. Times
  * of the processor hardly depend on what else the machine does; that of the first plot does.
  */
 import { spawnSync } from 'node:child_process';

@@ -76,7 +76,7 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if only.is_empty() || only.iter().any(|name| name == GRADE) {
         tools::arduino_core(project).map_err(said)?;
         tools::bubblewrap(project).map_err(said)?;
-        met &= made_longer(project, "grade::", "RUMBO_MISTAKES", "all")?;
+        met &= made_longer(project, "grade::", "RUMBO_FULL", "1")?;
         met &= tool(project, GRADE, &[])?;
     }
     if only.is_empty() || only.iter().any(|name| name == IDENTIFY) {

@@ -105,18 +105,6 @@ pub struct Edge {
     pub level: bool,
 }
 
-impl State {
-    /// When the line's next edge is due.
-    #[cfg(target_arch = "x86_64")]
-    pub(crate) const fn due_us(&self) -> Option<u64> {
-        match self.line {
-            Line::Low => None,
-            Line::Rising { rise_us, .. } => Some(rise_us),
-            Line::High { fall_us } => Some(fall_us),
-        }
-    }
-}
-
 /// A transducer at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {

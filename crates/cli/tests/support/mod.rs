@@ -12,6 +12,11 @@ use tungstenite::{Message, WebSocket};
 /// Long enough for any machine; nothing is judged by it.
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// The full check, not the gate: all cases.
+pub(crate) fn is_full() -> bool {
+    std::env::var_os("RUMBO_FULL").is_some()
+}
+
 /// The folder of this test run.
 pub(crate) fn folder() -> PathBuf {
     env!("CARGO_TARGET_TMPDIR").into()

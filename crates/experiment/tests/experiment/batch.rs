@@ -6,7 +6,7 @@ use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Batch, Driver, OBSERVED, Robot, TRUE};
-use rumbo_experiment::files::{FileError, Kind, Library, NativeProgram, Overrides, Setup};
+use rumbo_experiment::files::{Kind, Library, NativeProgram, Overrides, Setup};
 use rumbo_experiment::run;
 use rumbo_sim::trace::Sample;
 use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, Refusal, ToRobot};
