@@ -148,8 +148,43 @@ fn cleaned(path: &str) -> String {
     let path = path.trim().trim_start_matches("./");
     match path.starts_with('/') {
         true => path.rsplit('/').next().unwrap_or(path).to_owned(),
-        false => path.trim_start_matches("../out/").to_owned(),
+        false => path.trim_start_matches("../main/").to_owned(),
     }
+}
+
+/// A tool's output without control characters and a terminal's escape sequences: a source may put any into a message.
+pub(crate) fn plain(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut characters = text.chars().peekable();
+    while let Some(character) = characters.next() {
+        let opens = match character {
+            '\u{1b}' => characters.next_if(|next| !next.is_control()),
+            '\u{9b}' => Some('['),
+            '\u{9d}' => Some(']'),
+            _ => None,
+        };
+        match (character, opens) {
+            // A control sequence: parameters, and one final character.
+            (_, Some('[')) => {
+                while characters
+                    .next_if(|next| (' '..='?').contains(next))
+                    .is_some()
+                {}
+                characters.next_if(|next| ('@'..='~').contains(next));
+            }
+            // A command: a text up to a bell or another escape, within the line.
+            (_, Some(']' | 'P' | '^' | '_' | 'X')) => {
+                while characters.next_if(|next| !next.is_control()).is_some() {}
+                characters.next_if_eq(&'\u{7}');
+            }
+            ('\n' | '\t', _) => out.push(character),
+            // These change the direction of what is around them.
+            ('\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}', _) => {}
+            _ if character.is_control() => {}
+            _ => out.push(character),
+        }
+    }
+    out
 }
 
 #[cfg(test)]
@@ -190,6 +225,23 @@ mod tests {
             "`drive(int)` is declared and used, but defined nowhere"
         );
         assert_eq!(found[2].file, None);
+    }
+
+    #[test]
+    fn a_message_has_no_escape_sequences_and_no_other_text_is_lost() {
+        for (text, expected) in [
+            (
+                "a.ino:1: error: \u{1b}[31;1mred\u{1b}[0m",
+                "a.ino:1: error: red",
+            ),
+            ("\u{1b}]0;title\u{7}a\u{1b}]8;;http://x\u{1b}\\b", "ab"),
+            ("\u{9b}2Ja\u{8}\u{8}\rb\tc\nd", "ab\tc\nd"),
+            ("\u{1b}cnot ended \u{1b}[12\nnext", "not ended \nnext"),
+            ("\u{1b}]swallows its line\nnot the next", "\nnot the next"),
+            ("ñ \u{202e}leaves\u{2069} 'x'", "ñ leaves 'x'"),
+        ] {
+            assert_eq!(plain(text), expected, "{text:?}");
+        }
     }
 
     #[test]
