@@ -12,6 +12,7 @@ use rumbo_sim::boards::Board;
 use rumbo_sketch::{Compiler, Diagnostic, Given, SketchError, Source, given};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
 
 /// The files are looked at this often. What has changed is compiled when it is the same twice: whole, that is.
@@ -19,9 +20,14 @@ const LOOK: Duration = Duration::from_millis(150);
 /// Errors shown: the first ones matter.
 const MOST: usize = 12;
 
+/// One program that was dropped is compiled at a time: the session goes on meanwhile, and needs the processor.
+static TURN: Mutex<()> = Mutex::new(());
+
 /// A program that is watched.
 pub(crate) struct Workshop {
     made: Receiver<Made>,
+    /// Lives as long as the workshop.
+    _wanted: Arc<()>,
 }
 
 /// A program as it stands in its files.
@@ -41,7 +47,10 @@ impl Workshop {
         std::thread::Builder::new()
             .name("workshop".into())
             .spawn(move || work(&path, board, built, &sender))?;
-        Ok(Self { made })
+        Ok(Self {
+            made,
+            _wanted: Arc::default(),
+        })
     }
 
     fn make_dropped(
@@ -50,14 +59,23 @@ impl Workshop {
         content: Vec<u8>,
     ) -> std::io::Result<Self> {
         let (sender, made) = channel();
+        let wanted = Arc::new(());
+        let still = Arc::downgrade(&wanted);
         std::thread::Builder::new()
             .name("workshop".into())
             .spawn(move || {
-                // Nobody listens any more if the next one was dropped meanwhile.
                 let _ = sender.send(Made::Begun);
-                let _ = sender.send(dropped(board, &name, content));
+                let turn = TURN.lock();
+                // The next one may have been dropped meanwhile.
+                if still.strong_count() > 0 {
+                    let _ = sender.send(dropped(board, &name, content));
+                }
+                drop(turn);
             })?;
-        Ok(Self { made })
+        Ok(Self {
+            made,
+            _wanted: wanted,
+        })
     }
 }
 
@@ -156,6 +174,10 @@ fn rejected(error: SketchError, source: &Source) -> Made {
             let errors = errors.iter().take(MOST);
             Made::Rejected(errors.map(|error| complaint(error, source)).collect())
         }
+        // Which file that is, and in whose folder, no page says.
+        SketchError::File { reason, .. } => Made::Rejected(vec![problem(format!(
+            "a file of the compilation cannot be read or written: {reason}"
+        ))]),
         error => Made::Rejected(vec![problem(error.to_string())]),
     }
 }
@@ -174,7 +196,8 @@ fn complaint(error: &Diagnostic, source: &Source) -> Complaint {
         .and_then(|(file, line)| {
             let text = String::from_utf8_lossy(source.files.get(file)?);
             let line = text.lines().nth(line.checked_sub(1)? as usize)?;
-            Some(line.chars().take(200).collect())
+            let shown = line.chars().filter(|c| !c.is_control() || *c == '\t');
+            Some(shown.take(200).collect())
         });
     Complaint {
         place,

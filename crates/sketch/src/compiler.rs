@@ -422,9 +422,13 @@ impl<'a> Build<'a> {
                 notes: Vec::new(),
             });
         }
-        // The linker's cause is reported, not that it failed.
-        if complaints.iter().filter(|one| is_error(one)).count() > 1 {
-            complaints.retain(|one| !one.text.contains("ld returned"));
+        // The cause is reported, not that the tools that called the one which said it have failed too.
+        let is_echo = |one: &Diagnostic| {
+            let ends = [" exit status", "lto-wrapper failed"];
+            one.file.is_none() && ends.iter().any(|end| one.text.ends_with(end))
+        };
+        if complaints.iter().any(|one| is_error(one) && !is_echo(one)) {
+            complaints.retain(|one| !is_echo(one));
         }
         let room = MOST_COMPLAINTS.saturating_sub(self.complaints.len());
         // However many warnings there are, an error is an error.
