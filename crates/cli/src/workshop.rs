@@ -53,11 +53,8 @@ impl Workshop {
         })
     }
 
-    fn make_dropped(
-        board: &'static Board,
-        name: String,
-        content: Vec<u8>,
-    ) -> std::io::Result<Self> {
+    /// Makes something once, when nothing else is being made.
+    fn once(make: impl FnOnce() -> Made + Send + 'static) -> std::io::Result<Self> {
         let (sender, made) = channel();
         let wanted = Arc::new(());
         let still = Arc::downgrade(&wanted);
@@ -68,7 +65,7 @@ impl Workshop {
                 let turn = TURN.lock();
                 // The next one may have been dropped meanwhile.
                 if still.strong_count() > 0 {
-                    let _ = sender.send(dropped(board, &name, content));
+                    let _ = sender.send(make());
                 }
                 drop(turn);
             })?;
@@ -92,7 +89,7 @@ pub(crate) fn make_dropped(
     content: Vec<u8>,
 ) -> Result<Box<dyn rumbo_lab::Workshop>, TargetError> {
     let board = board.ok_or(TargetError::NoChip)?;
-    match Workshop::make_dropped(board, name, content) {
+    match Workshop::once(move || dropped(board, &name, content)) {
         Ok(workshop) => Ok(Box::new(workshop)),
         Err(error) => Err(TargetError::Setup(error.to_string())),
     }
@@ -230,6 +227,36 @@ mod tests {
         assert_eq!(seen.line.as_deref(), Some("int x = 1"));
         assert_eq!(complaint(&error("Servo.h", 2), &source).line, None);
         assert_eq!(complaint(&error("wall.ino", 9), &source).line, None);
+    }
+
+    #[test]
+    fn programs_are_made_one_at_a_time_and_those_replaced_meanwhile_not_at_all() {
+        static AT_WORK: Mutex<()> = Mutex::new(());
+        let make = |name: &'static str| {
+            Workshop::once(move || {
+                let alone = AT_WORK.try_lock();
+                std::thread::sleep(Duration::from_millis(1));
+                match alone {
+                    Ok(_) => Made::Image(name.into()),
+                    Err(_) => Made::Rejected(Vec::new()),
+                }
+            })
+            .unwrap()
+        };
+        let turn = TURN.lock().unwrap();
+        let replaced = Workshop::once(|| panic!("nobody wants it")).unwrap();
+        assert!(matches!(replaced.made.recv(), Ok(Made::Begun)));
+        drop(replaced);
+        let thirty: Vec<_> = (0..30).map(|_| make("a.elf")).collect();
+        for one in &thirty {
+            assert!(matches!(one.made.recv(), Ok(Made::Begun)));
+            assert!(one.made.try_recv().is_err());
+        }
+        drop(turn);
+        for one in &thirty {
+            assert!(matches!(one.made.recv(), Ok(Made::Image(_))));
+        }
+        assert!(TURN.lock().is_ok(), "the replaced one was made");
     }
 
     #[test]
