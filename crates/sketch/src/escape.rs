@@ -1,4 +1,5 @@
 //! What a compiler could do that obeys the author of a sketch: a shell script takes its place, and tries.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests too")]
 
 use crate::sandbox::{Limits, Sandbox};
 use crate::{BOARDS, Compiler, SketchError, Source, Toolchain};
