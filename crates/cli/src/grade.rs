@@ -23,10 +23,12 @@ use std::io::IsTerminal;
 use std::path::Path;
 use std::time::Duration;
 
-/// The class page, and the folders of the students' pages and of Gradescope's files.
+/// What is written: the class page, the tables, and in folders the students' pages and Gradescope's files.
 const PAGE: &str = "index.html";
-const STUDENTS: &str = "students";
-const GRADESCOPE: &str = "gradescope";
+const TABLE: &str = "marks.csv";
+const SUITES: &str = "junit.xml";
+const STUDENTS: (&str, &str) = ("students", "html");
+const GRADESCOPE: (&str, &str) = ("gradescope", "json");
 /// Most names said of what is no hand-in.
 const MOST_NAMED: usize = 20;
 
@@ -36,13 +38,15 @@ pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
     let stamp = check_places(args, &assignment)?;
     set_threads(args.threads)?;
     let (found, others) = hand_ins::find(&args.folder)?;
+    let files = file_names(found.iter().map(hand_ins::Found::name));
+    check_files(args, &assignment, &stamp, &files)?;
     if !others.is_empty() {
         let more = match others.len().saturating_sub(MOST_NAMED) {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
         output::note(&format!(
-            "not graded: {}{more}; a hand-in is a folder with a sketch, an .ino, an .elf or a .hex, and no link",
+            "not graded: {}{more}; a hand-in is a folder with a sketch, an .ino, an .elf or a .hex; it is no link, and its name begins with no full stop",
             others[..others.len().min(MOST_NAMED)].join(", ")
         ));
     }
@@ -64,7 +68,7 @@ pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
     let progress = progress_bar(runs, "{bar:40} {pos}/{len} runs, {eta} left");
     let marks = grade_all(&assignment, &hand_ins, || progress.inc(1));
     progress.finish_and_clear();
-    write(args, &assignment, &marks, &notes, &stamp)?;
+    write(args, &assignment, (&marks, &files), &notes, &stamp)?;
     report(args, &marks, &notes)
 }
 
@@ -122,6 +126,27 @@ fn check_places(args: &GradeArgs, assignment: &Assignment) -> Result<Stamp, Fail
     Ok(stamp)
 }
 
+/// Refuses, before anything runs, to write over files that are not its own.
+fn check_files(
+    args: &GradeArgs,
+    assignment: &Assignment,
+    stamp: &Stamp,
+    files: &[String],
+) -> Result<(), Failure> {
+    let guard = Guard::new([args.assignment.clone()], args.overwrite.force);
+    let table = mark::Mark::table(&exports::csv(assignment, &[]));
+    guard.check(&args.out.join(TABLE), &table)?;
+    let stamped = mark::Mark::of(stamp);
+    guard.check(&args.out.join(SUITES), &stamped)?;
+    for (folder, ending) in [STUDENTS, GRADESCOPE] {
+        for file in files {
+            let path = args.out.join(folder).join(format!("{file}.{ending}"));
+            guard.check(&path, &stamped)?;
+        }
+    }
+    Ok(())
+}
+
 /// On stderr, and only where that is a terminal.
 fn progress_bar(count: usize, template: &str) -> ProgressBar {
     let style = ProgressStyle::with_template(template);
@@ -132,40 +157,43 @@ fn progress_bar(count: usize, template: &str) -> ProgressBar {
 fn write(
     args: &GradeArgs,
     assignment: &Assignment,
-    marks: &[Mark],
+    (marks, files): (&[Mark], &[String]),
     notes: &[String],
     stamp: &Stamp,
 ) -> Result<(), Failure> {
     let language = language(args.language);
     let out = |name: &str| args.out.join(name);
-    for folder in [STUDENTS, GRADESCOPE] {
+    for (folder, ending) in [STUDENTS, GRADESCOPE] {
         let folder = out(folder);
-        // Pages of hand-ins that are gone are removed.
-        if let Err(error) = std::fs::remove_dir_all(&folder)
-            && error.kind() != std::io::ErrorKind::NotFound
-        {
-            return Err(place::unwritable(&folder, &error));
-        }
+        remove_own(&folder, ending, &mark::Mark::of(stamp))?;
         place::folder(&folder)?;
     }
-    let files = file_names(marks.iter().map(|mark| &*mark.name));
-    for (mark, file) in marks.iter().zip(&files) {
-        let page = out(STUDENTS).join(format!("{file}.html"));
-        place::write(
-            &page,
-            stamp.put_on(student(assignment, mark, notes, language)),
-        )?;
-        let json = exports::gradescope(assignment, mark, notes, language)?;
-        place::write(&out(GRADESCOPE).join(format!("{file}.json")), json)?;
+    let inner = |(folder, ending): (&str, &str), file: &str| format!("{folder}/{file}.{ending}");
+    for (mark, file) in marks.iter().zip(files) {
+        let page = student(assignment, mark, notes, language);
+        place::write(&out(&inner(STUDENTS, file)), stamp.put_on(page))?;
+        let json = exports::gradescope(assignment, mark, notes, language, stamp)?;
+        place::write(&out(&inner(GRADESCOPE, file)), json)?;
     }
-    let links: Vec<String> = files
-        .iter()
-        .map(|file| format!("{STUDENTS}/{file}.html"))
-        .collect();
+    let links: Vec<String> = files.iter().map(|file| inner(STUDENTS, file)).collect();
     let page = class(assignment, marks, notes, language, &links);
-    place::write(&out("marks.csv"), exports::csv(assignment, marks))?;
-    place::write(&out("junit.xml"), exports::junit(assignment, marks))?;
+    place::write(&out(TABLE), exports::csv(assignment, marks))?;
+    place::write(&out(SUITES), exports::junit(assignment, marks, stamp))?;
     place::write(&out(PAGE), stamp.put_on(page))
+}
+
+/// Removes the pages of an earlier time, some of hand-ins that are gone: what carries the mark, and nothing else.
+fn remove_own(folder: &Path, ending: &str, mark: &mark::Mark) -> Result<(), Failure> {
+    let Ok(inside) = std::fs::read_dir(folder) else {
+        return Ok(());
+    };
+    for path in inside.flatten().map(|entry| entry.path()) {
+        let is_file = path.symlink_metadata().is_ok_and(|about| about.is_file());
+        if is_file && path.extension().is_some_and(|own| own == ending) && mark.is_on(&path) {
+            std::fs::remove_file(&path).map_err(|error| place::unwritable(&path, &error))?;
+        }
+    }
+    Ok(())
 }
 
 /// A file name for each hand-in: its name, restricted to portable characters; where another one has that, whatever

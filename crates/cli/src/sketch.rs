@@ -13,9 +13,12 @@ use rumbo_sketch::{
 };
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Prefix of an example's name.
 const EXAMPLE: &str = "example:";
+/// Time for compiling a sketch that was dropped; the next one waits for it.
+const DROPPED: Duration = Duration::from_secs(30);
 /// Environment variable that names another folder for compiled files.
 const CACHE: &str = "RUMBO_CACHE";
 
@@ -53,7 +56,11 @@ pub(crate) fn compiler(board: &Board) -> Result<Compiler, SketchError> {
 /// A compiler for sketches of others, in the sandbox.
 pub(crate) fn walled_compiler(board: &Board) -> Result<Compiler, SketchError> {
     let toolchain = Toolchain::find()?;
-    let sandbox = Sandbox::walled(&toolchain, Limits::default())?;
+    let limits = Limits {
+        time: DROPPED,
+        ..Limits::default()
+    };
+    let sandbox = Sandbox::walled(&toolchain, limits)?;
     Compiler::new(target(board), toolchain, sandbox, cache())
 }
 

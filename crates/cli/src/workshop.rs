@@ -12,6 +12,7 @@ use rumbo_sim::boards::Board;
 use rumbo_sketch::{Compiler, Diagnostic, Given, SketchError, Source, given};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
 
 /// The files are looked at this often. What has changed is compiled when it is the same twice: whole, that is.
@@ -19,9 +20,14 @@ const LOOK: Duration = Duration::from_millis(150);
 /// Errors shown: the first ones matter.
 const MOST: usize = 12;
 
+/// One program that was dropped is compiled at a time: the session goes on meanwhile, and needs the processor.
+static TURN: Mutex<()> = Mutex::new(());
+
 /// A program that is watched.
 pub(crate) struct Workshop {
     made: Receiver<Made>,
+    /// Lives as long as the workshop.
+    _wanted: Arc<()>,
 }
 
 /// A program as it stands in its files.
@@ -41,23 +47,32 @@ impl Workshop {
         std::thread::Builder::new()
             .name("workshop".into())
             .spawn(move || work(&path, board, built, &sender))?;
-        Ok(Self { made })
+        Ok(Self {
+            made,
+            _wanted: Arc::default(),
+        })
     }
 
-    fn make_dropped(
-        board: &'static Board,
-        name: String,
-        content: Vec<u8>,
-    ) -> std::io::Result<Self> {
+    /// Makes something once, when nothing else is being made.
+    fn once(make: impl FnOnce() -> Made + Send + 'static) -> std::io::Result<Self> {
         let (sender, made) = channel();
+        let wanted = Arc::new(());
+        let still = Arc::downgrade(&wanted);
         std::thread::Builder::new()
             .name("workshop".into())
             .spawn(move || {
-                // Nobody listens any more if the next one was dropped meanwhile.
                 let _ = sender.send(Made::Begun);
-                let _ = sender.send(dropped(board, &name, content));
+                let turn = TURN.lock();
+                // The next one may have been dropped meanwhile.
+                if still.strong_count() > 0 {
+                    let _ = sender.send(make());
+                }
+                drop(turn);
             })?;
-        Ok(Self { made })
+        Ok(Self {
+            made,
+            _wanted: wanted,
+        })
     }
 }
 
@@ -74,7 +89,7 @@ pub(crate) fn make_dropped(
     content: Vec<u8>,
 ) -> Result<Box<dyn rumbo_lab::Workshop>, TargetError> {
     let board = board.ok_or(TargetError::NoChip)?;
-    match Workshop::make_dropped(board, name, content) {
+    match Workshop::once(move || dropped(board, &name, content)) {
         Ok(workshop) => Ok(Box::new(workshop)),
         Err(error) => Err(TargetError::Setup(error.to_string())),
     }
@@ -156,6 +171,10 @@ fn rejected(error: SketchError, source: &Source) -> Made {
             let errors = errors.iter().take(MOST);
             Made::Rejected(errors.map(|error| complaint(error, source)).collect())
         }
+        // Which file that is, and in whose folder, no page says.
+        SketchError::File { reason, .. } => Made::Rejected(vec![problem(format!(
+            "a file of the compilation cannot be read or written: {reason}"
+        ))]),
         error => Made::Rejected(vec![problem(error.to_string())]),
     }
 }
@@ -174,7 +193,8 @@ fn complaint(error: &Diagnostic, source: &Source) -> Complaint {
         .and_then(|(file, line)| {
             let text = String::from_utf8_lossy(source.files.get(file)?);
             let line = text.lines().nth(line.checked_sub(1)? as usize)?;
-            Some(line.chars().take(200).collect())
+            let shown = line.chars().filter(|c| !c.is_control() || *c == '\t');
+            Some(shown.take(200).collect())
         });
     Complaint {
         place,
@@ -207,6 +227,36 @@ mod tests {
         assert_eq!(seen.line.as_deref(), Some("int x = 1"));
         assert_eq!(complaint(&error("Servo.h", 2), &source).line, None);
         assert_eq!(complaint(&error("wall.ino", 9), &source).line, None);
+    }
+
+    #[test]
+    fn programs_are_made_one_at_a_time_and_those_replaced_meanwhile_not_at_all() {
+        static AT_WORK: Mutex<()> = Mutex::new(());
+        let make = |name: &'static str| {
+            Workshop::once(move || {
+                let alone = AT_WORK.try_lock();
+                std::thread::sleep(Duration::from_millis(1));
+                match alone {
+                    Ok(_) => Made::Image(name.into()),
+                    Err(_) => Made::Rejected(Vec::new()),
+                }
+            })
+            .unwrap()
+        };
+        let turn = TURN.lock().unwrap();
+        let replaced = Workshop::once(|| panic!("nobody wants it")).unwrap();
+        assert!(matches!(replaced.made.recv(), Ok(Made::Begun)));
+        drop(replaced);
+        let thirty: Vec<_> = (0..30).map(|_| make("a.elf")).collect();
+        for one in &thirty {
+            assert!(matches!(one.made.recv(), Ok(Made::Begun)));
+            assert!(one.made.try_recv().is_err());
+        }
+        drop(turn);
+        for one in &thirty {
+            assert!(matches!(one.made.recv(), Ok(Made::Image(_))));
+        }
+        assert!(TURN.lock().is_ok(), "the replaced one was made");
     }
 
     #[test]

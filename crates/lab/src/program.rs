@@ -218,6 +218,7 @@ impl SimulatedRobot {
     }
 
     fn start_program(&mut self, image: PathBuf) {
+        let shown = image.display().to_string();
         let before = self.overrides.firmware.replace(image);
         match self.start_again(self.scene.choice.clone()) {
             Ok(()) => {
@@ -226,7 +227,10 @@ impl SimulatedRobot {
             }
             Err(error) => {
                 self.overrides.firmware = before;
-                self.reject(vec![problem(error.to_string())]);
+                // By its name: which file that is, and in whose folder, no page says.
+                let name = self.program.as_ref().map_or("", |program| &program.name);
+                let text = error.to_string().replace(&shown, name);
+                self.reject(vec![problem(text)]);
             }
         }
     }

@@ -1,16 +1,28 @@
 //! Compiles core, libraries and a sketch; products are cached by the hash of all inputs.
+//!
+//! ```text
+//! build-XXXX/sketch/   copies of the sketch's files; those to compile once more, by names of ours
+//!           /main/     the joined .ino
+//!           /out/      products
+//! ```
+//!
+//! The compiler takes names that begin with `-` or `@` as orders, so that no file's name of a sketch is an argument:
+//! `src/pid.cpp` is compiled as `src/rumbo~3.cpp`, in its folder for what it includes, and begins with
+//! `#line 1 "src/pid.cpp"` for messages.
 
 use crate::board::Board;
 use crate::diagnostics::{Diagnostic, Severity, parse};
 use crate::error::SketchError;
 use crate::preprocess;
-use crate::sandbox::{Limits, Sandbox};
+use crate::product;
+use crate::sandbox::{Limits, Sandbox, Task};
 use crate::source::{Source, ending};
 use crate::toolchain::Toolchain;
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -46,9 +58,18 @@ const LINK: [&str; 5] = [
     "-fuse-linker-plugin",
     "-Wl,--gc-sections",
 ];
-/// The sketch's own files and the build's, as the compiler sees them; it runs in the first.
+/// Folders of a build; the compiler runs in the first.
 const SKETCH: &str = "sketch";
+const MAIN: &str = "main";
 const OUT: &str = "out";
+/// The linker's product.
+const IMAGE: &str = "sketch.elf";
+/// Part of every key: products of another layout are another's.
+const LAYOUT: &str = "own names";
+/// Most headers that a sketch may include by different names.
+const MOST_HEADERS: usize = 1_000;
+/// Most complaints kept of a compilation.
+const MOST_COMPLAINTS: usize = 200;
 
 /// Compiles sketches.
 #[derive(Clone, Debug)]
@@ -109,6 +130,7 @@ impl Compiler {
     /// # Errors
     /// If the compiler rejects it, or it exceeds a limit.
     pub fn compile(&self, source: &Source, macros: &[&str]) -> Result<Image, SketchError> {
+        source.check()?;
         let main =
             preprocess::join(source).ok_or_else(|| SketchError::NoSketch(source.name.clone()))?;
         let libraries = self.libraries_of(source)?;
@@ -134,24 +156,24 @@ impl Compiler {
         for (name, bytes) in &source.files {
             build.put(SKETCH, name, bytes)?;
         }
-        build.put(OUT, "main.ino.cpp", main.as_bytes())?;
         let own = [macros, &["-Wall", "-Wextra", "-I", "."]].concat();
-        build.object("../out/main.ino.cpp".as_ref(), &own);
-        for name in source.files.keys().filter(|name| {
+        build.put(MAIN, "main.ino.cpp", main.as_bytes())?;
+        build.object(Path::new(&seen(MAIN, "main.ino.cpp")), &own);
+        for (name, bytes) in &source.files {
             // As the IDE has it: files beside the sketch, and all below `src`.
-            (!name.contains('/') || name.starts_with("src/")) && is_source(Path::new(name))
-        }) {
-            build.object(name.as_ref(), &own);
+            if !name.contains('/') || name.starts_with("src/") {
+                build.own(name, bytes, &own)?;
+            }
         }
         let quiet = [macros, &["-w"]].concat();
         for file in libraries.iter().flat_map(|library| &library.files) {
-            if is_source(file) {
+            if source_ending(file).is_some() {
                 build.object(file, &quiet);
             }
         }
         build.finish()?;
         build.link()?;
-        build.keep("sketch.elf", &image)?;
+        build.keep(IMAGE, &image)?;
         Ok(Image {
             path: image,
             fresh: false,
@@ -175,13 +197,13 @@ impl Compiler {
             ..self.clone()
         };
         let mut build = Build::new(&trusting, Vec::new())?;
-        for file in files.iter().filter(|file| is_source(file)) {
+        for file in files.iter().filter(|file| source_ending(file).is_some()) {
             build.object(file, &["-w"]);
         }
         build.finish()?;
-        let mut args: Vec<OsString> = vec!["rcs".into(), "../out/core.a".into()];
-        args.extend(build.objects.iter().map(OsString::from));
-        build.run(&self.toolchain.archiver(), &args)?;
+        let mut args: Vec<OsString> = vec!["rcs".into(), seen(OUT, "core.a")];
+        args.extend(build.objects.iter().map(|object| seen(OUT, object)));
+        build.run(&self.toolchain.archiver(), &args, "core.a", &[])?;
         build.finish()?;
         build.keep("core.a", &archive)?;
         Ok(archive)
@@ -197,6 +219,7 @@ impl Compiler {
             self.toolchain.core_version.as_str(),
             &self.toolchain.gcc.to_string_lossy(),
             &self.core.to_string_lossy(),
+            LAYOUT,
         ]) {
             part(&mut key, text.as_bytes());
         }
@@ -207,28 +230,43 @@ impl Compiler {
     fn libraries_of(&self, source: &Source) -> Result<Vec<Library>, SketchError> {
         let ours = self.cache.join("libraries");
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-        let mut texts: Vec<String> = source.files.values().map(|bytes| text(bytes)).collect();
-        let mut found: BTreeMap<PathBuf, Library> = BTreeMap::new();
-        while let Some(next) = texts.pop() {
-            for header in preprocess::includes(&next) {
-                if source.files.contains_key(&header) {
-                    continue;
-                }
-                let Some(folder) = self.toolchain.library(&header, &ours)? else {
-                    continue;
-                };
-                if found.contains_key(&folder) {
-                    continue;
-                }
-                let mut files = files_of(&folder)?;
-                if folder.join("utility").is_dir() {
-                    files.extend(files_of(&folder.join("utility"))?);
-                }
-                for file in &files {
-                    texts.push(text(&read(file)?));
-                }
-                found.insert(folder.clone(), Library { folder, files });
+        let own = source.files.values().map(|bytes| text(bytes));
+        let mut headers: BTreeSet<String> = BTreeSet::new();
+        for text in own {
+            headers.extend(
+                preprocess::includes(&text)
+                    .filter(|name| !source.files.contains_key(*name))
+                    .map(str::to_owned),
+            );
+            if headers.len() > MOST_HEADERS {
+                return Err(SketchError::Refused(format!(
+                    "the sketch includes more than {MOST_HEADERS} different headers"
+                )));
             }
+        }
+        let mut next: Vec<String> = headers.iter().cloned().collect();
+        let mut found: BTreeMap<PathBuf, Library> = BTreeMap::new();
+        while let Some(header) = next.pop() {
+            let Some(folder) = self.toolchain.library(&header, &ours)? else {
+                continue;
+            };
+            if found.contains_key(&folder) {
+                continue;
+            }
+            let mut files = files_of(&folder)?;
+            if folder.join("utility").is_dir() {
+                files.extend(files_of(&folder.join("utility"))?);
+            }
+            for file in &files {
+                let text = text(&read(file)?);
+                let more =
+                    preprocess::includes(&text).filter(|name| !source.files.contains_key(*name));
+                next.extend(
+                    more.filter(|name| headers.insert((*name).to_owned()))
+                        .map(str::to_owned),
+                );
+            }
+            found.insert(folder.clone(), Library { folder, files });
         }
         Ok(found.into_values().collect())
     }
@@ -246,7 +284,7 @@ struct Build<'a> {
     /// Folders of the libraries that the sketch includes.
     libraries: Vec<PathBuf>,
     deadline: Instant,
-    /// As the compiler, running in the sketch's folder, names them.
+    /// Their names in the folder of products.
     objects: Vec<String>,
     complaints: Vec<Diagnostic>,
     failed: Option<SketchError>,
@@ -259,7 +297,7 @@ impl<'a> Build<'a> {
             .prefix("build-")
             .tempdir_in(&compiler.cache)
             .map_err(wrong)?;
-        for inner in [SKETCH, OUT] {
+        for inner in [SKETCH, MAIN, OUT] {
             fs::create_dir(folder.path().join(inner)).map_err(wrong)?;
         }
         Ok(Self {
@@ -277,14 +315,29 @@ impl<'a> Build<'a> {
         let path = self.folder.path().join(inner).join(name);
         let write = || {
             path.parent().map_or(Ok(()), fs::create_dir_all)?;
-            fs::write(&path, bytes)
+            fs::File::create_new(&path)?.write_all(bytes)
         };
         write().map_err(|error| SketchError::file(&path, error))
     }
 
-    /// Compiles one file; an error does not keep the others from being compiled, so that all errors are seen.
+    /// Compiles a file of the sketch, if it is one to be compiled, by a name that no file of a sketch may have.
+    fn own(&mut self, name: &str, bytes: &[u8], flags: &[&str]) -> Result<(), SketchError> {
+        let path = Path::new(name);
+        let Some(ending) = source_ending(path) else {
+            return Ok(());
+        };
+        let ours = format!("rumbo~{}.{ending}", self.objects.len());
+        let ours = path.with_file_name(ours).to_string_lossy().into_owned();
+        let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
+        let line = format!("#line 1 \"{name}\"\n");
+        self.put(SKETCH, &ours, &[line.as_bytes(), text].concat())?;
+        self.object(ours.as_ref(), flags);
+        Ok(())
+    }
+
+    /// Compiles one file, of ours or of a library; an error does not keep the others from being compiled, so that all errors are seen.
     fn object(&mut self, file: &Path, flags: &[&str]) {
-        let object = format!("../out/{}.o", self.objects.len());
+        let object = format!("{}.o", self.objects.len());
         let language: &[&str] = match ending(file) {
             Some("c") => &C,
             Some("S") => &["-x", "assembler-with-cpp"],
@@ -304,13 +357,13 @@ impl<'a> Build<'a> {
         for folder in folders.iter().chain(&self.libraries) {
             args.extend(["-I".into(), OsString::from(folder)]);
         }
-        args.extend([OsString::from(file), "-o".into(), object.clone().into()]);
-        self.objects.push(object);
+        args.extend([OsString::from(file), "-o".into(), seen(OUT, &object)]);
         if self.failed.is_none()
-            && let Err(error) = self.run(&self.compiler.toolchain.gcc.clone(), &args)
+            && let Err(error) = self.run(&self.compiler.toolchain.gcc, &args, &object, &[])
         {
             self.failed = Some(error);
         }
+        self.objects.push(object);
     }
 
     fn link(&mut self) -> Result<(), SketchError> {
@@ -318,26 +371,41 @@ impl<'a> Build<'a> {
         let board = &self.compiler.board.options[..];
         let options = [board, &COMMON, &LINK].concat();
         let mut args: Vec<OsString> = options.into_iter().map(OsString::from).collect();
-        args.extend(["-o", "../out/sketch.elf"].map(OsString::from));
-        args.extend(self.objects.iter().map(OsString::from));
-        // A copy in the build's folder: the sandbox shows no other of ours, and nobody's sketch may change the core's.
-        let core = self.folder.path().join(OUT).join("core.a");
-        fs::copy(&self.compiler.core, &core).map_err(|error| SketchError::file(&core, error))?;
-        args.extend(["../out/core.a", "-lm"].map(OsString::from));
-        let gcc = toolchain.gcc.clone();
-        self.run(&gcc, &args)?;
+        args.extend(["-o".into(), seen(OUT, IMAGE)]);
+        args.extend(self.objects.iter().map(|object| seen(OUT, object)));
+        let core = &self.compiler.core;
+        args.extend([core.into(), "-lm".into()]);
+        self.run(&toolchain.gcc, &args, IMAGE, &[core])?;
         self.finish()
     }
 
-    /// Runs a tool and keeps its diagnostics.
-    fn run(&mut self, program: &Path, args: &[OsString]) -> Result<(), SketchError> {
-        let done = self.compiler.sandbox.run(
-            (self.folder.path(), Path::new(SKETCH)),
-            &self.libraries,
-            program,
-            args,
-            self.deadline,
-        )?;
+    /// Runs a tool that makes a product, and keeps its diagnostics; it sees the libraries and `more`.
+    fn run(
+        &mut self,
+        program: &Path,
+        args: &[OsString],
+        makes: &str,
+        more: &[&Path],
+    ) -> Result<(), SketchError> {
+        let product = Path::new(OUT).join(makes);
+        let task = Task {
+            build: self.folder.path(),
+            inner: SKETCH,
+            writes: Some(&product),
+            reads: self
+                .libraries
+                .iter()
+                .map(PathBuf::as_path)
+                .chain(more.iter().copied()),
+        };
+        let done = self
+            .compiler
+            .sandbox
+            .run(task, program, args, self.deadline)?;
+        if done.status.success() {
+            // What the next tool reads.
+            self.product(makes)?;
+        }
         let mut complaints = parse(&done.output);
         let is_error = |one: &Diagnostic| one.severity == Severity::Error;
         if !done.status.success() && !complaints.iter().any(is_error) {
@@ -354,11 +422,19 @@ impl<'a> Build<'a> {
                 notes: Vec::new(),
             });
         }
-        // The linker's cause is reported, not that it failed.
-        if complaints.iter().filter(|one| is_error(one)).count() > 1 {
-            complaints.retain(|one| !one.text.contains("ld returned"));
+        // The cause is reported, not that the tools that called the one which said it have failed too.
+        let is_echo = |one: &Diagnostic| {
+            let ends = [" exit status", "lto-wrapper failed"];
+            one.file.is_none() && ends.iter().any(|end| one.text.ends_with(end))
+        };
+        if complaints.iter().any(|one| is_error(one) && !is_echo(one)) {
+            complaints.retain(|one| !is_echo(one));
         }
-        self.complaints.extend(complaints);
+        let room = MOST_COMPLAINTS.saturating_sub(self.complaints.len());
+        // However many warnings there are, an error is an error.
+        let is_kept = |(number, one): &(usize, Diagnostic)| *number < room || is_error(one);
+        let kept = complaints.into_iter().enumerate().filter(is_kept);
+        self.complaints.extend(kept.map(|(_, one)| one));
         Ok(())
     }
 
@@ -378,14 +454,31 @@ impl<'a> Build<'a> {
         }
     }
 
-    /// Puts a product into the cache, whole or not at all.
-    fn keep(&self, name: &str, to: &Path) -> Result<(), SketchError> {
-        let from = self.folder.path().join(OUT).join(name);
-        to.parent()
-            .map_or(Ok(()), fs::create_dir_all)
-            .and_then(|()| fs::rename(&from, to))
-            .map_err(|error| SketchError::file(to, error))
+    fn product(&self, name: &str) -> Result<fs::File, SketchError> {
+        let path = self.folder.path().join(OUT).join(name);
+        product::open(&path, self.compiler.sandbox.limits().file_mb << 20)
     }
+
+    /// Puts a copy of a product into the cache, whole or not at all.
+    fn keep(&self, name: &str, to: &Path) -> Result<(), SketchError> {
+        let from = self.product(name)?;
+        let copy = |mut from: fs::File| {
+            let folder = to.parent().unwrap_or(&self.compiler.cache);
+            fs::create_dir_all(folder)?;
+            let mut file = tempfile::NamedTempFile::new_in(folder)?;
+            std::io::copy(&mut from, &mut file)?;
+            file.persist(to).map_err(|error| error.error)
+        };
+        match copy(from) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(SketchError::file(to, error)),
+        }
+    }
+}
+
+/// A file of a build as the compiler names it.
+fn seen(folder: &str, name: &str) -> OsString {
+    format!("../{folder}/{name}").into()
 }
 
 fn part(key: &mut Sha256, bytes: &[u8]) {
@@ -408,8 +501,9 @@ fn file_name(name: &str) -> String {
     format!("{}.elf", if plain.is_empty() { "sketch" } else { &plain })
 }
 
-fn is_source(file: &Path) -> bool {
-    matches!(ending(file), Some("c" | "cpp" | "cc" | "cxx" | "S"))
+/// The ending of what is compiled by itself.
+fn source_ending(file: &Path) -> Option<&str> {
+    ending(file).filter(|ending| ["c", "cpp", "cc", "cxx", "S"].contains(ending))
 }
 
 /// The files in a folder, sorted.

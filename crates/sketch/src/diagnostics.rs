@@ -88,9 +88,27 @@ fn complaint(line: &str) -> Option<Diagnostic> {
         (": fatal error: ", Severity::Error),
         (": error: ", Severity::Error),
         (": warning: ", Severity::Warning),
+        // The assembler's.
+        (": Fatal error: ", Severity::Error),
+        (": Error: ", Severity::Error),
+        (": Warning: ", Severity::Warning),
     ] {
         if let Some((place, text)) = line.split_once(mark) {
             return Some(at(place, severity, text.to_owned()));
+        }
+    }
+    for (region, text) in [
+        (
+            "region `text'",
+            "the program is larger than the board's flash memory",
+        ),
+        (
+            "region `data'",
+            "the global variables are larger than the board's RAM",
+        ),
+    ] {
+        if line.contains("ld: ") && line.contains(region) {
+            return Some(at("", Severity::Error, text.to_owned()));
         }
     }
     let (place, name) = line.split_once(": undefined reference to ")?;
@@ -118,6 +136,8 @@ fn at(place: &str, severity: Severity, text: String) -> Diagnostic {
         ),
         _ => (place, None, None),
     };
+    // The compiler's own, with a name that is another every time.
+    let is_intermediate = file.starts_with('/') && file.ends_with(".s");
     let file = cleaned(file);
     // The driver and the linker speak for themselves; objects of a link by the compiler are no files of the student.
     let is_tool = [
@@ -130,13 +150,14 @@ fn at(place: &str, severity: Severity, text: String) -> Diagnostic {
     ]
     .iter()
     .any(|tool| file.starts_with(tool))
+        || is_intermediate
         || file.contains(".ltrans")
         || file.ends_with("/ld")
         || file.ends_with(".o");
     Diagnostic {
         severity,
         file: (!is_tool && !file.is_empty()).then_some(file),
-        line,
+        line: line.filter(|_| !is_intermediate),
         column,
         text,
         notes: Vec::new(),
@@ -148,8 +169,43 @@ fn cleaned(path: &str) -> String {
     let path = path.trim().trim_start_matches("./");
     match path.starts_with('/') {
         true => path.rsplit('/').next().unwrap_or(path).to_owned(),
-        false => path.trim_start_matches("../out/").to_owned(),
+        false => path.trim_start_matches("../main/").to_owned(),
     }
+}
+
+/// A tool's output without control characters and a terminal's escape sequences: a source may put any into a message.
+pub(crate) fn plain(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut characters = text.chars().peekable();
+    while let Some(character) = characters.next() {
+        let opens = match character {
+            '\u{1b}' => characters.next_if(|next| !next.is_control()),
+            '\u{9b}' => Some('['),
+            '\u{9d}' => Some(']'),
+            _ => None,
+        };
+        match (character, opens) {
+            // A control sequence: parameters, and one final character.
+            (_, Some('[')) => {
+                while characters
+                    .next_if(|next| (' '..='?').contains(next))
+                    .is_some()
+                {}
+                characters.next_if(|next| ('@'..='~').contains(next));
+            }
+            // A command: a text up to a bell or another escape, within the line.
+            (_, Some(']' | 'P' | '^' | '_' | 'X')) => {
+                while characters.next_if(|next| !next.is_control()).is_some() {}
+                characters.next_if_eq(&'\u{7}');
+            }
+            ('\n' | '\t', _) => out.push(character),
+            // These change the direction of what is around them.
+            ('\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}', _) => {}
+            _ if character.is_control() => {}
+            _ => out.push(character),
+        }
+    }
+    out
 }
 
 #[cfg(test)]
@@ -190,6 +246,56 @@ mod tests {
             "`drive(int)` is declared and used, but defined nowhere"
         );
         assert_eq!(found[2].file, None);
+    }
+
+    #[test]
+    fn a_program_that_is_too_large_is_told_so_once() {
+        let found = parse(
+            "/usr/lib/avr/bin/ld: address 0x805194 of ../out/sketch.elf section `.bss' is not within region `data'\n\
+             /usr/lib/avr/bin/ld: address 0x805194 of ../out/sketch.elf section `.noinit' is not within region `data'\n\
+             /usr/lib/avr/bin/ld: ../out/sketch.elf section `.text' will not fit in region `text'\n",
+        );
+        let shown: Vec<String> = found.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            shown,
+            [
+                "error: the global variables are larger than the board's RAM",
+                "error: the program is larger than the board's flash memory"
+            ]
+        );
+    }
+
+    #[test]
+    fn the_assembler_s_errors_have_a_place_where_the_student_wrote_them() {
+        let found = parse(
+            "src/a.S: Assembler messages:\nsrc/a.S:3: Error: unknown opcode `nope'\n\
+             /tmp/ccX1.s: Assembler messages:\n/tmp/ccX1.s:12: Error: file not found: /etc/passwd\n",
+        );
+        let shown: Vec<String> = found.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            shown,
+            [
+                "src/a.S:3: error: unknown opcode `nope'",
+                "error: file not found: /etc/passwd"
+            ]
+        );
+    }
+
+    #[test]
+    fn a_message_has_no_escape_sequences_and_no_other_text_is_lost() {
+        for (text, expected) in [
+            (
+                "a.ino:1: error: \u{1b}[31;1mred\u{1b}[0m",
+                "a.ino:1: error: red",
+            ),
+            ("\u{1b}]0;title\u{7}a\u{1b}]8;;http://x\u{1b}\\b", "ab"),
+            ("\u{9b}2Ja\u{8}\u{8}\rb\tc\nd", "ab\tc\nd"),
+            ("\u{1b}cnot ended \u{1b}[12\nnext", "not ended \nnext"),
+            ("\u{1b}]swallows its line\nnot the next", "\nnot the next"),
+            ("ñ \u{202e}leaves\u{2069} 'x'", "ñ leaves 'x'"),
+        ] {
+            assert_eq!(plain(text), expected, "{text:?}");
+        }
     }
 
     #[test]

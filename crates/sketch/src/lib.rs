@@ -10,12 +10,16 @@
 //! went into them. The options are those of the core's `platform.txt` and `boards.txt`.
 
 mod board;
+mod census;
 mod compiler;
 mod diagnostics;
 mod error;
+#[cfg(all(test, target_os = "linux"))]
+mod escape;
 mod examples;
 mod libraries;
 mod preprocess;
+mod product;
 pub mod sandbox;
 mod source;
 mod toolchain;

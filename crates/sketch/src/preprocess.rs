@@ -16,7 +16,6 @@ pub(crate) fn join(source: &Source) -> Option<String> {
     parts.sort_by_key(|(name, _)| **name != main);
     let mut text = String::new();
     for (name, bytes) in &parts {
-        let name = name.replace(['"', '\\', '\n', '\r'], "_");
         let bytes = String::from_utf8_lossy(bytes);
         text += &format!(
             "#line 1 \"{name}\"\n{}\n",
@@ -27,17 +26,14 @@ pub(crate) fn join(source: &Source) -> Option<String> {
 }
 
 /// Headers that a source includes.
-pub(crate) fn includes(text: &str) -> Vec<String> {
-    text.lines()
-        .filter_map(|line| line.trim().strip_prefix("#include"))
-        .filter_map(|rest| {
-            rest.trim()
-                .strip_prefix(['<', '"'])?
-                .split(['>', '"'])
-                .next()
-        })
-        .map(str::to_owned)
-        .collect()
+pub(crate) fn includes(text: &str) -> impl Iterator<Item = &str> {
+    let rests = text
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("#include"));
+    rests.filter_map(|rest| {
+        let quoted = rest.trim().strip_prefix(['<', '"'])?;
+        quoted.split(['>', '"']).next()
+    })
 }
 
 fn with_declarations(text: &str) -> String {
@@ -66,9 +62,14 @@ fn functions(text: &str) -> Vec<(usize, String)> {
     for (at, character) in blank.char_indices() {
         match character {
             '{' => {
-                let head = blank[start..at].trim();
-                if depth == 0 && is_function(head) {
-                    let begin = start + blank[start..].len() - blank[start..].trim_start().len();
+                // Heads at the outermost level do not overlap: each character is looked at once.
+                let head = if depth == 0 {
+                    blank[start..at].trim_start()
+                } else {
+                    ""
+                };
+                if is_function(head.trim_end()) {
+                    let begin = at - head.len();
                     let words: Vec<&str> = head.split_whitespace().collect();
                     found.push((begin, words.join(" ")));
                 }
@@ -168,9 +169,29 @@ mod tests {
     }
 
     #[test]
+    fn a_text_is_read_once_whatever_it_is_made_of() {
+        // Each of these took hours while a head was looked at again at every brace.
+        for (open, many) in [
+            ("{", 800_000),
+            ("{}", 400_000),
+            ("f(", 400_000),
+            ("\"", 800_001),
+            ("/*", 400_000),
+            ("#\\\n", 250_000),
+        ] {
+            let text = format!(
+                "void setup(){{}}\n{}{}",
+                " ".repeat(800_000),
+                open.repeat(many)
+            );
+            assert_eq!(functions(&text), [(0, "void setup()".to_owned())], "{open}");
+        }
+    }
+
+    #[test]
     fn libraries_are_known_by_what_is_included() {
         assert_eq!(
-            includes("#include <Servo.h>\n  #include \"pid.h\" // x\nint a;\n"),
+            includes("#include <Servo.h>\n  #include \"pid.h\" // x\nint a;\n").collect::<Vec<_>>(),
             ["Servo.h", "pid.h"]
         );
     }

@@ -1,13 +1,17 @@
 //! Runs a compiler on untrusted source.
 //!
 //! Its author controls the compiler: `#include`, `.incbin` and templates can read files, fill disks and never end.
-//! Every run is bounded in time, memory, size of files and output, and is ended with all its children. For source that
-//! is not trusted, `bwrap` also takes away network, processes, and every file but the compiler, the core and the
-//! sketch.
+//! Every run is bounded in time, memory, processes, size of files and output, and is ended with all its children. For
+//! source that is not trusted, `bwrap` also takes away network, processes, and every file but the compiler, the core
+//! and the sketch. All of them are read-only: a run writes one file, which we have made, and its own bounded `/tmp`,
+//! which ends with it.
 
+use crate::census;
+use crate::diagnostics::plain;
 use crate::error::SketchError;
 use crate::toolchain::{Toolchain, on_path};
 use std::ffi::OsString;
+use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -15,6 +19,8 @@ use std::time::{Duration, Instant};
 
 /// Interval at which a compiler is polled.
 const LOOK: Duration = Duration::from_millis(4);
+/// Its processes and memory are counted at every so many looks.
+const COUNT: u32 = 5;
 /// Path of the build in the sandbox.
 const INSIDE: &str = "/build";
 
@@ -23,8 +29,10 @@ const INSIDE: &str = "/build";
 pub struct Limits {
     /// For all of a sketch.
     pub time: Duration,
-    /// Of each process [MB].
+    /// Address space of each process, and memory of all together [MB].
     pub memory_mb: u64,
+    /// Processes and their threads, at a time.
+    pub processes: usize,
     /// Of each file it writes [MB].
     pub file_mb: u64,
     /// Of what it prints [bytes].
@@ -36,6 +44,8 @@ impl Default for Limits {
         Self {
             time: Duration::from_secs(180),
             memory_mb: 1024,
+            // The linker's deepest chain is of ten.
+            processes: 40,
             file_mb: 32,
             output: 256 << 10,
         }
@@ -48,6 +58,18 @@ pub struct Sandbox {
     /// `bwrap` with what it shows; `None` for source that is trusted.
     walls: Option<Vec<OsString>>,
     limits: Limits,
+}
+
+/// A run of a program.
+pub(crate) struct Task<'a, R> {
+    /// Folder of the build, which the program sees.
+    pub(crate) build: &'a Path,
+    /// Folder in it where the program runs.
+    pub(crate) inner: &'a str,
+    /// The file in it that the program makes.
+    pub(crate) writes: Option<&'a Path>,
+    /// Files and folders elsewhere that it sees.
+    pub(crate) reads: R,
 }
 
 /// How a run ended.
@@ -74,20 +96,44 @@ impl Sandbox {
     pub fn walled(toolchain: &Toolchain, limits: Limits) -> Result<Self, SketchError> {
         let no = |why: &str| SketchError::NoSandbox(why.to_owned());
         let bwrap = on_path("bwrap").ok_or_else(|| no("bwrap is not installed"))?;
-        let sandbox = Self {
-            walls: Some(walls(bwrap, toolchain)?),
+        if cfg!(target_os = "linux") && !Path::new("/proc/thread-self/children").exists() {
+            return Err(no("this system does not list the children of a process"));
+        }
+        let walls = walls(bwrap, toolchain, limits)?;
+        let sandbox = |more: &[&str]| Self {
+            walls: Some(
+                walls
+                    .iter()
+                    .cloned()
+                    .chain(more.iter().map(OsString::from))
+                    .collect(),
+            ),
             limits,
         };
+        // From version 0.8 of bwrap, and not in every container.
+        let strict = sandbox(&["--unshare-user", "--disable-userns"]);
+        if strict.probe(toolchain).is_ok() {
+            return Ok(strict);
+        }
+        let sandbox = sandbox(&[]);
+        sandbox.probe(toolchain).map(|()| sandbox)
+    }
+
+    /// Whether a compiler runs in it.
+    fn probe(&self, toolchain: &Toolchain) -> Result<(), SketchError> {
+        let no = |why: &str| SketchError::NoSandbox(why.to_owned());
         let folder = tempfile::tempdir().map_err(|error| no(&error.to_string()))?;
-        let probe = sandbox.run(
-            (folder.path(), Path::new(".")),
-            &[],
-            &toolchain.gcc,
-            &["--version".into()],
-            Instant::now() + limits.time,
-        )?;
+        let task = Task {
+            build: folder.path(),
+            inner: ".",
+            writes: None,
+            reads: std::iter::empty(),
+        };
+        let version = ["--version".into()];
+        let deadline = Instant::now() + self.limits.time;
+        let probe = self.run(task, &toolchain.gcc, &version, deadline)?;
         match probe.status.success() {
-            true => Ok(sandbox),
+            true => Ok(()),
             false => Err(no(probe.output.lines().next().unwrap_or("bwrap fails"))),
         }
     }
@@ -97,12 +143,10 @@ impl Sandbox {
         self.limits
     }
 
-    /// Runs a program in `inner` of the folder `build`, the only one that it may write; it sees the folders of
-    /// `libraries` too.
-    pub(crate) fn run(
+    /// Runs a program.
+    pub(crate) fn run<'a>(
         &self,
-        (build, inner): (&Path, &Path),
-        libraries: &[PathBuf],
+        task: Task<'a, impl Iterator<Item = &'a Path>>,
         program: &Path,
         args: &[OsString],
         deadline: Instant,
@@ -110,17 +154,25 @@ impl Sandbox {
         let mut line: Vec<OsString> = Vec::new();
         if let Some(walls) = &self.walls {
             line.extend_from_slice(walls);
-            for folder in libraries {
-                line.extend(["--ro-bind".into(), folder.into(), folder.into()]);
+            for path in task.reads {
+                line.extend(["--ro-bind".into(), path.into(), path.into()]);
             }
-            line.extend(["--bind".into(), build.into(), INSIDE.into()]);
-            line.extend(["--chdir".into(), Path::new(INSIDE).join(inner).into()]);
+            line.extend(["--ro-bind".into(), task.build.into(), INSIDE.into()]);
+            if let Some(product) = task.writes {
+                let path = task.build.join(product);
+                File::create_new(&path).map_err(|error| SketchError::file(&path, error))?;
+                let inside = Path::new(INSIDE).join(product);
+                line.extend(["--bind".into(), path.into(), inside.into()]);
+            }
+            // The root of all of these, where it could make files without bound.
+            line.extend(["--remount-ro", "/"].map(OsString::from));
+            line.extend(["--chdir".into(), Path::new(INSIDE).join(task.inner).into()]);
         }
         line.push(program.into());
         line.extend_from_slice(args);
         let mut command = self.limited(&line);
         command
-            .current_dir(build.join(inner))
+            .current_dir(task.build.join(task.inner))
             .env("LC_ALL", "C")
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
@@ -150,7 +202,7 @@ impl Sandbox {
         command
             .args([
                 "-c",
-                r#"ulimit -c 0 && ulimit -t "$1" && ulimit -v "$2" && ulimit -f "$3" && shift 3 && exec "$@""#,
+                r#"ulimit -c 0 && ulimit -n 256 && ulimit -t "$1" && ulimit -v "$2" && ulimit -f "$3" && shift 3 && exec "$@""#,
                 "sh",
             ])
             .args([
@@ -180,22 +232,30 @@ impl Sandbox {
         };
         let out = reader(child.stdout.take().map(|pipe| Box::new(pipe) as _));
         let err = reader(child.stderr.take().map(|pipe| Box::new(pipe) as _));
-        let status = loop {
+        let mut looks = 0;
+        let ended = loop {
             match child.try_wait() {
-                Ok(Some(status)) => break Some(status),
-                Ok(None) if Instant::now() < deadline => std::thread::sleep(LOOK),
-                Ok(None) | Err(_) => break None,
+                Ok(Some(status)) => break Ok(status),
+                Ok(None) if Instant::now() < deadline => {}
+                Ok(None) | Err(_) => break Err(SketchError::too_slow(self.limits.time)),
             }
+            looks += 1;
+            if looks % COUNT == 0
+                && let Some(what) = census::excess(child.id(), &self.limits)
+            {
+                break Err(SketchError::Exceeded(format!(
+                    "the compiler was ended: it took {what}"
+                )));
+            }
+            std::thread::sleep(LOOK);
         };
         // Also after the child has ended: its own children do not go on.
         end(&mut child);
         let pieces = [out.join(), err.join()].map(Result::unwrap_or_default);
-        let Some(status) = status else {
-            return Err(SketchError::too_slow(self.limits.time));
-        };
+        let status = ended?;
         let output: Vec<u8> = pieces.iter().flat_map(|(text, _)| text.clone()).collect();
         let full = pieces.iter().any(|(_, full)| *full);
-        let mut output = String::from_utf8_lossy(&output).into_owned();
+        let mut output = plain(&String::from_utf8_lossy(&output));
         if full {
             output += "\nthe compiler printed more than is kept\n";
         }
@@ -216,21 +276,31 @@ fn end(child: &mut Child) {
 }
 
 /// `bwrap` with everything but the folder of the build.
-fn walls(bwrap: PathBuf, toolchain: &Toolchain) -> Result<Vec<OsString>, SketchError> {
+fn walls(
+    bwrap: PathBuf,
+    toolchain: &Toolchain,
+    limits: Limits,
+) -> Result<Vec<OsString>, SketchError> {
     let mut line: Vec<OsString> = vec![bwrap.into()];
-    for option in [
-        "--unshare-all",
-        "--die-with-parent",
-        "--new-session",
-        "--clearenv",
-    ] {
-        line.push(option.into());
-    }
+    line.extend(
+        [
+            "--unshare-all",
+            "--die-with-parent",
+            "--new-session",
+            "--clearenv",
+            // Who runs us as root has none there either: they would make what is read-only writable again.
+            "--cap-drop",
+            "ALL",
+        ]
+        .map(OsString::from),
+    );
     for (name, value) in [("LC_ALL", "C"), ("PATH", "/nowhere"), ("TMPDIR", "/tmp")] {
         line.extend(["--setenv", name, value].map(OsString::from));
     }
-    line.extend(["--size", "134217728", "--tmpfs", "/tmp"].map(OsString::from));
-    line.extend(["--dev", "/dev"].map(OsString::from));
+    // Its intermediate files: preprocessed, assembler, objects of the link.
+    let tmp = ((4 * limits.file_mb) << 20).to_string();
+    line.extend(["--size", &tmp, "--tmpfs", "/tmp"].map(OsString::from));
+    line.extend(["--dev-bind", "/dev/null", "/dev/null"].map(OsString::from));
     // Not the user's own libraries: they may hold private files.
     let shown = [toolchain.core.clone()];
     let shown = toolchain.visible.iter().chain(&shown).cloned();

@@ -3,8 +3,9 @@
 //! What is compiled is a copy: links are followed by nobody, so that a sketch cannot make us read what is not its own.
 
 use crate::error::SketchError;
+use crate::product::open_regular;
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
@@ -12,6 +13,8 @@ use std::path::{Path, PathBuf};
 const MOST_BYTES: u64 = 8 << 20;
 /// Files and folders looked at.
 const MOST_FILES: usize = 2_000;
+/// Longest path of a file in a sketch [characters].
+const LONGEST: usize = 200;
 /// Depth of folders below the sketch's own.
 const DEEPEST: usize = 6;
 /// Of a path with nothing at it.
@@ -37,6 +40,38 @@ pub struct Source {
     pub name: String,
     /// What is in its files.
     pub files: BTreeMap<String, Vec<u8>>,
+}
+
+impl Source {
+    /// Whether all files have names that a sketch's can have: no part of a name leads anywhere or ends a string in C.
+    pub(crate) fn check(&self) -> Result<(), SketchError> {
+        match self.files.keys().find(|name| !is_name(name)) {
+            None => Ok(()),
+            Some(name) => Err(SketchError::Refused(format!(
+                "{}: a sketch has no file of this name; take letters, digits, spaces and _ - + . ( ), with a letter, \
+                 a digit or _ first, at most {LONGEST} characters, and one of the endings {}",
+                name.chars()
+                    .take(LONGEST)
+                    .collect::<String>()
+                    .escape_debug(),
+                KINDS.join(", ")
+            ))),
+        }
+    }
+}
+
+/// Whether a file of a sketch may be named so.
+fn is_name(path: &str) -> bool {
+    let is_part = |part: &str| {
+        part.starts_with(|c: char| c.is_alphanumeric() || c == '_')
+            && part
+                .chars()
+                .all(|c| c.is_alphanumeric() || " _-+.()".contains(c))
+    };
+    path.chars().count() <= LONGEST
+        && path.split('/').count() <= DEEPEST + 1
+        && path.split('/').all(is_part)
+        && ending(Path::new(path)).is_some_and(|own| KINDS.contains(&own))
 }
 
 /// What is at a path: a folder with a sketch or an image, an `.ino`, an `.elf` or a `.hex`. The `.ino` of a folder of
@@ -66,10 +101,10 @@ pub fn given(path: &Path, folder_of_ino: bool) -> Result<Given, SketchError> {
                 Some(folder) => of_folder(folder),
                 None => {
                     let name = path.file_name().unwrap_or_default().to_string_lossy();
-                    let mut left = MOST_BYTES;
+                    let (own, mut left) = (own.as_deref().unwrap_or(path), MOST_BYTES);
                     Ok(Given::Sketch(Source {
                         name: stem(path),
-                        files: [(name.into_owned(), read(path, &mut left)?)].into(),
+                        files: [(name.to_string(), read(own, &name, &mut left)?)].into(),
                     }))
                 }
             }
@@ -85,26 +120,41 @@ fn of_folder(folder: &Path) -> Result<Given, SketchError> {
     }
     let mut found = Vec::new();
     for inner in entries(folder)? {
-        if fs::symlink_metadata(&inner).is_ok_and(|about| about.is_dir()) {
-            found.extend(directly_in(&inner)?);
+        if fs::symlink_metadata(&inner).is_ok_and(|about| about.is_dir()) && holds_any(&inner)? {
+            found.push(inner);
         }
     }
-    match found.len() {
-        1 => Ok(found.remove(0)),
-        _ => Err(SketchError::NoSketch(folder.display().to_string())),
-    }
+    let only = match &found[..] {
+        [only] => directly_in(only)?,
+        _ => None,
+    };
+    only.ok_or_else(|| SketchError::NoSketch(folder.display().to_string()))
+}
+
+/// The files directly in a folder that a sketch begins with, and the images.
+fn beginnings(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), SketchError> {
+    let is = |path: &Path, kinds: &[&str]| {
+        ending(path).is_some_and(|own| kinds.contains(&own))
+            && !is_hidden(path)
+            && fs::symlink_metadata(path).is_ok_and(|about| about.is_file())
+    };
+    let mut inside = entries(folder)?;
+    inside.retain(|path| is(path, &["ino", "pde", "elf", "hex"]));
+    Ok(inside
+        .into_iter()
+        .partition(|path| is(path, &["ino", "pde"])))
+}
+
+fn holds_any(folder: &Path) -> Result<bool, SketchError> {
+    let (sketches, images) = beginnings(folder)?;
+    Ok(!sketches.is_empty() || images.len() == 1)
 }
 
 fn directly_in(folder: &Path) -> Result<Option<Given>, SketchError> {
-    let inside = entries(folder)?;
-    let is = |path: &Path, kinds: &[&str]| {
-        ending(path).is_some_and(|own| kinds.contains(&own))
-            && fs::symlink_metadata(path).is_ok_and(|about| about.is_file())
-    };
-    if !inside.iter().any(|path| is(path, &["ino", "pde"])) {
-        let mut images = inside.iter().filter(|path| is(path, &["elf", "hex"]));
-        return Ok(match (images.next(), images.next()) {
-            (Some(only), None) => Some(Given::Image(only.clone())),
+    let (sketches, mut images) = beginnings(folder)?;
+    if sketches.is_empty() {
+        return Ok(match images.len() {
+            1 => images.pop().map(Given::Image),
             _ => None,
         });
     }
@@ -138,52 +188,69 @@ fn collect(
     for path in entries(folder)? {
         *seen += 1;
         if *seen > MOST_FILES || depth > DEEPEST {
-            return Err(SketchError::Refused(format!(
-                "{}: more than {MOST_FILES} files, or folders more than {DEEPEST} deep",
-                folder.display()
-            )));
+            return Err(too_many());
         }
-        // A name that is no text is included by nobody.
-        let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
-            continue;
-        };
         let Ok(about) = fs::symlink_metadata(&path) else {
             continue;
         };
+        // As the Arduino IDE has it; macOS puts a `._NAME` beside a file.
+        if is_hidden(&path) {
+            continue;
+        }
+        // A name that is no text gets a character that no name may have.
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
         let inner = format!("{prefix}{name}");
-        if about.is_dir() && !name.starts_with('.') {
+        if about.is_dir() {
             collect(&path, &format!("{inner}/"), depth + 1, source, left, seen)?;
         } else if about.is_file() && ending(&path).is_some_and(|own| KINDS.contains(&own)) {
-            source.files.insert(inner, read(&path, left)?);
+            let bytes = read(&path, &inner, left)?;
+            source.files.insert(inner, bytes);
         }
     }
     Ok(())
 }
 
+fn too_many() -> SketchError {
+    SketchError::Refused(format!(
+        "more than {MOST_FILES} files in a folder of the sketch or in all, or folders more than {DEEPEST} deep"
+    ))
+}
+
+fn is_hidden(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default();
+    name.as_encoded_bytes().starts_with(b".")
+}
+
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, SketchError> {
     let entries = fs::read_dir(folder).map_err(|error| SketchError::file(folder, error))?;
-    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    let entries = entries.flatten().take(MOST_FILES + 1);
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    if paths.len() > MOST_FILES {
+        return Err(too_many());
+    }
     paths.sort();
     Ok(paths)
 }
 
-fn read(path: &Path, left: &mut u64) -> Result<Vec<u8>, SketchError> {
+/// Reads a file of a sketch; `name` is its name there.
+fn read(path: &Path, name: &str, left: &mut u64) -> Result<Vec<u8>, SketchError> {
     let wrong = |error| SketchError::file(path, error);
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(wrong)?;
+    let file = open_regular(path).map_err(wrong)?;
     file.take(*left + 1)
         .read_to_end(&mut bytes)
         .map_err(wrong)?;
     *left = left.checked_sub(bytes.len() as u64).ok_or_else(|| {
         SketchError::Refused(format!(
             "{}: the sketch has more than {} MB",
-            path.display(),
+            name.escape_debug(),
             MOST_BYTES >> 20
         ))
     })?;
     Ok(bytes)
 }
 
+/// The ending of a file's name.
 pub(crate) fn ending(path: &Path) -> Option<&str> {
     path.extension().and_then(|ending| ending.to_str())
 }

@@ -114,10 +114,10 @@ impl Toolchain {
         header: &str,
         ours: &Path,
     ) -> Result<Option<PathBuf>, SketchError> {
-        let Some(name) = header
-            .strip_suffix(".h")
-            .filter(|name| !name.contains(['/', '.']))
-        else {
+        let Some(name) = header.strip_suffix(".h").filter(|name| {
+            name.chars()
+                .all(|c| c.is_alphanumeric() || "_-+ ".contains(c))
+        }) else {
             return Ok(None);
         };
         let found = self

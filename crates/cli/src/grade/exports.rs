@@ -4,6 +4,7 @@
 use crate::export::text_cell;
 use crate::failure::Failure;
 use rumbo_experiment::grade::{Assignment, Mark};
+use rumbo_report::Stamp;
 use rumbo_report::grade::{earned_in_words, noted, of};
 use rumbo_report::text::Language;
 use serde_json::json;
@@ -41,7 +42,7 @@ pub(super) fn csv(assignment: &Assignment, marks: &[Mark]) -> String {
 }
 
 /// A suite for each hand-in, a case for each line of the rubric; one without all its points has failed.
-pub(super) fn junit(assignment: &Assignment, marks: &[Mark]) -> String {
+pub(super) fn junit(assignment: &Assignment, marks: &[Mark], stamp: &Stamp) -> String {
     let failed = |mark: &Mark| match mark.refused.is_empty() {
         true => mark.lines.iter().filter(|line| !line.is_full()).count(),
         false => mark.lines.len(),
@@ -49,7 +50,8 @@ pub(super) fn junit(assignment: &Assignment, marks: &[Mark]) -> String {
     let cases: usize = marks.iter().map(|mark| mark.lines.len()).sum();
     let failures: usize = marks.iter().map(failed).sum();
     let mut xml = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"{}\" tests=\"{cases}\" failures=\"{failures}\">\n",
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- {} -->\n<testsuites name=\"{}\" tests=\"{cases}\" failures=\"{failures}\">\n",
+        stamp.text(),
         attribute(&assignment.title.text)
     );
     for mark in marks {
@@ -93,6 +95,7 @@ pub(super) fn gradescope(
     mark: &Mark,
     notes: &[String],
     language: Language,
+    stamp: &Stamp,
 ) -> Result<String, Failure> {
     let tests: Vec<_> = mark
         .lines
@@ -117,6 +120,7 @@ pub(super) fn gradescope(
     let text = [notes, &mark.notes, &mark.refused, &mark.ended].concat();
     let text: Vec<_> = text.iter().map(|line| noted(language, line)).collect();
     let results = json!({
+        "extra_data": { "made_by": stamp.text() },
         "score": mark.points,
         "output": text.join("\n"),
         "tests": tests,

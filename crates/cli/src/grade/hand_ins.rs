@@ -20,6 +20,10 @@ pub(super) struct Found {
 }
 
 impl Found {
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
     pub(super) fn is_sketch(&self) -> bool {
         matches!(self.given, Ok(Given::Sketch(_)))
     }
@@ -43,9 +47,13 @@ pub(super) fn find(folder: &Path) -> Result<(Vec<Found>, Vec<String>), Failure> 
     }
     let entries = fs::read_dir(folder).map_err(wrong)?.flatten();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
-    paths.retain(|path| !super::name_of(path).starts_with('.'));
     paths.sort();
     let (paths, others): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_hand_in(path));
+    let hidden = |path: &Path| super::name_of(path).starts_with('.');
+    // Hidden files of other programs are nobody's hand-in.
+    let (paths, more): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| !hidden(path));
+    let others = others.into_iter().filter(|path| !hidden(path));
+    let others: Vec<PathBuf> = others.chain(more).collect();
     match paths.len() {
         0 => Err(Failure::Input(format!(
             "{}: no hand-ins; each is a folder with a sketch, an .ino, an .elf or a .hex",
@@ -138,7 +146,6 @@ fn nameless(error: &SketchError) -> String {
             "no sketch here: hand in a folder with one .ino, or the .elf or .hex of it".into()
         }
         SketchError::File { reason, .. } => format!("it cannot be read: {reason}"),
-        SketchError::Refused(_) => "larger than a sketch can be".into(),
         other => other.to_string(),
     }
 }

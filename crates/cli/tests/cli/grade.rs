@@ -12,13 +12,13 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 use support::{folder, program, stderr, stdout};
 
-fn assignment(name: &str) -> PathBuf {
+pub(super) fn assignment(name: &str) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/assignments");
     root.join(name).canonicalize().unwrap()
 }
 
 /// A fresh folder for hand-ins; `None` where compiler or sandbox are not installed.
-fn bench(name: &str) -> Option<PathBuf> {
+pub(super) fn bench(name: &str) -> Option<PathBuf> {
     let found = Toolchain::find().and_then(|found| Sandbox::walled(&found, Limits::default()));
     if let Err(error) = found {
         assert!(std::env::var_os("CI").is_none(), "{error}");
@@ -46,7 +46,7 @@ fn grade(bench: &Path, name: &str, more: &[&str]) -> Output {
 }
 
 /// Gradescope's results of each hand-in.
-fn results(out: &Path) -> BTreeMap<String, Value> {
+pub(super) fn results(out: &Path) -> BTreeMap<String, Value> {
     let files = fs::read_dir(out.join("gradescope")).unwrap();
     files
         .map(|file| {
@@ -59,7 +59,7 @@ fn results(out: &Path) -> BTreeMap<String, Value> {
 }
 
 /// All files of a folder, by name.
-fn bytes(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+pub(super) fn bytes(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut all = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(next) = folders.pop() {
@@ -311,14 +311,16 @@ fn every_hand_in_has_files_of_its_own_and_what_is_none_is_named() {
         "a_b.hex",
         "eva.zip",
         ".x",
+        ".ana.hex",
     ] {
         fs::write(bench.join("in").join(name), "no image").unwrap();
     }
+    fs::create_dir(bench.join("in/.git")).unwrap();
     let output = grade(&bench, "wall", &["--out", "out"]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let said = stderr(&output);
     assert!(
-        said.contains("note: not graded: eva.zip; a hand-in is"),
+        said.contains("note: not graded: eva.zip, .ana.hex, .git; a hand-in is"),
         "{said}"
     );
     let class = fs::read_to_string(bench.join("out/index.html")).unwrap();
@@ -327,6 +329,75 @@ fn every_hand_in_has_files_of_its_own_and_what_is_none_is_named() {
     for file in results.keys() {
         assert!(class.contains(&format!("students/{file}.html")), "{file}");
         assert!(bench.join(format!("out/students/{file}.html")).is_file());
+    }
+}
+
+#[test]
+fn grading_again_removes_and_replaces_nothing_but_its_own() {
+    let bench = folder().join("grade/again");
+    let _ = fs::remove_dir_all(&bench);
+    fs::create_dir_all(bench.join("in")).unwrap();
+    for name in ["ana.hex", "eva.hex"] {
+        fs::write(bench.join("in").join(name), "no image").unwrap();
+    }
+    let out = bench.join("out");
+    let first = grade(&bench, "wall", &["--out", "out"]);
+    assert_eq!(first.status.code(), Some(1), "{}", stderr(&first));
+    let others = [
+        "students/notes.txt",
+        "students/mine.html",
+        "students/mine/ana.html",
+        "gradescope/mine.json",
+        "gradescope/mine/a",
+        "mine.csv",
+    ];
+    for name in others {
+        fs::create_dir_all(out.join(name).parent().unwrap()).unwrap();
+        fs::write(out.join(name), "mine").unwrap();
+    }
+    fs::write(
+        bench.join("elsewhere.html"),
+        fs::read(out.join("students/ana.html")).unwrap(),
+    )
+    .unwrap();
+    std::os::unix::fs::symlink("../../elsewhere.html", out.join("students/linked.html")).unwrap();
+    fs::remove_file(bench.join("in/eva.hex")).unwrap();
+    let again = grade(&bench, "wall", &["--out", "out"]);
+    assert_eq!(again.status.code(), Some(1), "{}", stderr(&again));
+    for name in others {
+        assert_eq!(
+            fs::read_to_string(out.join(name)).unwrap(),
+            "mine",
+            "{name}"
+        );
+    }
+    assert!(
+        out.join("students/linked.html").is_symlink() && bench.join("elsewhere.html").is_file()
+    );
+    for (name, is_there) in [("ana", true), ("eva", false)] {
+        for file in [
+            format!("students/{name}.html"),
+            format!("gradescope/{name}.json"),
+        ] {
+            assert_eq!(out.join(&file).is_file(), is_there, "{file}");
+        }
+    }
+
+    // A file of somebody else's where one of ours belongs is told before anything runs.
+    for name in [
+        "students/ana.html",
+        "gradescope/ana.json",
+        "marks.csv",
+        "junit.xml",
+    ] {
+        let own = fs::read(out.join(name)).unwrap();
+        fs::write(out.join(name), "mine").unwrap();
+        let refused = grade(&bench, "wall", &["--out", "out"]);
+        assert_eq!(refused.status.code(), Some(2), "{name}");
+        let said = stderr(&refused);
+        assert!(said.contains(name) && said.contains("--force"), "{said}");
+        assert_eq!(fs::read_to_string(out.join(name)).unwrap(), "mine");
+        fs::write(out.join(name), own).unwrap();
     }
 }
 

@@ -13,6 +13,7 @@ mod experiments;
 mod files;
 mod flash;
 mod grade;
+mod hostile;
 mod identify;
 mod logs;
 mod recording;

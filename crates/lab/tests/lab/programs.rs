@@ -2,9 +2,10 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests too")]
 
 use rumbo_experiment::files::Overrides;
-use rumbo_lab::SimulatedRobot;
+use rumbo_lab::{Made, OwnProgram, SimulatedRobot, Workshop};
 use rumbo_log::{Choice, ProgramPhase};
 use rumbo_session::{LinkNews, Target, TargetError};
+use std::path::{Path, PathBuf};
 
 /// `rjmp .-2` at address 0, as Intel HEX: a program that does nothing.
 const IDLE: &[u8] = b":02000000FFCF30\n:00000001FF\n";
@@ -54,6 +55,40 @@ fn what_is_no_image_is_refused_with_the_reason_and_the_robot_goes_on() {
     assert!(why.contains("a.elf"), "{why}");
     assert!(robot.news().is_none() && robot.program().is_none());
     assert_eq!(robot.now_us(), 5_000);
+}
+
+/// Has made a file that is no image.
+struct Wrong(Option<PathBuf>);
+
+impl Workshop for Wrong {
+    fn next(&mut self) -> Option<Made> {
+        self.0.take().map(Made::Image)
+    }
+}
+
+#[test]
+fn an_image_that_is_refused_is_named_without_its_folder() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let path = folder.join("0badc0de.hex");
+    std::fs::write(&path, "hello").unwrap();
+    let mut robot = robot();
+    robot.run_program("idle.hex".into(), IDLE.into()).unwrap();
+    robot.own_program(OwnProgram::new(
+        "ana.hex",
+        Some(Box::new(Wrong(Some(path)))),
+    ));
+    let mut said = Vec::new();
+    while let Some(news) = robot.news() {
+        if let LinkNews::Program(_, text) = news {
+            said.push(text);
+        }
+    }
+    let complaints = robot.program().unwrap().complaints;
+    said.extend(complaints.into_iter().map(|complaint| complaint.text));
+    let told = said.iter().filter(|text| text.contains("firmware ana.hex"));
+    assert_eq!(told.count(), 2, "{said:?}");
+    let folder = folder.to_str().unwrap();
+    assert!(!said.iter().any(|text| text.contains(folder)), "{said:?}");
 }
 
 /// What is said of a program in its first 0.1 s.

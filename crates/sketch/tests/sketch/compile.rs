@@ -173,3 +173,64 @@ fn the_same_sketch_gives_the_same_program_wherever_it_is_compiled() {
     };
     assert_eq!(loaded(&one), loaded(&two));
 }
+
+#[test]
+fn sources_of_every_kind_and_folder_are_compiled_under_their_own_names() {
+    let Some((compiler, _cache)) = compiler() else {
+        return;
+    };
+    let ino = "extern \"C\" int twice(int);\nextern \"C\" int thrice(int);\nconst char *own();\n\
+               void setup() { Serial.begin(9600); Serial.print(own()); }\nvoid loop() { Serial.print(twice(thrice(1))); }\n";
+    let mut sketch = source(
+        "kinds",
+        &[
+            ("kinds.ino", ino),
+            (
+                "src/twice.S",
+                "#define NAME twice\n.global NAME\nNAME:\n  lsl r24\n  rol r25\n  ret\n",
+            ),
+            (
+                "src/c/thrice.c",
+                "#include \"../three.h\"\nint thrice(int n) { return THREE * n; }\n",
+            ),
+            ("src/three.h", "#define THREE 3\n"),
+            (
+                "año (1).cpp",
+                "\u{feff}#include \"src/three.h\"\nconst char *own() { return __FILE__ \"!\"; }\n",
+            ),
+        ],
+    );
+    let image = compiler.compile(&sketch, &[]).unwrap();
+    assert_eq!(image.warnings, []);
+    let bytes = std::fs::read(image.path).unwrap();
+    let own = "año (1).cpp!".as_bytes();
+    assert!(bytes.windows(own.len()).any(|part| part == own));
+
+    for (name, text, said) in [
+        (
+            "src/c/thrice.c",
+            "\nint thrice(int n) { return n;\n",
+            "src/c/thrice.c:2:1: error: expected declaration or statement at end of input",
+        ),
+        (
+            "src/twice.S",
+            "#error no\n",
+            "src/twice.S:1:2: error: #error no",
+        ),
+        (
+            "src/c/thrice.c",
+            "\nint thrice(int n) { return m; }\n",
+            "src/c/thrice.c:2:28: error: 'm' undeclared",
+        ),
+        (
+            "src/three.h",
+            "#define THREE +;\n",
+            "src/c/../three.h:1:16: error: expected expression before ';' token\n  src/c/thrice.c:2:28: in expansion",
+        ),
+    ] {
+        let before = sketch.files.insert(name.into(), text.into());
+        let error = refused(&compiler, &sketch);
+        assert!(error.contains(said), "{name}: {error}");
+        sketch.files.insert(name.into(), before.unwrap());
+    }
+}

@@ -12,6 +12,7 @@ use tempfile::TempDir;
 const LIMITS: Limits = Limits {
     time: Duration::from_secs(10),
     memory_mb: 512,
+    processes: 40,
     file_mb: 16,
     output: 64 << 10,
 };
@@ -140,4 +141,51 @@ fn no_disk_is_filled_and_no_page_of_errors_either() {
     let flood: String = (0..50_000).map(|n| format!("#error {n} flood\n")).collect();
     let error = compile(&compiler, &flood).unwrap_err().to_string();
     assert!(error.lines().count() < 60, "{}", error.lines().count());
+}
+
+/// A library for this computer, which says that it was loaded.
+fn plugin(folder: &Path) -> Vec<u8> {
+    let (text, library) = (folder.join("plug.c"), folder.join("plug.so"));
+    let said = "#include <stdio.h>\nint plugin_is_GPL_compatible;\n\
+                __attribute__((constructor)) static void loaded(void) { fprintf(stderr, \"a.ino:1:1: error: LOADED\\n\"); }\n\
+                int plugin_init(void *a, void *b) { return 0; }\n";
+    std::fs::write(&text, said).unwrap();
+    let mut cc = std::process::Command::new("cc");
+    cc.args(["-shared", "-fPIC", "-o"]).args([&library, &text]);
+    assert!(cc.status().unwrap().success());
+    std::fs::read(&library).unwrap()
+}
+
+#[test]
+fn a_hand_in_gives_the_compiler_no_orders() {
+    let Some((compiler, cache)) = compiler() else {
+        return;
+    };
+    let file = |name: &str, text: &[u8]| (name.to_owned(), text.to_vec());
+    let ino = file("x.ino", REST.as_bytes());
+    let source = Source {
+        name: "x".into(),
+        files: [
+            ino.clone(),
+            file("@args.cpp", b""),
+            file("args.cpp", b"//build/sketch/stub.cpp -fplugin=./plug.inc"),
+            file("stub.cpp", b""),
+            file("plug.inc", &plugin(cache.path())),
+        ]
+        .into(),
+    };
+    let error = compiler.compile(&source, &[]).unwrap_err().to_string();
+    assert!(
+        error.starts_with("@args.cpp: a sketch has no file of this name"),
+        "{error}"
+    );
+    for name in ["--help.c", "-fplugin=plug.c", "-.cpp", "src/@args.S"] {
+        let files = [ino.clone(), file(name, b"")].into();
+        let source = Source {
+            name: "x".into(),
+            files,
+        };
+        let error = compiler.compile(&source, &[]).unwrap_err().to_string();
+        assert!(error.contains("no file of this name"), "{name}: {error}");
+    }
 }
