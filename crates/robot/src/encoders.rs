@@ -42,15 +42,16 @@ const APART: f32 = 2.1;
 const USUAL: f32 = 1.7;
 /// Duty that moves any free wheel, whatever the other one does: the original needed 0.25 on the floor, 0.14 in the air.
 const MOVES: f32 = 0.42;
-/// Duty beyond that for the speed of a wheel that is not held [s/rad]: full duty turns any by 1.5 rad/s. Against a wall
+/// Duty beyond that for the speed of a wheel that is not held [s/rad]: full duty turns any by 1.7 rad/s. Against a wall
 /// tyres slip at up to 1.2 rad/s.
 const MOVES_FASTER: f32 = 0.35;
-/// Limit of the duty beyond these, summed over time [s]. Sound robots reach 0.040, with 5 kg and on ice 0.060.
+/// Limit of the duty beyond these, summed over time [s]. Sound robots reach 0.040, with 5 kg and on ice 0.061.
 const STRAINED_S: f32 = 0.07;
 /// The share of it with which a wheel is strained too, if the other one is or its own edges are in doubt.
 const STRAINED_TOO: f32 = 0.5;
-/// Least duty for friction, and per speed, that is believed, should a parameter say less [1, s/rad].
+/// Least duty for a wheel's friction that is believed, should a parameter say less.
 const LEAST_FRICTION: f32 = 0.1;
+/// Least duty per speed that is believed [s/rad].
 const LEAST_VELOCITY: f32 = 0.01;
 
 /// Watches both encoders.
