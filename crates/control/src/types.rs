@@ -362,9 +362,9 @@ pub enum Fault {
     SonarStale = 3,
     /// The wall the mode regulates on is out of reach.
     WallLost = 4,
-    /// The left wheel is driven and its encoder gives no edges.
+    /// The left wheel is driven and its encoder gives no edges: held, or its sensor is cut.
     LeftEncoderSilent = 5,
-    /// The right wheel is driven and its encoder gives no edges.
+    /// The right wheel is driven and its encoder gives no edges: held, or its sensor is cut.
     RightEncoderSilent = 6,
     /// The battery is below its lower limit.
     BatteryLow = 7,
@@ -372,11 +372,11 @@ pub enum Fault {
     NotFinite = 8,
     /// A control tick took longer than its period.
     Overrun = 9,
-    /// Something stands in the way of a mode that does not go around it.
+    /// Something stands in the way of a mode that does not go around it, or holds both wheels.
     Blocked = 10,
-    /// The left encoder's edges are not those of a turning wheel.
+    /// The left encoder's edges are not those of a turning wheel, or too few for its duty.
     LeftEncoderImplausible = 11,
-    /// The right encoder's edges are not those of a turning wheel.
+    /// The right encoder's edges are not those of a turning wheel, or too few for its duty.
     RightEncoderImplausible = 12,
 }
 
@@ -428,13 +428,13 @@ impl Fault {
             Fault::NotFinite => "a value was not a finite number; reset the parameters",
             Fault::Overrun => "a control tick took too long",
             Fault::Blocked => {
-                "blocked: something stands in the way; clear the way or turn the robot, then clear the fault and arm again"
+                "blocked: something stands in the way or holds both wheels; clear the way or turn the robot, then clear the fault and arm again"
             }
             Fault::LeftEncoderImplausible => {
-                "left encoder implausible: it loses edges or picks up noise; see its wires, its ground, and the gap between sensor and magnet"
+                "left encoder implausible: it loses edges or picks up noise, or something drags at its wheel; see its wires, its ground, and the gap between sensor and magnet"
             }
             Fault::RightEncoderImplausible => {
-                "right encoder implausible: it loses edges or picks up noise; see its wires, its ground, and the gap between sensor and magnet"
+                "right encoder implausible: it loses edges or picks up noise, or something drags at its wheel; see its wires, its ground, and the gap between sensor and magnet"
             }
         }
     }

@@ -66,6 +66,8 @@ pub struct State {
     pub contacts: u32,
     /// Share of each wheel's motion (left, right) that the last step undid: 0 free, 1 blocked.
     pub blocked: [f64; 2],
+    /// Dry friction of what holds each wheel (left, right), N m.
+    pub held_n_m: [f64; 2],
 }
 
 /// The beginning of a touch.
@@ -159,12 +161,12 @@ impl Footprint {
         )
     }
 
-    /// Dry friction that blocked wheels feel (left, right), N m.
+    /// Dry friction that blocked and held wheels feel (left, right), N m.
     #[must_use]
     pub fn resistance_n_m(&self, state: &State) -> [f64; 2] {
         [
-            state.blocked[0] * self.drag_n_m[0],
-            state.blocked[1] * self.drag_n_m[1],
+            state.blocked[0] * self.drag_n_m[0] + state.held_n_m[0],
+            state.blocked[1] * self.drag_n_m[1] + state.held_n_m[1],
         ]
     }
 

@@ -505,6 +505,11 @@ impl State {
         self.now_us
     }
 
+    /// Holds a wheel, as a hand or a thread around its axle would, with so much dry friction [N m]; 0 lets go.
+    pub fn hold(&mut self, wheel: Side, friction_n_m: f64) {
+        self.contact.held_n_m[wheel.index()] = friction_n_m;
+    }
+
     /// Moves the robot, as a hand would: speeds and everything else stay.
     pub fn place(&mut self, pose: Pose) {
         self.pose = pose;

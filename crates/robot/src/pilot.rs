@@ -129,8 +129,7 @@ impl Pilot {
         self.action = self.at_rest();
         if armed {
             let motion = &self.estimate.motion;
-            self.encoders
-                .step(motion, self.duty, self.wheel_ref_rad_s)?;
+            self.encoders.step(&self.params, motion, self.duty)?;
             self.action = self.mode.step(&self.params, &self.estimate)?;
         }
         if self.action.new_origin {

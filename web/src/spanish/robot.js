@@ -86,15 +86,15 @@ export const ROBOT = {
   'wall lost: nothing within the sonar\'s reach; face the robot to a wall': 'pared perdida: nada al alcance del sonar; pon el robot frente a una pared',
   'left encoder silent: the wheel is driven but does not turn, or its sensor is cut': 'encoder izquierdo en silencio: la rueda recibe PWM y no gira, o su sensor está cortado',
   'right encoder silent: the wheel is driven but does not turn, or its sensor is cut': 'encoder derecho en silencio: la rueda recibe PWM y no gira, o su sensor está cortado',
-  'left encoder implausible: it loses edges or picks up noise; see its wires, its ground, and the gap between sensor and magnet':
-    'encoder izquierdo no creíble: pierde flancos o capta ruido; comprueba sus cables, su masa y la distancia entre sensor e imán',
-  'right encoder implausible: it loses edges or picks up noise; see its wires, its ground, and the gap between sensor and magnet':
-    'encoder derecho no creíble: pierde flancos o capta ruido; comprueba sus cables, su masa y la distancia entre sensor e imán',
+  'left encoder implausible: it loses edges or picks up noise, or something drags at its wheel; see its wires, its ground, and the gap between sensor and magnet':
+    'encoder izquierdo no creíble: pierde flancos o capta ruido, o algo frena su rueda; comprueba sus cables, su masa y la distancia entre sensor e imán',
+  'right encoder implausible: it loses edges or picks up noise, or something drags at its wheel; see its wires, its ground, and the gap between sensor and magnet':
+    'encoder derecho no creíble: pierde flancos o capta ruido, o algo frena su rueda; comprueba sus cables, su masa y la distancia entre sensor e imán',
   'battery low: charge it': 'batería baja: cárgala',
   'a value was not a finite number; reset the parameters': 'un valor no era un número finito; vuelve a los parámetros de fábrica',
   'a control tick took too long': 'un paso de control tardó demasiado',
-  'blocked: something stands in the way; clear the way or turn the robot, then clear the fault and arm again':
-    'bloqueado: hay algo en el camino; despéjalo o gira el robot, borra el fallo y arma otra vez',
+  'blocked: something stands in the way or holds both wheels; clear the way or turn the robot, then clear the fault and arm again':
+    'bloqueado: hay algo en el camino o algo retiene las dos ruedas; despéjalo o gira el robot, borra el fallo y arma otra vez',
   // Refusals, each with its remedy.
   'the value is not a finite number; send a number': 'el valor no es un número finito; envía un número',
   'the value is outside the allowed range; see the limits with `rumbo list`': 'el valor está fuera del rango permitido; mira los límites con `rumbo list`',

@@ -396,6 +396,11 @@ impl Sim {
         }
     }
 
+    /// Holds a wheel, as a hand would, with so much dry friction [N m]; 0 lets go.
+    pub fn hold(&mut self, wheel: rumbo_plant::drivetrain::Side, friction_n_m: f64) {
+        self.state.hold(wheel, friction_n_m);
+    }
+
     /// Lifts the robot so that its wheels turn freely, or puts it down where it is.
     pub fn lift(&mut self, wheels_in_air: bool) {
         self.plant.lift(&self.params, wheels_in_air);

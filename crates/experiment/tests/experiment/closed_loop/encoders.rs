@@ -10,7 +10,7 @@ use rumbo_sim::wire_fault::{TimedWireFault, Wire, WireFault};
 use rumbo_wire::{EventKind, FromRobot};
 
 /// When the robot stopped [s], and why.
-fn fault(run: &RunResult) -> Option<(f64, Fault)> {
+pub(super) fn fault(run: &RunResult) -> Option<(f64, Fault)> {
     run.trace
         .messages
         .iter()

@@ -7,6 +7,7 @@ mod baseline;
 mod before_a_wall;
 mod drive;
 mod encoders;
+mod held;
 mod lane;
 mod mode_6;
 mod mode_7;
