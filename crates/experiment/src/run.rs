@@ -14,7 +14,6 @@ use crate::metrics::{self, Metrics};
 use crate::operator::Operator;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_emulator::observe::waveform::Waveform;
-#[cfg(feature = "host")]
 use rumbo_sim::Sim;
 use rumbo_sim::fleet::Fleet;
 use rumbo_sim::mega::Mega;

@@ -4,6 +4,7 @@
 #![allow(
     clippy::panic,
     clippy::expect_used,
+    clippy::ok_expect,
     clippy::unwrap_used,
     reason = "a claim that does not hold is a finding"
 )]

@@ -29,7 +29,7 @@ pub(crate) fn browser(project: &Project) -> Result<(), Stop> {
         .args(["--test", "--test-reporter=spec"])
         .args(files))?;
     Ok(run(
-        &mut in_chromium(project, &node)?.args(["test/run.mjs", "test/browser"])
+        in_chromium(project, &node)?.args(["test/run.mjs", "test/browser"])
     )?)
 }
 
