@@ -17,6 +17,7 @@ os.environ["RAY_USAGE_STATS_ENABLED"] = "0"
 
 try:
     import ray
+    from ray._private import ray_constants
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError("cluster= needs Ray: pip install 'rumbo[ray]'", name=error.name) from error
 
@@ -28,12 +29,44 @@ RETRIES = 10
 STORE_BYTES = 100 << 20
 #: The only address of a cluster on this machine, to which nobody else can connect.
 LOCALHOST = "127.0.0.1"
+#: Ray's switch for that, meant for systems on which it has no clusters: otherwise it takes the network's address for
+#: any other, 127.0.0.1 too, and listens on all (2.60, `services.get_node_ip_address`).
+ONE_MACHINE = "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"
 #: How long a running cluster has to answer [s].
 PATIENCE_S = 10.0
 
 
 def _call(work: Callable[[Any], Any], argument: Any) -> Any:
     return work(argument)
+
+
+def _start(workers: int | None) -> None:
+    """Starts a cluster to which no other machine can connect.
+
+    Raises:
+        RuntimeError: It would listen to the network; it is ended again.
+    """
+    before, was = os.environ.get(ONE_MACHINE), ray_constants.ENABLE_RAY_CLUSTER
+    # For the cluster's processes, and for this one, which has read the variable already.
+    os.environ[ONE_MACHINE], ray_constants.ENABLE_RAY_CLUSTER = "0", False
+    try:
+        ray.init(
+            "local",
+            num_cpus=workers,
+            include_dashboard=False,
+            log_to_driver=False,
+            object_store_memory=STORE_BYTES,
+        )
+    finally:
+        ray_constants.ENABLE_RAY_CLUSTER = was
+        if before is None:
+            del os.environ[ONE_MACHINE]
+        else:
+            os.environ[ONE_MACHINE] = before
+    addresses = {node["NodeManagerAddress"] for node in ray.nodes()}
+    if addresses != {LOCALHOST}:
+        ray.shutdown()
+        raise RuntimeError(f"Ray {ray.__version__} listens on {addresses}, not on {LOCALHOST} alone; use Ray 2.60")
 
 
 def _connect(address: str) -> None:
@@ -71,20 +104,14 @@ class Cluster:
         Raises:
             ModuleNotFoundError: Ray is not installed.
             ConnectionError: There is no cluster at the address.
+            RuntimeError: A cluster on this machine would listen to the network.
             ValueError: A number of workers that is none, or one for a running cluster.
         """
         if workers is not None and (workers < 1 or address != "local"):
             raise ValueError(f'{workers} workers: must be 1 or more, and only for "local": a cluster has its own')
         self._is_own = not ray.is_initialized()
         if self._is_own and address == "local":
-            ray.init(
-                "local",
-                num_cpus=workers,
-                include_dashboard=False,
-                log_to_driver=False,
-                object_store_memory=STORE_BYTES,
-                _node_ip_address=LOCALHOST,
-            )
+            _start(workers)
         elif self._is_own:
             _connect(address)
         self.workers = max(1, int(ray.cluster_resources().get("CPU", 1)))

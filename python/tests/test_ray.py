@@ -54,6 +54,26 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return content
 
 
+def listening() -> set[str]:
+    """Addresses and ports, in hexadecimal, on which other machines could connect to this one."""
+    found = set()
+    for table in ("/proc/net/tcp", "/proc/net/tcp6"):
+        for line in pathlib.Path(table).read_text().splitlines()[1:]:
+            local, state = line.split()[1], line.split()[3]
+            # 127.0.0.1, also as an address of IPv6, and ::1.
+            if state == "0A" and not local.split(":")[0].endswith(("0100007F", "00000000000000000000000001000000")):
+                found.add(local)
+    return found
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the sockets of Linux")
+def test_no_other_machine_can_connect_to_a_cluster_on_this_one() -> None:
+    before = listening()
+    with rumbo.ray.Cluster("local", workers=2) as here:
+        assert here.submit(abs, -1).result() == 1
+        assert listening() <= before
+
+
 class Noted:
     """A cluster whose pieces take a while, and note their process and their first job when they begin and end."""
 

@@ -55,9 +55,15 @@ impl Project {
         command
     }
 
-    /// Builds a program of the workspace as the tests are built, so that they share all crates, and returns its path.
+    /// A command of cargo that builds libraries, programs and tests in one go, which share all crates: any part of it by
+    /// itself has other features, and with them other crates.
+    pub(crate) fn build_all(&self) -> Command {
+        self.cargo(&["build", "--workspace", "--all-targets", "--locked"])
+    }
+
+    /// Builds a program of the workspace beside the tests, and returns its path.
     pub(crate) fn program(&self, name: &str) -> Result<PathBuf, String> {
-        run(&mut self.cargo(&["build", "--workspace", "--locked", "--quiet", "--bin", name]))?;
+        run(self.build_all().arg("--quiet"))?;
         let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
         Ok(self.target.join("debug").join(name))
     }

@@ -62,8 +62,7 @@ pub(super) fn check(project: &Project) -> Result<(), Stop> {
 
 /// The package as it would be installed, with the Rust part of the tests' build; returns the folder that Python looks in.
 fn in_place(project: &Project) -> Result<PathBuf, Stop> {
-    let build = ["build", "--workspace", "--locked", "--quiet", "--lib"];
-    run(&mut project.cargo(&build))?;
+    run(project.build_all().arg("--quiet"))?;
     let folder = project.target.join("tmp/python");
     let package = folder.join("rumbo");
     // Of an earlier version.
