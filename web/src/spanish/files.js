@@ -9,7 +9,7 @@ export const FILES = {
   'world edited': 'mundo editado', 'world edited: {}': 'mundo editado: {}', 'world edited:{}: {}': 'mundo editado, línea {}: {}',
   // Keys and values of any file.
   'not valid TOML: {}': 'no es TOML válido: {}', 'not valid TOML: {}; write decimals with a point': 'no es TOML válido: {}; escribe los decimales con punto',
-  '{} is missing: {}': '{} no está: {}', 'unknown key; {}': 'clave desconocida; {}', 'key of an earlier version; {}': 'clave de una versión anterior; {}', 'no key is allowed here': 'aquí no va ninguna clave',
+  '{} is missing: {}': '{} no está: {}', 'unknown key; {}': 'clave desconocida; {}', 'no key is allowed here': 'aquí no va ninguna clave',
   'the key is `{}`, with its unit: {}': 'la clave es `{}`, con su unidad: {}', 'the key is `{}`, in {} and not in {}: {} = {}': 'la clave es `{}`, en {} y no en {}: {} = {}',
   'the key is `{}`, in {} and not in {}': 'la clave es `{}`, en {} y no en {}', 'the key is `{}`, in {}': 'la clave es `{}`, en {}',
   'must be within {}..{}': 'debe estar entre {} y {}', 'must be within {}..{} {}': 'debe estar entre {} y {} {}', 'must be a whole number within {}..{}': 'debe ser un número entero entre {} y {}',
@@ -20,8 +20,6 @@ export const FILES = {
   'must be {}': 'debe ser {}', 'must be {} or {}': 'debe ser {} o {}', 'write one of {}': 'escribe una de {}', '{}: the smaller value stands first': '{}: el valor menor va primero', '{} to {}': '{} a {}', 'at least {}': 'al menos {}', 'at most {}': 'como mucho {}',
   'unknown mode; did you mean {}?': 'modo desconocido; ¿quizá {}?', 'unknown mode; did you mean {} or {}?': 'modo desconocido; ¿quizá {} o {}?', 'unknown mode; did you mean {} or {} or {}?': 'modo desconocido; ¿quizá {}, {} o {}?', 'unknown movement; {}': 'movimiento desconocido; {}', 'unknown parameter; {}': 'parámetro desconocido; {}',
   'the value must be finite': 'el valor debe ser finito', '`{}` is not a number': '`{}` no es un número', '{} {}, not `{}`': '{} {}, no `{}`',
-  'write `noise_m`, the deviation in motion, and `rest_weakness`, its share at rest': 'escribe `noise_m`, la desviación en movimiento, y `rest_weakness`, su parte en reposo',
-  'write `noise_m`, with the same value': 'escribe `noise_m`, con el mismo valor', 'write `outlier_span`, the same relative to the range': 'escribe `outlier_span`, lo mismo en relación con la distancia',
   // Scenarios.
   'one line that says what the experiment is': 'una línea que diga qué experimento es', 'name of a robot, e.g. "memoria"': 'nombre de un robot, p. ej. "memoria"',
   'name of one of the robot\'s rigs, e.g. "front_single"': 'nombre de uno de los montajes del robot, p. ej. "front_single"', 'name of a world, e.g. "open"': 'nombre de un mundo, p. ej. "open"',
