@@ -279,8 +279,8 @@ function receive(message) {
       if (table.length > 0 && state.robot.rig !== null) checkup.meet(sonars, servo);
       calibration.show(state);
       meter.update(state);
-      map.target = state.robot.armed && state.robot.errand.route && state.robot.errand.end === null ? state.robot.reference : null;
-      map.setErrand(state.robot.errand);
+      map.target = state.robot.armed && state.robot.task.route && state.robot.task.end === null ? state.robot.reference : null;
+      map.setTask(state.robot.task);
       parameters.setMode(state.robot.mode, state.robot.text ? t('parameters are not available over the text protocol') : state.robot.foreign ? t('the robot has another table: not shown') : '');
       // Check and calibration use commands that such a robot does not have.
       document.body.classList.toggle('foreign', state.robot.foreign || Boolean(state.robot.text));

@@ -14,7 +14,7 @@ import { colours, onThemeChange } from './theme.js';
 import { watchFingers } from './touch.js';
 
 /** @typedef {import('./types.js').Scene} Scene */
-/** @typedef {import('./types.js').Errand} Errand */
+/** @typedef {import('./types.js').Task} Task */
 /** @typedef {import('./types.js').Pose} Pose */
 /** @typedef {import('./types.js').Route} Route */
 /** @typedef {import('./store.js').Store} Store */
@@ -55,8 +55,8 @@ export class WorldMap {
   #redraw;
   /** @type {View | null} Null: everything fits. */
   #view = null;
-  /** @type {Errand | null} */
-  #errand = null;
+  /** @type {Task | null} */
+  #task = null;
   /** @type {Route | null} */
   #draft = null;
   /** @type {((at: Point) => void) | null} */
@@ -100,9 +100,9 @@ export class WorldMap {
     this.#sketch.body = body;
   }
 
-  /** @param {Errand} errand */
-  setErrand(errand) {
-    this.#errand = errand;
+  /** @param {Task} task */
+  setTask(task) {
+    this.#task = task;
     this.#redraw();
   }
 
@@ -195,7 +195,7 @@ export class WorldMap {
     sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
     sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
     sketch.drawTrail(this.#store.trails.ghost, colours.goal, px);
-    this.#drawErrand(px);
+    this.#drawTask(px);
     const latest = this.#store.latest;
     if (!latest) return;
     const estimated = latest.estimated && compose(latest.origin, latest.estimated);
@@ -218,10 +218,10 @@ export class WorldMap {
   }
 
   /** @param {number} px */
-  #drawErrand(px) {
+  #drawTask(px) {
     const sketch = this.#sketch;
-    const { route = null, from = null } = this.#errand ?? {};
-    const goal = this.#errand?.goal ?? this.target;
+    const { route = null, from = null } = this.#task ?? {};
+    const goal = this.#task?.goal ?? this.target;
     const began = from && { x_m: from[0], y_m: from[1], heading_rad: from[2] };
     if (route) this.#drawRoute(route, began, false, px);
     if (this.#draft) this.#drawRoute(this.#draft, null, true, px);
@@ -294,7 +294,7 @@ export class WorldMap {
     const start = this.#start();
     const robot = this.#robot();
     const around_m = this.#pick ? 1.3 : 0.35;
-    const { goal = null, route = null } = this.#errand ?? {};
+    const { goal = null, route = null } = this.#task ?? {};
     const all = this.#tool?.bounds ?? [
       ...(this.#sketch.scene?.obstacles.flatMap(({ corners_m, closed }) => corners_m.flatMap((corner, index) => {
         const next = corners_m[index + 1] ?? (closed ? corners_m[0] : undefined);

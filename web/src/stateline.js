@@ -68,7 +68,7 @@ export class StateLine {
   draw() {
     const slow = this.#slow;
     if (!slow) return;
-    const { fault, errand } = slow.robot;
+    const { fault, task } = slow.robot;
     this.#fault.hidden = fault === null;
     this.#showFault(fault);
     const refused = slow.refused ?? '';
@@ -78,7 +78,7 @@ export class StateLine {
     const aim = this.#aimWords(slow);
     setText(this.#aim, aim);
     if (this.#aim.title !== aim) this.#aim.title = aim;
-    const end = errand.end;
+    const end = task.end;
     setText(this.#end, said(end ?? ''));
     this.#end.className = end === null ? '' : `chip ${end === 'reached' ? 'good' : 'warning'}`;
     this.#showPose(slow);
@@ -117,11 +117,11 @@ export class StateLine {
     if (kind === 'distance' && left !== 0) words.push(`${t('setpoint')} ${format(left * CM_PER_M)} cm`);
     if (kind === 'speed') words.push(`${t('setpoint')} ${format(left * RPM_PER_RAD_S, 0)} rpm`);
     if (kind === 'wheel_speed') words.push(`${t('setpoints')} ${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)} rpm`);
-    const { goal, lane, route } = robot.errand;
+    const { goal, lane, route } = robot.task;
     if (lane) words.push(t('follows the lane'));
     if (route) words.push(t(route.repeat ? 'route of {}, again and again' : 'route of {}', route.waypoints.length));
     /** @type {[number, number] | null} */
-    const target = goal ?? (route && robot.armed && robot.errand.end === null ? [left, right] : null);
+    const target = goal ?? (route && robot.armed && robot.task.end === null ? [left, right] : null);
     if (target) {
       const away_m = at ? Math.hypot(target[0] - at.x_m, target[1] - at.y_m) : null;
       words.push(`${goal ? t('goal') : t('to')} ${inWords(target)} m${away_m === null ? '' : t(', {} m away', format(away_m, 2))}`);

@@ -72,7 +72,7 @@
  * @property {boolean} pending
  * @property {string | null} refused
  *
- * @typedef {object} Errand The robot's goal, from its origin.
+ * @typedef {object} Task The robot's goal, from its origin.
  * @property {[number, number] | null} goal
  * @property {boolean} lane
  * @property {Route | null} route
@@ -95,7 +95,7 @@
  *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number,
  *   clock_offset_ms?: number, clock_fast_ppm?: number}} link When the robot's clock began, in the session's time, and by how much it is fast.
  * @property {{mode: number, armed: boolean, fault: string | null, battery_v: number | null, true_battery_v: number | null,
- *   reference: [number, number], overruns: number, servo_rad: number, rig: string | null, errand: Errand, foreign: boolean, text?: boolean}} robot `text`: it speaks the original's.
+ *   reference: [number, number], overruns: number, servo_rad: number, rig: string | null, task: Task, foreign: boolean, text?: boolean}} robot `text`: it speaks the original's.
  *
  * @typedef {object} Profile Where the time of a program goes, in cycles of its clock.
  * @property {number} cycles

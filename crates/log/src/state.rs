@@ -191,7 +191,6 @@ pub struct RobotState {
     /// Name of the rig set in the robot; `None` until it is reported.
     pub rig: Option<Cow<'static, str>>,
     /// Its task.
-    #[serde(rename = "errand")]
     pub task: Task,
     /// The robot has another parameter table, or another protocol: its parameters are neither shown nor written.
     pub foreign: bool,

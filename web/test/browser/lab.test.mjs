@@ -118,11 +118,11 @@ async function clickMap(at) {
   await page.locator('#map').click({ position: { x, y } });
 }
 
-/** @typedef {NonNullable<ReturnType<Rumbo['state']>>['robot']['errand']} Errand */
+/** @typedef {NonNullable<ReturnType<Rumbo['state']>>['robot']['task']} Task */
 
-/** @returns {Promise<Errand>} */
-function errand() {
-  return page.evaluate(() => /** @type {any} */ (window).rumbo.state().robot.errand);
+/** @returns {Promise<Task>} */
+function task() {
+  return page.evaluate(() => /** @type {any} */ (window).rumbo.state().robot.task);
 }
 
 /** The states of the armed robot in a mode, one after the other. @param {number} mode @returns {Promise<number[]>} */
@@ -196,31 +196,31 @@ test('mode 8: a click on the map sets the goal, which stands where the click was
   await startScenario('mode8-random');
   await page.waitForSelector('#goal');
   await clickMap([0.6, 0.2]);
-  await page.waitForFunction(() => Math.abs((/** @type {any} */ (window).rumbo.state().robot.errand.goal?.[0] ?? 9) - 0.6) < 0.02);
-  const { goal } = await errand();
+  await page.waitForFunction(() => Math.abs((/** @type {any} */ (window).rumbo.state().robot.task.goal?.[0] ?? 9) - 0.6) < 0.02);
+  const { goal } = await task();
   assert.ok(goal && Math.abs(goal[1] - 0.2) < 0.02, String(goal));
   await page.waitForFunction(() => /goal \(0\.[56]\d*, 0\.[12]\d*\) m, 0\.6\d m away/.test(document.querySelector('#aim')?.textContent ?? ''));
 
   await page.getByRole('button', { name: '(0.5, −0.5)' }).click();
-  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.goal?.[1] === -0.5);
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.task.goal?.[1] === -0.5);
   await page.locator('#goal-x').fill('19.5');
   await page.locator('#goal-y').fill('-2');
   await page.locator('#goal button').click();
-  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.goal?.[0] === 19.5);
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.task.goal?.[0] === 19.5);
   await page.locator('#lane').click();
-  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.lane);
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.task.lane);
 });
 
 test('mode 7: a route made by clicks is driven point by point', async () => {
   await startScenario('mode7');
-  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.route?.waypoints.length === 4);
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.task.route?.waypoints.length === 4);
   await clickMap([0.3, 0]);
   await clickMap([0.3, 0.3]);
   await eventually(async () => assert.deepEqual(await page.locator('.place b').allTextContents(), ['1', '2']));
   await clickMap([-1, -1]);
   await page.locator('.place').nth(2).click();
   await page.locator('#route-set').click();
-  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.route?.waypoints.length === 2);
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.task.route?.waypoints.length === 2);
   // A page that comes too late for a sample loses it.
   await speed(2);
   await page.locator('#on').click();

@@ -99,7 +99,7 @@ rare('a place on the map is picked by keyboard: Enter takes the middle, arrow ke
   for (const key of ['+', 'ArrowRight', 'ArrowRight', 'ArrowUp', 'Enter']) await page.keyboard.press(key);
   await page.waitForFunction(() => {
     const { state, onMap } = /** @type {any} */ (window).rumbo;
-    const { goal } = state().robot.errand;
+    const { goal } = state().robot.task;
     const map = document.querySelector('#map');
     if (!goal || !map) return false;
     const [x, y] = onMap(goal);

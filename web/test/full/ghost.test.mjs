@@ -27,7 +27,7 @@ async function driveThere(page) {
       const { series, state } = /** @type {any} */ (window).rumbo;
       const last = (/** @type {string} */ name) => series(name).y.filter((/** @type {unknown} */ each) => typeof each === 'number').at(-1);
       const [ghost, robot] = [last('ghost_x_m'), last('x_m')];
-      if (state().robot.errand.end === 'reached' && robot > 0.5 && Math.abs(ghost - robot) < 0.1) return 'there';
+      if (state().robot.task.end === 'reached' && robot > 0.5 && Math.abs(ghost - robot) < 0.1) return 'there';
       if (state().robot.fault !== null) return 'robot';
       const lines = [...document.querySelectorAll('#events li')].filter((line) => line.textContent?.includes('the ghost has stopped: link lost'));
       return lines.length > seen ? 'ghost' : null;

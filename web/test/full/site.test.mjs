@@ -50,11 +50,11 @@ test('the lab starts by itself, in real time, and the robot is not armed by it',
 test('it drives to its goal, and STOP stops it on the way to the next', { skip }, async () => {
   await page.locator('#scenario').selectOption('mode8-random');
   await says('reset: mode8-random');
-  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.goal !== null);
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.task.goal !== null);
   await page.locator('#speed').selectOption('4');
   await page.locator('#on').click();
   await isArmed(true);
-  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.errand.end === 'reached');
+  await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state().robot.task.end === 'reached');
   if (process.env['SCREENSHOT_SITE']) await page.screenshot({ path: process.env['SCREENSHOT_SITE'] });
   await page.locator('#speed').selectOption('1');
   await page.locator('#goal-x').fill('3');

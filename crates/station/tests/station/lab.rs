@@ -158,20 +158,20 @@ async fn a_goal_and_a_route_are_passed_on_and_shown_once_the_robot_took_them() {
     let key = open(&lab);
     let mut page = connect_own(&lab, &key).await;
     wait_for(&mut page, |message| event(message, "connected")).await;
-    let errand = |message: &Value| {
-        let errand = &message["state"]["robot"]["errand"];
-        errand.is_object().then(|| errand.clone())
+    let task = |message: &Value| {
+        let task = &message["state"]["robot"]["task"];
+        task.is_object().then(|| task.clone())
     };
     say(&mut page, json!({"type": "mode", "mode": 8})).await;
     say(&mut page, json!({"type": "goal", "x_m": 1.5, "y_m": -0.5})).await;
     wait_for(&mut page, |message| {
-        (errand(message)?["goal"] == json!([1.5, -0.5])).then_some(())
+        (task(message)?["goal"] == json!([1.5, -0.5])).then_some(())
     })
     .await;
     say(&mut page, json!({"type": "lane"})).await;
     wait_for(&mut page, |message| {
-        let errand = errand(message)?;
-        (errand["lane"] == true && errand["goal"].is_null()).then_some(())
+        let task = task(message)?;
+        (task["lane"] == true && task["goal"].is_null()).then_some(())
     })
     .await;
 
@@ -185,7 +185,7 @@ async fn a_goal_and_a_route_are_passed_on_and_shown_once_the_robot_took_them() {
     let shown = json!([{"x_m": 1.0, "y_m": 0.5, "heading_rad": null},
                        {"x_m": 0.0, "y_m": 0.0, "heading_rad": 1.5}]);
     let route = wait_for(&mut page, |message| {
-        let route = errand(message)?["route"].clone();
+        let route = task(message)?["route"].clone();
         (route["waypoints"] == shown).then_some(route)
     })
     .await;
