@@ -123,6 +123,8 @@ rare('a click sets a mark, from which the numbers in all plots are counted', asy
 rare('the view slides with the newest data, as wide as the chosen window', async () => {
   await page.locator('#window').selectOption('10');
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1) > 11);
+  // It is drawn with the next frame.
+  await page.waitForFunction(() => { const [from_s, to_s] = /** @type {any} */ (window).rumbo.plots().range_s; return to_s - from_s < 11; });
   const { range_s: [from_s, to_s] } = await plots();
   assert.ok(Math.abs(to_s - from_s - 10) < 1e-6 && from_s > 0, `${from_s} to ${to_s}`);
   await page.waitForFunction((before) => /** @type {any} */ (window).rumbo.plots().range_s[1] > before + 0.5, to_s);

@@ -156,13 +156,13 @@ rare('a file is opened, keys that the editor does not know stay in it, and one t
 });
 
 rare('a random world is frozen by its seed, and a page without control only watches', async () => {
-  const { page, url, browser, close } = await open(['lab', '--scenario', 'mode8-random', '--seed', '7', '--out', folder()]);
+  const { page, url, close } = await open(['lab', '--scenario', 'mode8-random', '--seed', '7', '--out', folder()]);
   try {
     await edit(page);
     assert.ok(await page.locator('#editor-item option[value^=box]').count() > 1);
     assert.equal(await page.locator('#editor-item option[value^=goal]').count(), 1);
-    assert.ok(url && browser.contexts()[0]);
-    const other = await showPage(/** @type {import('playwright-core').BrowserContext} */ (browser.contexts()[0]), new URL('/', url).href);
+    assert.ok(url);
+    const other = await showPage(page.context(), new URL('/', url).href);
     await other.click('#edit-world');
     await eventually(async () => assert.match(await other.locator('#events').textContent() ?? '', /another page has control/));
     assert.equal(await other.locator('#editor').isHidden(), true);
