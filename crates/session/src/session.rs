@@ -20,7 +20,7 @@ use crate::watch::LinkWatch;
 use crate::world::WorldOrder;
 use rumbo_control::mode::ModeId;
 use rumbo_log::{Burst, CalibrationState, Choice, Level, ProgramState, State, Truth};
-use rumbo_wire::Command;
+use rumbo_wire::{Command, GUEST_SESSION};
 
 /// The slow state is published this often, and at once when it matters \[us\].
 const STATE_PERIOD_US: u64 = 200_000;
@@ -391,6 +391,9 @@ fn new_client(about: &About, id: u8, text: bool) -> RobotClient {
     match about.abilities.text {
         Some(mode) => RobotClient::of_text(mode, clock_known),
         None if text => RobotClient::of_text(ModeId::default(), clock_known),
-        None => RobotClient::new(id, clock_known, KnownTable::OURS),
+        None => {
+            let id = if id == GUEST_SESSION { !id } else { id };
+            RobotClient::new(id, clock_known, KnownTable::OURS)
+        }
     }
 }

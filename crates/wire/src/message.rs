@@ -15,6 +15,10 @@ pub const COMMAND_LIFE_MS: u32 = 2_000;
 /// Oldest velocity that a robot drives, by its own clock \[ms\].
 pub const VELOCITY_LIFE_MS: u32 = 300;
 
+/// Session of a guest who commands the robot on the station's link, such as a calibration; the station draws another
+/// one, since the guest's numbers would be old ones of its own.
+pub const GUEST_SESSION: u8 = 0xCA;
+
 /// An instant by the robot's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RobotTime {

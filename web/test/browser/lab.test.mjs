@@ -226,7 +226,8 @@ test('mode 7: a route made by clicks is driven point by point', async () => {
   await page.locator('#on').click();
   await page.waitForFunction(() => document.querySelector('#end')?.textContent === 'reached');
   const seen = await states(7);
-  assert.ok(seen.some((state, at) => state === seen[at + 2] && state !== seen[at + 1]), `drive, turn, drive: ${seen}`);
+  // 1 turns, 2 drives; where it waits between them is short, and may fall between two samples.
+  assert.match(seen.join(), /2.*1.*2/, 'drive, turn, drive');
   await speed(8);
   const [x] = await lastValues('x_m', 1);
   const [y] = await lastValues('y_m', 1);

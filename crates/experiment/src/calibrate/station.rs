@@ -5,7 +5,8 @@ use super::link::Link;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Range, SIDES, SonarId, Wheels};
 use rumbo_wire::{
-    Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, Telemetry, ToRobot,
+    Command, Decoder, EventKind, FromRobot, GUEST_SESSION, Message, Received, RobotTime, Telemetry,
+    ToRobot,
 };
 
 /// Time between two polls of the link [us].
@@ -18,8 +19,6 @@ const REPEAT_US: u64 = 200_000;
 const TRIES: u32 = 15;
 /// Longest line of the original's telemetry.
 const LINE: usize = 160;
-/// Session of the commands: nobody else commands the robot during a calibration.
-const SESSION: u8 = 0xCA;
 
 /// The content of one telemetry frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +109,7 @@ impl Station {
         let seen = self.seen.unwrap_or_default();
         for _ in 0..TRIES {
             self.send(&ToRobot::Command {
-                session: SESSION,
+                session: GUEST_SESSION,
                 number: self.number,
                 command,
                 seen,
@@ -216,7 +215,7 @@ impl Station {
         self.seen = RobotTime::after(self.seen, message);
         match message {
             FromRobot::Telemetry(telemetry) => self.ingest(telemetry),
-            FromRobot::Ack(ack) if ack.session == SESSION => {
+            FromRobot::Ack(ack) if ack.session == GUEST_SESSION => {
                 self.answer = Some((ack.number, ack.result));
             }
             FromRobot::Event(event) => match event.kind {

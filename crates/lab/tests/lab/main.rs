@@ -6,6 +6,7 @@
     reason = "helpers of tests too"
 )]
 
+mod calibration;
 mod fleet;
 mod programs;
 mod velocity;
