@@ -6,11 +6,11 @@
 
 use crate::estimate::Estimate;
 use crate::math::min;
-use crate::mode::Look;
 use crate::params::{ParamId, Params};
-use crate::rig::{Rig, View};
+use crate::rig::Rig;
 use crate::sweep::{Sweep, SweepState};
-use crate::types::{AgedRange, Fault, Range, Reading, SonarId, TICK_S};
+use crate::types::Look;
+use crate::types::{AgedRange, Fault, Range, Reading, SonarId, TICK_S, View};
 use crate::wall::{Wall, WallFilter};
 
 /// Bearing of a wall that answers only where the servo looks to one side [rad].

@@ -7,8 +7,8 @@ use crate::ahead::drivable_m;
 use crate::estimate::Estimate;
 use crate::math::min;
 use crate::params::Params;
-use crate::rig::{Rig, View};
-use crate::types::{Fault, Range, SIDES, Side, SonarId};
+use crate::rig::Rig;
+use crate::types::{Fault, Range, SIDES, Side, SonarId, View};
 
 /// Which sonars see a wall beside the robot.
 #[derive(Clone, Copy, Debug)]

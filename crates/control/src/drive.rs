@@ -15,12 +15,13 @@
 //! if it stands, and gains no speed if it rolls the right way. From rest no wheel waits for the other to break away:
 //! the ramp takes both through it within 30 ms, and holding back the first one made their start less even.
 
-use crate::math::{abs, clamp, is_finite, max, min, round};
+use crate::math::{abs, clamp, is_finite, max, round};
 use crate::params::{ParamId, Params};
 #[cfg(not(target_arch = "avr"))]
 use crate::pid::Terms;
-use crate::pid::{NotFinite, Pid, PidState};
+use crate::pid::{NotFinite, PidState};
 use crate::speed::WheelMotion;
+use crate::speed_loop::{Feedforward, SpeedLoop};
 #[cfg(not(target_arch = "avr"))]
 use crate::types::Side;
 use crate::types::{Drive, Duty, SIDES, TICK_S, Wheels};
@@ -29,56 +30,6 @@ use crate::types::{Drive, Duty, SIDES, TICK_S, Wheels};
 const STANDSTILL_RAD_S: f32 = 0.05;
 /// Growth of the kick of a wheel that still stands [1/s].
 const KICK_GROWTH: f32 = 1.5;
-/// The ramp never leads the wheel by more than this [rad/s], so that a blocked wheel does not surge when freed.
-const RAMP_LEAD_RAD_S: f32 = 4.0;
-
-/// Duty for a speed at the nominal battery voltage.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Feedforward {
-    /// Duty that balances friction, forward.
-    pub static_forward: f32,
-    /// The same backward.
-    pub static_backward: f32,
-    /// Duty per speed [s/rad].
-    pub velocity: f32,
-    /// Duty per acceleration [s^2/rad].
-    pub acceleration: f32,
-}
-
-/// Configuration of one wheel's speed loop.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SpeedLoop {
-    /// Duty from the reference alone.
-    pub feedforward: Feedforward,
-    /// First duty of a standing wheel.
-    pub kick: f32,
-    /// Corrects the rest; output is duty, limits 0..1.
-    pub pid: Pid,
-    /// Slope of the ramp when speeding up [rad/s per tick].
-    pub accel_rad_s: f32,
-    /// Slope of the ramp when slowing down [rad/s per tick].
-    pub decel_rad_s: f32,
-}
-
-impl SpeedLoop {
-    /// Advances the ramp by a tick: towards the target, and never far ahead of the wheel. `hold` keeps it from gaining
-    /// speed.
-    fn ramp(&self, before_rad_s: f32, target_rad_s: f32, measured_rad_s: f32, hold: bool) -> f32 {
-        let target_rad_s = if hold {
-            min(target_rad_s, before_rad_s)
-        } else {
-            target_rad_s
-        };
-        let (up, down) = (self.accel_rad_s, self.decel_rad_s);
-        let next = before_rad_s + clamp(target_rad_s - before_rad_s, -down, up);
-        let lead = measured_rad_s + max(RAMP_LEAD_RAD_S, up);
-        if next > lead {
-            max(lead, before_rad_s - down)
-        } else {
-            next
-        }
-    }
-}
 
 /// What a wheel's speed loop adds up, as parts of full duty, forward positive: for people to see. The duty differs from
 /// the sum where it is limited, and where a standing wheel gets its kick.

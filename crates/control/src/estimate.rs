@@ -9,10 +9,9 @@ use crate::math::{abs, clamp, wrap_angle};
 use crate::odometry::advance;
 use crate::params::{ParamId, Params};
 use crate::range::{RangeFilter, range_from_echo};
-use crate::rig::View;
 use crate::speed::{EDGE_RAD, SpeedEstimator, WheelMotion};
 use crate::types::{
-    AgedRange, Inputs, Pose, Reading, SIDES, ServoAngle, SonarId, TICK_S, Transform, Wheels,
+    AgedRange, Inputs, Pose, Reading, SIDES, ServoAngle, SonarId, TICK_S, Transform, View, Wheels,
 };
 
 /// The front sonar looks ahead when the servo is within this of it [rad].

@@ -26,6 +26,7 @@ pub mod pursuit;
 pub mod range;
 pub mod rig;
 pub mod speed;
+pub mod speed_loop;
 pub mod stuck;
 pub mod sweep;
 pub mod types;

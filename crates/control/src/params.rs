@@ -5,17 +5,16 @@
 
 #[cfg(feature = "names")]
 mod kind;
+mod mounts;
 
 #[cfg(feature = "names")]
 pub use kind::ParamKind;
 
-use crate::drive::SpeedLoop;
 use crate::math::is_finite;
-#[cfg(feature = "names")]
-use crate::mode::ModeId;
 use crate::odometry::{Geometry, OdometryErrors};
 use crate::rig::Rig;
 use crate::speed::EDGE_RAD;
+use crate::speed_loop::SpeedLoop;
 use crate::types::{Side, TICK_S, Wheels};
 
 /// Smallest and largest allowed value, and the one without any override.
@@ -300,15 +299,6 @@ impl ParamId {
         } else {
             Ok(())
         }
-    }
-
-    /// The modes that use it; none for parameters of the robot in any mode.
-    #[cfg(feature = "names")]
-    pub fn modes(self) -> impl Iterator<Item = ModeId> {
-        ModeId::ALL.into_iter().filter(move |mode| {
-            let mut groups = mode.description().parameters.iter();
-            groups.any(|group| group.parameters.contains(&self))
-        })
     }
 
     /// The parameter with this name.

@@ -7,7 +7,7 @@
 
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp};
-use crate::mode::Look;
+use crate::types::Look;
 use crate::types::{ServoAngle, SonarId};
 
 /// Farthest that the servo turns [rad].

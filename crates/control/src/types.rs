@@ -1,7 +1,6 @@
 //! The values that cross the boundary of the core, each with its unit, and the newtypes of raw counts.
 
 use crate::math::sin_cos;
-use crate::rig::View;
 use core::ops::{Index, IndexMut};
 
 /// Control ticks per second [Hz].
@@ -180,6 +179,17 @@ pub enum Range {
     Faulty,
 }
 
+/// Position and direction of a sonar, in the robot's frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct View {
+    /// Ahead of the wheels' axis [m].
+    pub x_m: f32,
+    /// Left of the middle [m].
+    pub y_m: f32,
+    /// The beam's axis, counter-clockwise from ahead [rad].
+    pub axis_rad: f32,
+}
+
 /// A sonar's reading at this tick, unfiltered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
@@ -230,6 +240,40 @@ impl Default for AgedRange {
 /// Angle of the front sonar's servo [rad]: 0 straight ahead, positive to the left, -pi/2..=pi/2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ServoAngle(pub f32);
+
+/// Where the robot looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Where the servo points.
+    pub servo: ServoAngle,
+    /// Which sonars matter, by `SonarId` number; these are pinged in turn.
+    pub sonars: [bool; 3],
+}
+
+impl Default for Look {
+    #[inline]
+    fn default() -> Self {
+        Self::AHEAD
+    }
+}
+
+impl Look {
+    /// The servo ahead, every sonar in turn.
+    pub const AHEAD: Self = Self {
+        servo: ServoAngle(0.0),
+        sonars: [true; 3],
+    };
+
+    /// One sonar only, as often as it can.
+    pub const fn only(sonar: SonarId) -> Self {
+        let mut sonars = [false; 3];
+        sonars[sonar as usize] = true;
+        Self {
+            servo: ServoAngle(0.0),
+            sonars,
+        }
+    }
+}
 
 /// Velocity of the robot's body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -77,8 +77,7 @@ impl Unrest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::View;
-    use crate::types::SonarId;
+    use crate::types::{SonarId, View};
 
     fn unrest_after(readings: impl IntoIterator<Item = Range>) -> (Unrest, Result<(), Fault>) {
         let mut unrest = Unrest::default();

@@ -15,7 +15,7 @@
 //! docs/theory/wall.md.
 
 use crate::math::{abs, atan2, clamp, is_finite, max, min, rotate, sin_cos, sqrt, wrap_angle};
-use crate::rig::View;
+use crate::types::View;
 
 /// Largest angle between a beam's edge and the wall's normal [rad]; beyond, there is no echo.
 const LARGEST_INCIDENCE_RAD: f32 = 0.7;

@@ -18,10 +18,10 @@
 //! An encoder that constantly loses every second edge stays regular, and strains its wheel no more than a bad floor
 //! does: it is not detected.
 
-use rumbo_control::drive::Feedforward;
 use rumbo_control::math::{abs, max, min};
 use rumbo_control::params::Params;
 use rumbo_control::speed::{Evenness, WheelMotion};
+use rumbo_control::speed_loop::Feedforward;
 use rumbo_control::{Duty, Fault, SIDES, Side, TICK_S, Wheels};
 
 /// Overdue edges of a rolling wheel after which its encoder is silent.

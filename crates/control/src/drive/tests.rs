@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::speed::Evenness;
+use crate::speed_loop::RAMP_LEAD_RAD_S;
 
 const TURNING: WheelMotion = WheelMotion {
     speed_rad_s: 6.0,

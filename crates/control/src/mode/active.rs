@@ -2,13 +2,16 @@
 
 use super::description::{Description, ReferenceKind};
 use super::{
-    Action, Look, Mode, SetpointError, front_align, front_distance, manual, mission, policy,
+    Action, Mode, SetpointError, front_align, front_distance, manual, mission, policy,
     straight_line, twist, wall_follow, wall_hold, waypoints, wheel_speed,
 };
 use crate::estimate::Estimate;
+#[cfg(feature = "names")]
+use crate::params::ParamId;
 use crate::params::Params;
+use crate::policy::{Observation, Shape};
 use crate::rig::Rig;
-use crate::types::{Fault, Wheels};
+use crate::types::{Fault, Look, Wheels};
 
 /// Declares [`ModeId`] and [`ActiveMode`] by a list of modes and their modules.
 macro_rules! modes {
@@ -144,6 +147,32 @@ impl ModeId {
     /// The mode with this number.
     pub fn from_number(number: u8) -> Option<ModeId> {
         Self::ALL.into_iter().find(|mode| *mode as u8 == number)
+    }
+}
+
+impl ActiveMode {
+    /// Works on a decision of mode 9 after its tick, with the network whose bytes `read` gives; `observe` is what the robot
+    /// knows, with the goal there.
+    pub fn decide(
+        &mut self,
+        shape: &Shape,
+        read: impl Fn(u16) -> u8,
+        observe: impl FnOnce(&(f32, f32)) -> Observation,
+    ) {
+        if let Self::Policy(policy::Goal(Some(goal_m)), state) = self {
+            state.decide(goal_m, shape, read, observe);
+        }
+    }
+}
+
+#[cfg(feature = "names")]
+impl ParamId {
+    /// The modes that use it; none for parameters of the robot in any mode.
+    pub fn modes(self) -> impl Iterator<Item = ModeId> {
+        ModeId::ALL.into_iter().filter(move |mode| {
+            let mut groups = mode.description().parameters.iter();
+            groups.any(|group| group.parameters.contains(&self))
+        })
     }
 }
 

@@ -3,9 +3,9 @@
 use super::mission::Task;
 use super::waypoints::{self, Route, Waypoint};
 use super::{
-    ActiveMode, Level, MAX_WHEEL_RAD_S, Movement, SetpointError, manual, policy, twist, wheel_speed,
+    ActiveMode, Level, MAX_WHEEL_RAD_S, Movement, SetpointError, manual, policy, twist,
+    wheel_speed, within,
 };
-use crate::math::is_finite;
 use crate::types::{Velocity, Wheels};
 
 impl ActiveMode {
@@ -110,17 +110,6 @@ impl ActiveMode {
             Level::Speed(rad_s) => within(rad_s, 0.0, MAX_WHEEL_RAD_S)?,
         }
         *setpoint = manual::Setpoint { movement, level };
-        Ok(())
-    }
-}
-
-/// Whether a value is finite and in range.
-pub(super) fn within(value: f32, min: f32, max: f32) -> Result<(), SetpointError> {
-    if !is_finite(value) {
-        Err(SetpointError::NotFinite)
-    } else if value < min || value > max {
-        Err(SetpointError::OutOfRange)
-    } else {
         Ok(())
     }
 }

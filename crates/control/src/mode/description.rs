@@ -3,8 +3,7 @@
 //! The firmware uses only the number, the rigs and the range of the reference, as constants. The whole description
 //! exists on hosts (`ModeId::description`, feature `names`): page, command line, docs and metrics derive from it.
 
-use super::SetpointError;
-use super::commands::within;
+use super::{SetpointError, within};
 use crate::params::ParamId;
 use crate::rig::Rigs;
 

@@ -20,15 +20,15 @@
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
-    Action, Description, Group, Look, MAX_DISTANCE_M, MIN_DISTANCE_M, MetricGroup, Mode, Plot,
-    Reference, ReferenceKind, SetpointError,
+    Action, Description, Group, MAX_DISTANCE_M, MIN_DISTANCE_M, MetricGroup, Mode, Plot, Reference,
+    ReferenceKind, SetpointError,
 };
 use crate::ahead::drivable_m;
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, sqrt};
 use crate::params::{ParamId, Params};
 use crate::rig::{Rig, Rigs};
-use crate::types::{Drive, Fault, SonarId, TICK_S, Wheels};
+use crate::types::{Drive, Fault, Look, SonarId, TICK_S, Wheels};
 use crate::unrest::Unrest;
 
 /// Description of mode 1.

@@ -29,9 +29,10 @@ pub use description::{
 pub use movement::{Level, Movement};
 
 use crate::estimate::Estimate;
+use crate::math::is_finite;
 use crate::params::Params;
 use crate::range::{MIN_RANGE_M, REACH_M};
-use crate::types::{Drive, Fault, ServoAngle, SonarId, Wheels};
+use crate::types::{Drive, Fault, Look, Wheels};
 
 /// Fastest wheel reference that is accepted, either way [rad/s]: 191 rpm.
 pub const MAX_WHEEL_RAD_S: f32 = 20.0;
@@ -78,40 +79,6 @@ pub struct WallTerms {
     pub heading_p_rad_s: f32,
     /// Of the present yaw rate, to the yaw rate [rad/s].
     pub heading_d_rad_s: f32,
-}
-
-/// Where the robot looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
-    /// Where the servo points.
-    pub servo: ServoAngle,
-    /// Which sonars matter, by `SonarId` number; these are pinged in turn.
-    pub sonars: [bool; 3],
-}
-
-impl Default for Look {
-    #[inline]
-    fn default() -> Self {
-        Self::AHEAD
-    }
-}
-
-impl Look {
-    /// The servo ahead, every sonar in turn.
-    pub const AHEAD: Self = Self {
-        servo: ServoAngle(0.0),
-        sonars: [true; 3],
-    };
-
-    /// One sonar only, as often as it can.
-    pub const fn only(sonar: SonarId) -> Self {
-        let mut sonars = [false; 3];
-        sonars[sonar as usize] = true;
-        Self {
-            servo: ServoAngle(0.0),
-            sonars,
-        }
-    }
 }
 
 /// A mode: configuration apart from state.
@@ -175,4 +142,15 @@ pub enum SetpointError {
     OutOfRange,
     /// The mode has no such reference.
     NotInThisMode,
+}
+
+/// Whether a value is finite and in range.
+fn within(value: f32, min: f32, max: f32) -> Result<(), SetpointError> {
+    if !is_finite(value) {
+        Err(SetpointError::NotFinite)
+    } else if value < min || value > max {
+        Err(SetpointError::OutOfRange)
+    } else {
+        Ok(())
+    }
 }

@@ -9,7 +9,7 @@
 
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::mission::Watch;
-use super::{Action, ActiveMode, Description, MetricGroup, Mode, Plot, waypoints};
+use super::{Action, Description, MetricGroup, Mode, Plot, waypoints};
 use crate::estimate::Estimate;
 use crate::math::{clamp, sqrt};
 use crate::params::{ParamId, Params};
@@ -172,26 +172,23 @@ impl<'a> Mode<'a> for Policy<'a> {
     }
 }
 
-impl ActiveMode {
-    /// Works on a decision of mode 9 after its tick, with the network whose bytes `read` gives; `observe` is what the robot
-    /// knows, with the goal there.
-    pub fn decide(
+impl State {
+    /// Works on a decision towards the goal, as [`ActiveMode::decide`](super::ActiveMode::decide).
+    pub(super) fn decide(
         &mut self,
+        goal_m: &(f32, f32),
         shape: &Shape,
         read: impl Fn(u16) -> u8,
         observe: impl FnOnce(&(f32, f32)) -> Observation,
     ) {
-        let Self::Policy(Goal(Some(goal_m)), state) = self else {
-            return;
-        };
-        match state.ticks {
+        match self.ticks {
             0 => {
-                state.outputs = state.decision.outputs(shape).unwrap_or_default();
-                state.decision = Decision::begin(shape, read, &observe(goal_m));
+                self.outputs = self.decision.outputs(shape).unwrap_or_default();
+                self.decision = Decision::begin(shape, read, &observe(goal_m));
             }
-            _ => state.decision.work(shape, read),
+            _ => self.decision.work(shape, read),
         }
-        state.ticks = (state.ticks + 1) % DECISION_TICKS;
+        self.ticks = (self.ticks + 1) % DECISION_TICKS;
     }
 }
 

@@ -6,9 +6,8 @@
 //! Both wheels follow their speed loops ([`crate::drive`]), ramps included. Where a wheel would have to turn faster than
 //! [`MAX_WHEEL_RAD_S`], both are slowed by the same factor: the arc stays.
 
-use super::commands::within;
 use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
-use super::{Action, Description, MAX_WHEEL_RAD_S, Mode, Plot, SetpointError, Takes};
+use super::{Action, Description, MAX_WHEEL_RAD_S, Mode, Plot, SetpointError, Takes, within};
 use crate::estimate::Estimate;
 use crate::math::abs;
 use crate::odometry::Geometry;

@@ -162,8 +162,8 @@ impl<'a> Mode<'a> for WallHold<'a> {
 mod tests {
     use super::*;
     use crate::params::ParamId;
-    use crate::rig::{Rig, View};
-    use crate::types::{AgedRange, Drive, Reading};
+    use crate::rig::Rig;
+    use crate::types::{AgedRange, Drive, Reading, View};
 
     /// A robot with a pair of sonars on its left; returns the tick's action for a reading of one of them.
     fn step_with(state: &mut State, sonar: SonarId, range_m: f32) -> Result<Action, Fault> {

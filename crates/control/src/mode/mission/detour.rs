@@ -1,9 +1,10 @@
 //! Around an obstacle: which side, how near, when to leave it, and when there is no way.
 
-use super::goal::{CREEP_M_S, PROGRESS_M, SPOT_RAD};
-use super::lane::side_m;
 use super::obstacle::Obstacle;
-use super::{Detour, Drive, Mission, Phase, Place, Plan, Pose, Side, State, abs, min, sqrt};
+use super::{
+    CREEP_M_S, Detour, Drive, Mission, PROGRESS_M, Phase, Place, Plan, Pose, SPOT_RAD, Side, State,
+    abs, min, side_m, sqrt,
+};
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
 use crate::motion::TurnState;
@@ -236,12 +237,4 @@ fn around_m(here: (f32, f32), past: Place, goal_m: &(f32, f32)) -> f32 {
         sqrt(dx * dx + dy * dy)
     };
     leg(here, (x_m, y_m)) + leg((x_m, y_m), *goal_m)
-}
-
-/// The robot goes around something.
-pub(super) fn following(phase: Phase) -> bool {
-    matches!(
-        phase,
-        Phase::AvoidanceTurn | Phase::Seek | Phase::Along | Phase::SafeDistance
-    )
 }

@@ -3,16 +3,14 @@
 //! Two readings in the same direction distinguish a faulty sonar from a working one ([`super::watch`]). A sonar that
 //! has been silent for a while is turned to a face that must answer ([`super::landmarks`]).
 
-use super::detour::following;
 use super::watch::{Watch, Worth};
-use super::{Look, Phase, ServoAngle, Side, State};
+use super::{Look, Phase, SWEEP_RAD, ServoAngle, Side, State};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, wrap_angle};
 use crate::types::{Range, Reading, SonarId};
 
-/// The servo looks this far to each side on the way, and while sweeping [rad].
+/// The servo looks this far to each side on the way [rad].
 const SWING_RAD: f32 = 0.76;
-pub(super) const SWEEP_RAD: f32 = 1.5;
 /// On the way where things move [rad].
 const LIVELY_RAD: f32 = 1.14;
 /// To the side where something is near, and to the other [rad].
@@ -135,7 +133,7 @@ fn swing(state: &State, estimate: &Estimate) -> (f32, f32) {
         |sonar| matches!(estimate.range(sonar).range, Range::Valid(range_m) if range_m < NEAR_M);
     let (mut right, mut left) = (near(SonarId::Right), near(SonarId::Left));
     let error_rad = wrap_angle(state.heading_ref_rad - estimate.pose.heading_rad);
-    if following(state.phase) {
+    if state.phase.is_around() {
         match state.detour.map(|detour| detour.side) {
             Some(Side::Left) => right = true,
             Some(Side::Right) => left = true,
@@ -174,7 +172,7 @@ pub(super) fn look(state: &mut State, estimate: &Estimate, front_m: f32) -> Look
         }
         _ => state
             .movement
-            .swing(following(state.phase))
+            .swing(state.phase.is_around())
             .unwrap_or_else(|| swing(state, estimate)),
     };
     let sweeps = state.sweeps() && !gives_way;

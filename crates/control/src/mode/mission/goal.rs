@@ -1,12 +1,12 @@
 //! Reach a point around obstacles: the states on the straight line to the goal; around an obstacle: `detour.rs`.
 
-use super::detour::{following, slow_corners, towards};
-use super::gaze::{SWEEP_RAD, look};
+use super::detour::{slow_corners, towards};
+use super::gaze::look;
 use super::moving::{BESIDE_M_S, UNKNOWN_M_S, WARY_M_S};
 use super::obstacle::Among;
 use super::{
-    Action, Drive, Mission, Movement, ParamId, Phase, Place, Pose, Segment, State, Turn, Way, abs,
-    min, sqrt,
+    Action, CREEP_M_S, DOUBT_M_S, Drive, Mission, Movement, PROGRESS_M, ParamId, Phase, Place,
+    Pose, SWEEP_RAD, Segment, State, Turn, Way, abs, min, sqrt,
 };
 use crate::estimate::Estimate;
 use crate::math::{atan2, max, wrap_angle};
@@ -20,14 +20,10 @@ const LOOK_M: f32 = 0.62;
 pub(super) const CAREFUL_M: f32 = 0.33;
 /// Heading error that halves the speed then [rad].
 const CAREFUL_RAD: f32 = 0.2;
-/// Heading errors beyond this are turned on the spot [rad].
-pub(super) const SPOT_RAD: f32 = 0.7;
 /// A robot that stands faces its goal within this [rad].
 const FACED_RAD: f32 = 0.1;
 /// Until this is left [rad].
 const TURNED_RAD: f32 = 0.12;
-/// Progress that counts [m].
-pub(super) const PROGRESS_M: f32 = 0.05;
 /// Once around the goal without getting nearer to it, and a little more [rad].
 const WOUND_RAD: f32 = TAU + 0.3;
 /// Way after an obstacle on which one that was not seen beside the robot may still be there [m].
@@ -38,10 +34,6 @@ const AHEAD_M: f32 = 0.1;
 const FRONT_M: f32 = 0.13;
 /// Distance kept ahead [m].
 const KEEP_M: f32 = 0.05;
-/// Speed while a sonar may be lying [m/s].
-pub(super) const DOUBT_M_S: f32 = 0.08;
-/// A robot that may not even drive so fast stands [m/s].
-pub(super) const CREEP_M_S: f32 = 0.03;
 /// Speed during a sweep [m/s].
 const SWEEP_M_S: f32 = 0.1;
 /// Nearer than this the robot turns slowly on the spot: its corners reach 0.15 m [m].
@@ -78,7 +70,7 @@ impl Mission<'_> {
         let approach = approach.filter(|approach| {
             !(around && approach.is_aside() && !approach.is_faster(estimate.rolled_m))
         });
-        if following(state.phase) && state.watch.nears_aside() {
+        if state.phase.is_around() && state.watch.nears_aside() {
             state.movement.be_careful();
         }
         state
@@ -100,7 +92,7 @@ impl Mission<'_> {
         let drive = match self.prove(state, estimate)? {
             Some(drive) => drive,
             // On from where the robot stands now.
-            None if proving && !following(state.phase) && !state.sweeps() => {
+            None if proving && !state.phase.is_around() && !state.sweeps() => {
                 self.face(state, &estimate.pose, goal_m, FACED_RAD);
                 Drive::Release
             }
@@ -383,7 +375,7 @@ fn count(state: &mut State, estimate: &Estimate, way: &Way) {
 fn perceive(state: &mut State, estimate: &Estimate, way: &Way) -> bool {
     let pose = &estimate.pose;
     let around = state.detour.as_ref().map(|detour| detour.side);
-    let following = following(state.phase);
+    let following = state.phase.is_around();
     // Every other tick takes a reading into the memory: the plan is for those between.
     let planned = estimate.reading.is_none()
         && state

@@ -16,8 +16,10 @@
 //! sides push the robot to the middle: docs/theory/lane.md.
 
 use super::gaze::{LOOKS, Swing};
-use super::goal::DOUBT_M_S;
-use super::{Action, Drive, Look, Mission, ParamId, Phase, Pose, Segment, ServoAngle, State, Turn};
+use super::{
+    Action, DOUBT_M_S, Drive, FAR_M, Look, Mission, ParamId, Phase, Pose, SWEEP_RAD, Segment,
+    ServoAngle, State, Turn, side_m,
+};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
 use crate::motion::{CREEP_M_S, LineState, StopState, Stopping, TurnState};
@@ -28,13 +30,10 @@ use core::f32::consts::{FRAC_PI_2, PI};
 const AHEAD_RAD: f32 = 0.06;
 /// It looks along the lane while the robot's heading is off by at most this: a little more than [`MOST_ASIDE_RAD`].
 const ALONG_RAD: f32 = 0.2;
-/// A range that stands for nothing within reach [m].
-const FAR_M: f32 = 3.0;
 /// A range jumps when it is this much longer than that of the face [m].
 const JUMP_M: f32 = 0.3;
-/// From look to look of a sweep, and its end [rad].
+/// From look to look of a sweep [rad].
 const STEP_RAD: f32 = 0.15;
-const SWEEP_RAD: f32 = 1.5;
 /// Looks in a row that make a jump: one may be an echo that was lost.
 const SURE: u8 = 2;
 /// What was seen as a face but is this much farther from the place where the robot stands was none [m].
@@ -412,13 +411,6 @@ fn front(estimate: &Estimate) -> Option<&Reading> {
 
 fn range_m(reading: &Reading) -> f32 {
     match reading.range {
-        Range::Valid(range_m) => range_m,
-        Range::Clear | Range::Faulty => FAR_M,
-    }
-}
-
-pub(super) fn side_m(estimate: &Estimate, sonar: SonarId) -> f32 {
-    match estimate.range(sonar).range {
         Range::Valid(range_m) => range_m,
         Range::Clear | Range::Faulty => FAR_M,
     }

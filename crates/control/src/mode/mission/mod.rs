@@ -26,14 +26,15 @@ mod still;
 mod watch;
 
 use super::description::{FEEDFORWARD, LINES, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
-use super::{Action, Description, Group, Look, MetricGroup, Mode, Plot, Takes, waypoints};
+use super::{Action, Description, Group, MetricGroup, Mode, Plot, Takes, waypoints};
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
 use crate::rig::{Rig, Rigs};
-use crate::types::{Drive, Fault, Pose, Range, Reading, ServoAngle, Side, SonarId, TICK_S, Wheels};
-use detour::following;
+use crate::types::{
+    Drive, Fault, Look, Pose, Range, Reading, ServoAngle, Side, SonarId, TICK_S, Wheels,
+};
 use echoes::{Beam, Echoes};
 use gaze::Gaze;
 use goal::CAREFUL_M;
@@ -45,6 +46,18 @@ use proof::Proof;
 pub(super) use watch::Watch;
 use watch::Worth;
 
+/// The servo looks this far to each side while sweeping [rad].
+const SWEEP_RAD: f32 = 1.5;
+/// A range that stands for nothing within reach [m].
+const FAR_M: f32 = 3.0;
+/// Heading errors beyond this are turned on the spot [rad].
+const SPOT_RAD: f32 = 0.7;
+/// Progress that counts [m].
+const PROGRESS_M: f32 = 0.05;
+/// Speed while a sonar may be lying [m/s].
+const DOUBT_M_S: f32 = 0.08;
+/// A robot that may not even drive so fast stands [m/s].
+const CREEP_M_S: f32 = 0.03;
 /// Way around an obstacle without an echo of the sonar towards it, after which that may be silent for ever [m].
 const UNSEEN_M: f32 = 0.25;
 /// What passes a robot that gives way nearer than this is remembered [m].
@@ -299,6 +312,24 @@ pub struct State {
     movement: Movement,
 }
 
+impl Phase {
+    /// The robot goes around something.
+    fn is_around(self) -> bool {
+        matches!(
+            self,
+            Phase::AvoidanceTurn | Phase::Seek | Phase::Along | Phase::SafeDistance
+        )
+    }
+}
+
+/// What a sonar at the side sees, [`FAR_M`] where that is nothing [m].
+fn side_m(estimate: &Estimate, sonar: SonarId) -> f32 {
+    match estimate.range(sonar).range {
+        Range::Valid(range_m) => range_m,
+        Range::Clear | Range::Faulty => FAR_M,
+    }
+}
+
 impl State {
     /// A task has been commanded.
     pub fn renew(&mut self) {
@@ -401,7 +432,7 @@ impl<'a> Mode<'a> for Mission<'a> {
             }
         }
         let stale_s = self.params.get(ParamId::StaleRange);
-        let beside = following(state.phase) || state.near_m < CAREFUL_M;
+        let beside = state.phase.is_around() || state.near_m < CAREFUL_M;
         state.watch.step(estimate, stale_s, beside)?;
         state.fade_s += TICK_S;
         if state.fade_s > FADE_S {
@@ -421,7 +452,7 @@ impl<'a> Mode<'a> for Mission<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::View;
+    use crate::types::View;
 
     #[test]
     fn all_that_is_remembered_fits_into_1_200_bytes() {

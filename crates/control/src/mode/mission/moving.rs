@@ -14,8 +14,7 @@
 //! What only passes or recedes, a robot sees that stands ([`super::still`]): it does so before a detour. Where an echo is
 //! new, it slows down and looks there.
 
-use super::gaze::SWEEP_RAD;
-use super::{Drive, Mission, Phase, State};
+use super::{Drive, Mission, Phase, SWEEP_RAD, State};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, round, sin_cos};
 use crate::types::{Range, Reading, TICK_S};

@@ -150,8 +150,7 @@ fn seen_from(pose: &Pose, place: Place) -> (f32, f32) {
 mod tests {
     use super::super::echoes::Beam;
     use super::*;
-    use crate::rig::View;
-    use crate::types::{Range, Reading, SonarId, Transform};
+    use crate::types::{Range, Reading, SonarId, Transform, View};
 
     /// A memory of points, each detected twice by a sonar close to it.
     fn remembered(points_m: &[(f32, f32)]) -> Echoes {

@@ -11,9 +11,9 @@
 //! | turn | turns on the spot until it faces that | it stands | face |
 //! | face | stands, the servo looks ahead and to both sides | nothing answers in [`DIRECTIONS`] | deaf: a fault |
 
-use super::gaze::{SWEEP_RAD, Swing};
+use super::gaze::Swing;
 use super::watch::far_wall;
-use super::{Drive, Mission, State};
+use super::{Drive, Mission, SWEEP_RAD, State};
 use crate::estimate::Estimate;
 use crate::math::{abs, atan2, clamp, wrap_angle};
 use crate::motion::TurnState;

@@ -63,8 +63,7 @@ impl Still {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::View;
-    use crate::types::SonarId;
+    use crate::types::{SonarId, View};
 
     /// Whether something moves at the last of these looks, between which the robot rolls so far; below 0: silence.
     fn moves(rolled_m: f32, ranges_m: &[f32]) -> bool {

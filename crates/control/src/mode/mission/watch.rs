@@ -6,8 +6,8 @@
 //! other robots that ping, ranges agree again after a while. If they do not, the sonar is faulty. Any other reading is
 //! an echo or a silence: [`Landmarks`] judge the silences of the front sonar.
 
+use super::SWEEP_RAD;
 use super::echoes::Beam;
-use super::gaze::SWEEP_RAD;
 use super::landmarks::Landmarks;
 use super::moving::{Approach, Since, Track};
 use super::place::Place;

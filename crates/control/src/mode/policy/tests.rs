@@ -1,7 +1,7 @@
 use super::*;
+use crate::mode::ActiveMode;
 use crate::mode::ModeId;
-use crate::rig::View;
-use crate::types::{AgedRange, Pose, Range, Reading, SonarId};
+use crate::types::{AgedRange, Pose, Range, Reading, SonarId, View};
 
 /// A network of one layer that drives straight on by its biases, and its bytes.
 fn network() -> (Shape, impl Fn(u16) -> u8) {

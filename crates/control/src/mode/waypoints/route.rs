@@ -1,7 +1,7 @@
 //! The route of mode 7: up to sixteen waypoints.
 
 use crate::mode::SetpointError;
-use crate::mode::commands::within;
+use crate::mode::within;
 
 /// Most waypoints of a route.
 pub const MAX_WAYPOINTS: usize = 16;

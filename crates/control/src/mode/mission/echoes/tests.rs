@@ -1,8 +1,7 @@
 //! The memory of echoes: which points count, fade and give way.
 
 use super::*;
-use crate::rig::View;
-use crate::types::Transform;
+use crate::types::{Transform, View};
 
 /// A reading of the front sonar, pointing in a direction from the origin.
 fn answer(range: Range, axis_rad: f32) -> Reading {

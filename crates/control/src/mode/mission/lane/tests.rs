@@ -1,8 +1,7 @@
 //! A lane's parts: what is ahead, the sweep, the side, the middle.
 
 use super::*;
-use crate::rig::View;
-use crate::types::AgedRange;
+use crate::types::{AgedRange, View};
 
 /// What the robot knows when the front sonar answers with the servo at an angle.
 fn hears(range: Range, servo_rad: f32) -> Estimate {

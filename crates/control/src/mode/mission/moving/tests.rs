@@ -2,8 +2,7 @@
 
 use super::super::{Detour, Mode, Params, Place, Side, Task};
 use super::*;
-use crate::rig::View;
-use crate::types::SonarId;
+use crate::types::{SonarId, View};
 
 /// Time between two looks [s].
 const LOOK_S: f32 = 0.06;

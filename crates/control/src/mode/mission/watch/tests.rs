@@ -1,8 +1,7 @@
 //! What raises doubt about a sonar, and what makes it faulty.
 
 use super::*;
-use crate::rig::View;
-use crate::types::AgedRange;
+use crate::types::{AgedRange, View};
 
 /// Answers of all three sonars in turn, while the robot rolls `rolled_m` per tick; the front one looks ahead.
 fn watched(
