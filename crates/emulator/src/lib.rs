@@ -18,6 +18,7 @@ pub mod observe;
 mod registers;
 pub mod status;
 pub mod verdict;
+mod watchpoint;
 
 /// The example of the README is a test.
 #[cfg(doctest)]

@@ -1,7 +1,33 @@
 //! Why a program cannot be written, with what to do.
 
-use crate::programmer::{BOOT_SECTION, Phase};
 use std::fmt;
+
+/// Where the boot loader begins, in the last 8 KB of 256 \[bytes\].
+pub(crate) const BOOT_SECTION: usize = (256 - 8) << 10;
+
+/// What is going on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// The board is reset, and its boot loader looked for.
+    Connecting,
+    /// Pages are written.
+    Writing,
+    /// They are read back.
+    Verifying,
+    /// The first page is written and the program started.
+    Finishing,
+}
+
+impl fmt::Display for Phase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Connecting => "connecting",
+            Self::Writing => "writing",
+            Self::Verifying => "reading back",
+            Self::Finishing => "finishing",
+        })
+    }
+}
 
 /// A program reaches into the section of the boot loader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,8 +15,8 @@ mod error;
 mod message;
 mod programmer;
 
-pub use error::{FlashError, IntoBootSection};
-pub use programmer::{Action, Phase, Programmer};
+pub use error::{FlashError, IntoBootSection, Phase};
+pub use programmer::{Action, Programmer};
 
 /// Baud rate of the Mega's boot loader.
 pub const BAUD: u32 = 115_200;

@@ -1,17 +1,14 @@
 //! The steps of writing a program, and where they stand.
 
-use crate::error::{FlashError, IntoBootSection};
+use crate::error::{BOOT_SECTION, FlashError, IntoBootSection, Phase};
 use crate::message::{Inbox, encode};
 use std::collections::VecDeque;
-use std::fmt;
 
 /// Of an ATmega2560 (2549Q, section 29.3).
 const SIGNATURE: [u8; 3] = [0x1E, 0x98, 0x01];
 /// Words of a page of its flash, and bytes (table 29-7).
 const PAGE_WORDS: usize = 128;
 const PAGE: usize = 2 * PAGE_WORDS;
-/// Where the boot loader begins, in the last 8 KB of 256 \[bytes\].
-pub(crate) const BOOT_SECTION: usize = (256 - 8) << 10;
 /// `rjmp .`: the program stands still.
 const HALT: [u8; 2] = [0xFF, 0xCF];
 
@@ -48,30 +45,6 @@ pub enum Action {
     Wait,
     /// Nothing any more: the program is on the board, and starts.
     Done,
-}
-
-/// What is going on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
-    /// The board is reset, and its boot loader looked for.
-    Connecting,
-    /// Pages are written.
-    Writing,
-    /// They are read back.
-    Verifying,
-    /// The first page is written and the program started.
-    Finishing,
-}
-
-impl fmt::Display for Phase {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Connecting => "connecting",
-            Self::Writing => "writing",
-            Self::Verifying => "reading back",
-            Self::Finishing => "finishing",
-        })
-    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

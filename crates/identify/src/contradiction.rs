@@ -3,8 +3,8 @@
 //! A fit of its own is always better. It is much better, beyond what the number of independent errors explains, if
 //! another robot drove, or one that was wired otherwise. Days differ in battery and floor, and have values for them.
 
+use crate::descent::descend;
 use crate::error::IdentifyError;
-use crate::fit::descend;
 use crate::log::DriveLog;
 use crate::problem::{Problem, UNKNOWNS};
 use nalgebra::DVector;

@@ -1,6 +1,5 @@
 //! What can go wrong between a log and its parameters.
 
-use crate::sonar_stats::SonarLogError;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -99,3 +98,24 @@ impl fmt::Display for IdentifyError {
 }
 
 impl std::error::Error for IdentifyError {}
+
+/// A log of ranges that cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SonarLogError {
+    pub(crate) path: PathBuf,
+    /// 1-based; 0 if the file as a whole is meant.
+    pub(crate) line: u64,
+    pub(crate) cause: String,
+}
+
+impl fmt::Display for SonarLogError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        if self.line > 0 {
+            write!(f, ", line {}", self.line)?;
+        }
+        write!(f, ": {}", self.cause)
+    }
+}
+
+impl std::error::Error for SonarLogError {}

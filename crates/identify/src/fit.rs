@@ -8,13 +8,15 @@
 //! The search is seeded and its objective has no randomness: the same logs and robot give the same parameters.
 
 use crate::contradiction;
+use crate::descent::descend;
 use crate::error::IdentifyError;
-use crate::log::{DriveLog, Row, Seen};
+use crate::log::{DriveLog, Seen};
 use crate::problem::{NUISANCES, Problem, UNKNOWNS, dead_zone_pwm};
 use crate::progress::Progress;
 use crate::replay::Nuisance;
+use crate::row::Row;
 use crate::score::{RunScore, score};
-use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
+use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector};
 use rumbo_plant::params::Params;
 use serde::Serialize;
@@ -29,8 +31,6 @@ const POPULATION: usize = 24;
 pub(crate) const SDS_95: f64 = 1.96;
 /// First spread of a round, in standard deviations of the curvature.
 const SPREAD: f64 = 1.0;
-/// Longest first step of a descent, in standard deviations of what is believed beforehand.
-const FIRST_STEP: f64 = 3.0;
 
 /// One identified parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -290,32 +290,6 @@ fn search(
     }
     let best = search.overall_best_individual().ok_or_else(nothing)?;
     Ok(around + &axes * &best.point)
-}
-
-pub(crate) fn descend<'a>(
-    mut problem: Problem<'a>,
-    from: &DVector<f64>,
-) -> Result<(Problem<'a>, DVector<f64>), IdentifyError> {
-    problem.set_params(from);
-    let tolerance = problem.tolerance();
-    let optimiser = LevenbergMarquardt::new()
-        .with_patience(problem.patience())
-        .with_ftol(tolerance)
-        .with_xtol(10.0 * tolerance)
-        .with_stepbound(FIRST_STEP)
-        // All unknowns have one scale. Scaled by their slopes, one that met a step would hardly move again.
-        .with_scale_diag(false);
-    let (problem, report) = optimiser.minimize(problem);
-    let z = LeastSquaresProblem::params(&problem);
-    match report.termination {
-        TerminationReason::Converged { .. }
-        | TerminationReason::ResidualsZero
-        | TerminationReason::Orthogonal
-        | TerminationReason::NoImprovementPossible(_)
-        | TerminationReason::LostPatience => Ok((problem, z)),
-        _ if problem.is_stopped() => Err(IdentifyError::Interrupted),
-        other => Err(IdentifyError::Optimiser(format!("{other:?}"))),
-    }
 }
 
 /// Standard deviations of the normalised unknowns.

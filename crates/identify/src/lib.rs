@@ -21,6 +21,7 @@ pub mod problem;
 pub mod sonar_stats;
 
 mod contradiction;
+mod descent;
 mod error;
 mod fit;
 mod log;
@@ -32,6 +33,7 @@ mod replay;
 mod report;
 mod residuals;
 mod rewrite;
+mod row;
 mod score;
 mod shown;
 mod stretches;

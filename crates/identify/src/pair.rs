@@ -5,7 +5,7 @@
 //! the left, the front reading then falls against the rear one if the wall is on the left. Ahead of a wall, the left
 //! reading grows.
 
-use crate::log::Row;
+use crate::row::Row;
 use std::fmt;
 
 /// Rows over which a difference of PWM acts, and after which it shows.

@@ -8,7 +8,8 @@
 //! wheel is. Battery and friction memory are those of the plant that runs along. No row after the start is used, but
 //! for the duty, which is the prediction's input.
 
-use crate::log::{DriveLog, Program, Row, Window};
+use crate::log::{DriveLog, Program};
+use crate::row::{Row, Window};
 use crate::shown::Angles;
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side, State};
 use rumbo_plant::noise::Noise;

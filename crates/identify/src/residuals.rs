@@ -1,7 +1,8 @@
 //! What is left between a recorded run and its simulation, in standard deviations.
 
-use crate::log::{DriveLog, Program, Row, Seen};
+use crate::log::{DriveLog, Program, Seen};
 use crate::replay::{Correct, Predicted, Replay};
+use crate::row::Row;
 use crate::wall;
 
 /// Wheel speed error that counts as one standard deviation, rad/s: 10 rpm over the whole run, 1.7 rpm half a second ahead:

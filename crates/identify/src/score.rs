@@ -1,8 +1,9 @@
 //! How well a plant repeats a run: RMSE and R^2 per wheel, whole run and half a second ahead.
 
-use crate::log::{DriveLog, Row, Seen};
+use crate::log::{DriveLog, Seen};
 use crate::replay::{Correct, Nuisance, Replay};
 use crate::residuals::RANGE_SD_M;
+use crate::row::Row;
 use crate::wall;
 use rumbo_plant::params::Params;
 use serde::Serialize;

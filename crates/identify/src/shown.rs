@@ -4,7 +4,8 @@
 //! newest edges ([`rumbo_control::speed`]), which leads while the wheel speeds up and lags while it slows down. Where the
 //! edges were no log tells, so both means are read from the angle.
 
-use crate::log::{Program, Window};
+use crate::log::Program;
+use crate::row::Window;
 use rumbo_control::speed::{self, fuse};
 
 /// Angle of one edge, and of one motor turn, rad.

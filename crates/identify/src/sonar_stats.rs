@@ -12,7 +12,8 @@
 //! [`OUTLIER_SDS`] robust standard deviations (1.4826 times the median magnitude) and at least [`OUTLIER_LEAST_M`];
 //! the standard deviation is that of the others.
 
-pub use log::{SonarLog, SonarLogError};
+pub use crate::error::SonarLogError;
+pub use log::SonarLog;
 pub use residuals::{OUTLIER_LEAST_M, OUTLIER_SDS, SonarStats, statistics};
 
 use rayon::prelude::*;

@@ -10,7 +10,8 @@
 //! simulated robots have too, is not looked at.
 
 use crate::error::IdentifyError;
-use crate::log::{DriveLog, Program, Row, Seen, Window};
+use crate::log::{DriveLog, Program, Seen};
+use crate::row::{Row, Window};
 use crate::shown::{EDGE_RAD, MOTOR_TURN_RAD};
 use rumbo_log::Log;
 use std::path::Path;

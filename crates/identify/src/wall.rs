@@ -11,8 +11,9 @@
 //! for the distance d, heading h and added turn b; ahead of a wall only d - s is left. What remains says how fast the
 //! robot goes and how it answers to a difference of PWM.
 
-use crate::log::{DriveLog, Row, Seen};
+use crate::log::{DriveLog, Seen};
 use crate::replay::Trace;
+use crate::row::Row;
 use nalgebra::{DMatrix, DVector};
 
 /// Length of a stretch.

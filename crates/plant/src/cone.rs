@@ -11,7 +11,8 @@
 
 use libm::{acos, cos, sincos, sqrt};
 
-use crate::world::{Obstacle, Point, World, add, cross, dot, scale, sub};
+use crate::outline::{Obstacle, Point, add, cross, dot, scale, sub};
+use crate::world::World;
 
 /// More than rounding moves a corner.
 const ROUNDING_M: f64 = 1e-9;

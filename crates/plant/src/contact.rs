@@ -13,8 +13,11 @@
 
 use libm::sqrt;
 
+use crate::outline::{Obstacle, Point, cross, dot, rectangle, sub};
 use crate::params;
-use crate::world::{Obstacle, Point, World, cross, dot, rectangle, sub};
+use crate::world::World;
+
+pub use crate::outline::Pose;
 
 /// Tyre on floor: sliding friction over load.
 const TRACTION: f64 = 0.6;
@@ -28,17 +31,6 @@ const FLAT_M: f64 = 2e-4;
 const PUSH_M: f64 = 0.005;
 /// Iterations that resolve overlaps, the deepest in each.
 const ROUNDS: usize = 8;
-
-/// Position and heading of the middle of the wheels' axis in the world.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pose {
-    /// World x.
-    pub x_m: f64,
-    /// World y.
-    pub y_m: f64,
-    /// Counter-clockwise from the world's x axis.
-    pub heading_rad: f64,
-}
 
 /// The body as contact sees it: footprint, mass, wheels.
 #[derive(Clone, Copy, Debug)]

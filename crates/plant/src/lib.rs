@@ -23,6 +23,7 @@ pub mod event;
 pub mod link;
 pub mod moving;
 pub mod noise;
+mod outline;
 pub mod params;
 pub mod plant;
 pub mod rewrite;

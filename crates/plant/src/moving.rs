@@ -6,8 +6,7 @@
 
 use libm::{sincos, sqrt};
 
-use crate::contact::Pose;
-use crate::world::{Obstacle, Point, ShapeError, add, dot, sub};
+use crate::outline::{Obstacle, Point, Pose, ShapeError, add, dot, sub};
 
 /// Most bodies of a world: contact keeps a bit for each.
 pub const MOST_BODIES: usize = 63;

@@ -8,7 +8,7 @@
 //!
 //! What stands in them is wrong or right for every run alike: the tests find a mistake before a reader does.
 
-use crate::text::Language;
+use crate::language::Language;
 use include_dir::{Dir, include_dir};
 use std::borrow::Cow;
 use std::fmt;

@@ -1,9 +1,45 @@
 //! The results of a report's runs, and what was requested.
 
-use crate::chapters::Experiment;
+use crate::content;
+use crate::places::Places;
 use crate::real::{Real, Recording};
 use crate::signals::Outcome;
+use crate::text::{Language, Text};
 use std::collections::BTreeMap;
+
+/// An experiment of the report.
+#[derive(Debug)]
+pub struct Experiment {
+    /// Its name for `--only`, and its place in the page.
+    pub name: &'static str,
+    /// Number of its chapter.
+    pub number: &'static str,
+    /// The scenarios that it is made of.
+    pub scenarios: &'static [&'static str],
+    /// Metrics of the summary.
+    pub(crate) highlights: &'static [Highlight],
+    /// Computes what the places of its chapter show.
+    pub(crate) fill: fn(&mut Places, &Data),
+}
+
+impl Experiment {
+    /// The title of its chapter.
+    #[must_use]
+    pub fn title(&self, language: Language) -> String {
+        content::title(language, self.name)
+    }
+}
+
+/// A metric of the summary, and what the robot of the original report did.
+#[derive(Debug)]
+pub(crate) struct Highlight {
+    pub(crate) scenario: &'static str,
+    pub(crate) metric: &'static str,
+    /// The part of the experiment, where the metric's name does not show it.
+    pub(crate) of: Option<Text>,
+    /// In the metric's own unit.
+    pub(crate) real: Option<f64>,
+}
 
 /// Everything that goes into a report.
 #[derive(Debug, Default)]

@@ -3,13 +3,14 @@
 //! A student's page shows the task, the measurements, the points and the advice, and plots a run with a public seed. It
 //! shows no other controller's results.
 
+use crate::channel::Channel;
 use crate::chapters::maps;
 use crate::chapters::panels::pwm_panel;
 use crate::chapters::parts::{DISTANCE, LEFT, REFERENCE, RIGHT, SPEED, TIME};
 use crate::complaints::complaint;
 use crate::judge;
 use crate::metric_names::{Shown, shown};
-use crate::signals::{CM, Outcome, Place, RPM};
+use crate::signals::{CM, Outcome, RPM};
 use crate::summary::{figure, heading, shell};
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, escape, put, word};
@@ -344,13 +345,13 @@ fn figures(language: Language, test: &Test, outcome: &Outcome) -> Vec<String> {
     let truth = |name: Text, ink, signal: &dyn Fn(&rumbo_sim::trace::Sample) -> f64| {
         Curve::new(name.of(language), ink, outcome.truth(signal))
     };
-    let range = |name, ink, sonar: Place| truth(name, ink, &|s| CM * s.range_m[sonar as usize]);
+    let range = |name, ink, sonar: Channel| truth(name, ink, &|s| CM * s.range_m[sonar as usize]);
     let speed =
-        |name, ink, wheel: Place| truth(name, ink, &|s| RPM * s.wheel_rad_s[wheel as usize]);
+        |name, ink, wheel: Channel| truth(name, ink, &|s| RPM * s.wheel_rad_s[wheel as usize]);
     let speeds = || {
         vec![
-            speed(LEFT, Ink::First, Place::Left),
-            speed(RIGHT, Ink::Second, Place::Right),
+            speed(LEFT, Ink::First, Channel::Left),
+            speed(RIGHT, Ink::Second, Channel::Right),
         ]
     };
     let asked = |factor| {
@@ -376,7 +377,7 @@ fn figures(language: Language, test: &Test, outcome: &Outcome) -> Vec<String> {
     let mode = test.setup.scenario.mode.description();
     match mode.reference.map(|reference| reference.kind) {
         Some(ReferenceKind::Distance) if mode.rigs.contains(Rig::FrontSingle) => {
-            let front = vec![range(FRONT, Ink::First, Place::Front)];
+            let front = vec![range(FRONT, Ink::First, Channel::Front)];
             vec![timed(vec![
                 with(DISTANCE, front, asked(CM)).at_least(0.0, 100.0),
                 pwm,
@@ -384,8 +385,8 @@ fn figures(language: Language, test: &Test, outcome: &Outcome) -> Vec<String> {
         }
         Some(ReferenceKind::Distance) => {
             let both = vec![
-                range(LEFT_SONAR, Ink::First, Place::Left),
-                range(RIGHT_SONAR, Ink::Second, Place::Right),
+                range(LEFT_SONAR, Ink::First, Channel::Left),
+                range(RIGHT_SONAR, Ink::Second, Channel::Right),
             ];
             vec![timed(vec![with(DISTANCE, both, asked(CM)), pwm])]
         }

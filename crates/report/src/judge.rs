@@ -4,15 +4,8 @@ use crate::complaints;
 use crate::metric_names::{Shown, shown};
 use crate::signals::Outcome;
 use crate::table::{Cell, Tone, table};
-use crate::text::{Language, Text, escape, with, word};
+use crate::text::{Language, Text, escape, with, with_unit, word};
 use rumbo_experiment::files::Bounds;
-
-pub(crate) fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().collect::<String>() + letters.as_str()
-    })
-}
 
 /// A value that is no metric, already in its unit.
 pub(crate) const fn plain(unit: &'static str) -> Shown {
@@ -21,15 +14,6 @@ pub(crate) const fn plain(unit: &'static str) -> Shown {
         bare: "",
         factor: 1.0,
         unit,
-    }
-}
-
-/// A value with its unit.
-pub(crate) fn with_unit(value: String, unit: &str) -> String {
-    match unit {
-        "" => value,
-        "°" => format!("{value}°"),
-        _ => format!("{value}\u{a0}{unit}"),
     }
 }
 

@@ -9,6 +9,7 @@
 //! draws values, `drawing` what depends on the robot; the other drawings are files. The same version, seed and files give
 //! the same bytes.
 
+mod channel;
 mod chapters;
 #[cfg(feature = "host")]
 pub mod compare;
@@ -21,6 +22,7 @@ pub mod exports;
 #[cfg(feature = "host")]
 pub mod grade;
 mod judge;
+mod language;
 mod markdown;
 mod metric_names;
 mod page;
@@ -38,9 +40,9 @@ pub mod text;
 mod text_rows;
 mod words;
 
-pub use chapters::{EXPERIMENTS, Experiment};
+pub use chapters::EXPERIMENTS;
 pub use content::ContentError;
-pub use data::Data;
+pub use data::{Data, Experiment};
 pub use plan::{Plan, Request};
 pub use signals::Outcome;
 pub use stamp::Stamp;

@@ -41,8 +41,33 @@ struct Writer<'a> {
     html: Vec<Event<'a>>,
 }
 
+/// A chapter as HTML: the text of this name.
+pub(crate) fn chapter(
+    page: &mut Page,
+    number: &str,
+    name: &str,
+    places: &Places,
+) -> Result<String, ContentError> {
+    page.begin(number);
+    let source = places.source(name)?;
+    write(page, &source, places, |page, title| {
+        let title = format!("{number}. {title}");
+        let heading = format!("<h2 id=\"{name}\">{title}</h2>\n");
+        page.enter(name, title);
+        heading
+    })
+}
+
+/// What stands before the chapters.
+pub(crate) fn front(page: &mut Page, places: &Places) -> Result<String, ContentError> {
+    let source = places.source("front")?;
+    write(page, &source, places, |_, title| {
+        format!("<h2 class=\"on\">{title}</h2>\n")
+    })
+}
+
 /// A text as HTML. `title` makes HTML of a heading of the first level.
-pub(crate) fn write(
+fn write(
     page: &mut Page,
     source: &Source,
     places: &Places,

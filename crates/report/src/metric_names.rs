@@ -1,8 +1,7 @@
 //! What each metric is called in both languages, and in which unit people read it.
 
-use crate::judge::{capital, with_unit};
 use crate::signals::{CM, DEG, RPM};
-use crate::text::{Language, Text, same, word};
+use crate::text::{Language, Text, capital, same, with_unit, word};
 use rumbo_control::mode::ReferenceKind;
 use rumbo_experiment::files::ScenarioFile;
 use rumbo_wire::Command;

@@ -1,10 +1,6 @@
 //! The page being built: chapters with their entries in the table of contents, numbered figures, formulas.
 
-use crate::content::ContentError;
-use crate::markdown;
-use crate::places::Places;
 use crate::text::{Language, Text, escape, word};
-use crate::words;
 use math_core::{LatexToMathML, MathCoreConfig, MathDisplay};
 
 /// A page being built.
@@ -36,30 +32,15 @@ impl Page {
         self.language
     }
 
-    /// A chapter as HTML: the text of this name. The chapter's number counts its figures.
-    pub(crate) fn chapter(
-        &mut self,
-        number: &str,
-        name: &str,
-        places: &Places,
-    ) -> Result<String, ContentError> {
+    /// A chapter begins: its number counts the figures from here on.
+    pub(crate) fn begin(&mut self, number: &str) {
         number.clone_into(&mut self.chapter);
         self.figures = 0;
-        let source = words::text(self.language, name, places)?;
-        markdown::write(self, &source, places, |page, title| {
-            let title = format!("{number}. {title}");
-            let heading = format!("<h2 id=\"{name}\">{title}</h2>\n");
-            page.contents.push((name.to_owned(), title));
-            heading
-        })
     }
 
-    /// What stands before the chapters.
-    pub(crate) fn front(&mut self, places: &Places) -> Result<String, ContentError> {
-        let source = words::text(self.language, "front", places)?;
-        markdown::write(self, &source, places, |_, title| {
-            format!("<h2 class=\"on\">{title}</h2>\n")
-        })
+    /// A chapter's place in the table of contents.
+    pub(crate) fn enter(&mut self, name: &str, title: String) {
+        self.contents.push((name.to_owned(), title));
     }
 
     /// A figure; `caption` is HTML, `description` its text for screen readers. Its identifier is the same in every

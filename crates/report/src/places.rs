@@ -1,6 +1,8 @@
 //! What a text of the report has places for: values, tables and figures of the runs, by their names.
 
+use crate::content::{ContentError, Source};
 use crate::text::{Language, Text};
+use crate::words::words;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What fills a place.
@@ -31,6 +33,29 @@ impl Places {
             named: BTreeMap::new(),
             sections: BTreeMap::new(),
         }
+    }
+
+    /// A text of the content with its words at their places; these places come first. A word is one line, so lines
+    /// keep their numbers.
+    pub(crate) fn source(&self, name: &str) -> Result<Source, ContentError> {
+        let Source { file, text } = Source::text(self.language, name)?;
+        let words = words(self.language)?;
+        let mut pieces = text.split("{{");
+        let mut filled = pieces.next().unwrap_or_default().to_owned();
+        for piece in pieces {
+            let word = piece
+                .split_once("}}")
+                .filter(|(name, _)| self.get(name).is_none())
+                .and_then(|(name, rest)| Some([words.get(name)?, rest]));
+            filled += &match word {
+                Some(word) => word.concat(),
+                None => format!("{{{{{piece}"),
+            };
+        }
+        Ok(Source {
+            file,
+            text: filled.into(),
+        })
     }
 
     /// A text in the language of these places.

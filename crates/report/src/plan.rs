@@ -1,7 +1,8 @@
 //! What a report needs to be run, and the running of it on all threads.
 
-use crate::chapters::{EXPERIMENTS, Experiment};
+use crate::chapters::EXPERIMENTS;
 use crate::data::Data;
+use crate::data::Experiment;
 use crate::real::{Real, Recording};
 use crate::signals::Outcome;
 use crate::stamp::Stamp;

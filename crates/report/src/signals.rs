@@ -1,8 +1,8 @@
 //! Signals of a run over the time since arming: the robot's telemetry where there is any, otherwise ground truth.
 
+use crate::channel::Channel;
 use crate::text_rows;
 use rumbo_control::Range;
-use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::Setup;
 use rumbo_experiment::run::RunResult;
@@ -23,14 +23,6 @@ pub struct Outcome {
     pub setup: Setup,
     /// Its trace, metrics and failures.
     pub result: RunResult,
-}
-
-/// A wheel or a sonar, by its index in arrays.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Place {
-    Left = 0,
-    Right = 1,
-    Front = 2,
 }
 
 impl Outcome {
@@ -114,7 +106,7 @@ impl Outcome {
     }
 
     /// A sonar's range as the robot measures it [cm]; a gap where there is none.
-    pub(crate) fn range_cm(&self, sonar: Place) -> Points {
+    pub(crate) fn range_cm(&self, sonar: Channel) -> Points {
         self.best(
             |frame| match frame.ranges[sonar as usize].range {
                 Range::Valid(range_m) => CM * f64::from(range_m),
@@ -126,7 +118,7 @@ impl Outcome {
     }
 
     /// A wheel's measured speed [rpm].
-    pub(crate) fn speed_rpm(&self, wheel: Place) -> Points {
+    pub(crate) fn speed_rpm(&self, wheel: Channel) -> Points {
         if self.has_telemetry() && !self.has_text_rows() {
             // Two samples in a frame, the first 20 ms older.
             let both = self.telemetry().flat_map(|(t_s, frame)| {
@@ -145,7 +137,7 @@ impl Outcome {
     }
 
     /// Setpoint of a wheel's speed loop [rpm].
-    pub(crate) fn speed_reference_rpm(&self, wheel: Place) -> Points {
+    pub(crate) fn speed_reference_rpm(&self, wheel: Channel) -> Points {
         self.best(
             |frame| RPM * f64::from(wheel.of(frame.wheel_ref_rad_s)),
             |row| text_rows::reference_rpm(row, wheel),
@@ -154,7 +146,7 @@ impl Outcome {
     }
 
     /// PWM at a wheel's bridge, of 255.
-    pub(crate) fn pwm(&self, wheel: Place) -> Points {
+    pub(crate) fn pwm(&self, wheel: Channel) -> Points {
         self.truth(|sample| f64::from(sample.duty[wheel as usize]))
     }
 
@@ -257,6 +249,13 @@ impl Outcome {
             .collect()
     }
 
+    /// When the run was done, since the arming [s]; `None` if it never was.
+    pub(crate) fn end_s(&self) -> Option<f64> {
+        let lane = self.metric("finish_s");
+        let lane = lane.filter(|finish_s| finish_s.is_finite());
+        lane.or_else(|| self.reached_s().last().copied())
+    }
+
     /// When the robot reported its goals reached, since arming [s].
     pub(crate) fn reached_s(&self) -> Vec<f64> {
         let armed_s = self.armed_s();
@@ -329,17 +328,6 @@ impl Outcome {
     /// A metric, if the run has it.
     pub(crate) fn metric(&self, name: &str) -> Option<f64> {
         self.result.metrics.get(name).copied()
-    }
-}
-
-impl Place {
-    /// A wheel's value of two.
-    pub(crate) fn of(self, wheels: Wheels<f32>) -> f32 {
-        if self == Self::Left {
-            wheels.left
-        } else {
-            wheels.right
-        }
     }
 }
 

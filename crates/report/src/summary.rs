@@ -1,16 +1,17 @@
 //! The page around the chapters: what was run, whether it passed, the table of contents, what was left out.
 
-use crate::chapters::{Experiment, Highlight};
 use crate::content::ContentError;
 use crate::data::Data;
+use crate::data::{Experiment, Highlight};
 use crate::judge::{self, KEPT, MISSED, name_of};
+use crate::markdown;
 use crate::metric_names::shown;
 use crate::page::Page;
 use crate::places::Places;
 use crate::real::Skipped;
 use crate::signals::Outcome;
 use crate::table::{Cell, Tone, table};
-use crate::text::{Language, Text, escape, word};
+use crate::text::{Language, Text, capital, escape, word};
 use rumbo_plot::STYLE as PLOTS;
 
 const STYLE: &str = include_str!("style.css");
@@ -47,9 +48,10 @@ pub fn html(data: &Data, language: Language) -> Result<(String, Vec<String>), Co
     for experiment in &data.experiments {
         let mut places = Places::new(language);
         (experiment.fill)(&mut places, data);
-        chapters += &page.chapter(experiment.number, experiment.name, &places)?;
+        chapters += &markdown::chapter(&mut page, experiment.number, experiment.name, &places)?;
     }
-    let front = page.front(&front(data, language, page.contents()))?;
+    let front = front(data, language, page.contents());
+    let front = markdown::front(&mut page, &front)?;
     let body = front + &chapters;
     let html = shell(language, TITLE.of(language), SUBTITLE.of(language), &body);
     Ok((html, page.figure_ids().to_vec()))
@@ -209,7 +211,7 @@ fn highlights(language: Language, data: &Data, experiment: &Experiment) -> Vec<[
             .unwrap_or_default();
         let name = highlight.of.map_or_else(
             || shown.name.clone(),
-            |of| format!("{}: {}", judge::capital(of.of(language)), shown.bare),
+            |of| format!("{}: {}", capital(of.of(language)), shown.bare),
         );
         Some([Cell::text(&name), Cell::text(&ours), Cell::text(&real)])
     };

@@ -1,10 +1,10 @@
 //! The page of a sweep: each metric over each parameter, heat maps, parallel coordinates, the best and the worst points.
 
-use crate::judge::{self, with_unit};
+use crate::judge;
 use crate::metric_names::{Shown, bare};
 use crate::summary::{figure, heading, shell};
 use crate::table::{Cell, Tone, table};
-use crate::text::{Language, Text, escape, put, word};
+use crate::text::{Language, Text, escape, put, with_unit, word};
 use rumbo_control::params::{ParamId, ParamKind};
 use rumbo_experiment::files::ScenarioFile;
 use rumbo_experiment::metrics;

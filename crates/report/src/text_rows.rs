@@ -1,6 +1,6 @@
 //! Telemetry rows of the original text protocol, parsed from the raw bytes of the link.
 
-use crate::signals::Place;
+use crate::channel::Channel;
 use rumbo_sim::Burst;
 use rumbo_wire::text::{MissionRow, Row};
 
@@ -23,20 +23,20 @@ pub(crate) fn rows(link: &[Burst]) -> Vec<(f64, Row)> {
 }
 
 /// A sonar's range [cm]. A robot with one sonar sends it twice.
-pub(crate) fn range_cm(row: &Row, sonar: Place) -> Option<f64> {
+pub(crate) fn range_cm(row: &Row, sonar: Channel) -> Option<f64> {
     let range_cm = match (row, sonar) {
-        (Row::Distance(row), Place::Left | Place::Front) => row.left_cm,
-        (Row::Distance(row), Place::Right) => row.right_cm,
-        (Row::Mission(row), Place::Left) => row.left_cm,
-        (Row::Mission(row), Place::Right) => row.right_cm,
-        (Row::Mission(row), Place::Front) => row.front_cm,
+        (Row::Distance(row), Channel::Left | Channel::Front) => row.left_cm,
+        (Row::Distance(row), Channel::Right) => row.right_cm,
+        (Row::Mission(row), Channel::Left) => row.left_cm,
+        (Row::Mission(row), Channel::Right) => row.right_cm,
+        (Row::Mission(row), Channel::Front) => row.front_cm,
         _ => return None,
     };
     Some(f64::from(range_cm))
 }
 
 /// A wheel's speed [rpm].
-pub(crate) fn speed_rpm(row: &Row, wheel: Place) -> Option<f64> {
+pub(crate) fn speed_rpm(row: &Row, wheel: Channel) -> Option<f64> {
     let wheels = match row {
         Row::Speed(row) => row.wheel_rpm,
         Row::Waypoints(row) => row.wheel_rpm,
@@ -46,7 +46,7 @@ pub(crate) fn speed_rpm(row: &Row, wheel: Place) -> Option<f64> {
 }
 
 /// A wheel's setpoint [rpm].
-pub(crate) fn reference_rpm(row: &Row, wheel: Place) -> Option<f64> {
+pub(crate) fn reference_rpm(row: &Row, wheel: Channel) -> Option<f64> {
     let wheels = match row {
         Row::Speed(row) => return Some(f64::from(row.reference_rpm)),
         Row::Waypoints(row) => row.reference_rpm,
@@ -93,7 +93,7 @@ mod tests {
         let rows = rows(&link);
         assert_eq!(rows.len(), 1);
         assert_eq!(
-            (rows[0].0, range_cm(&rows[0].1, Place::Front)),
+            (rows[0].0, range_cm(&rows[0].1, Channel::Front)),
             (1.2, Some(107.5))
         );
     }

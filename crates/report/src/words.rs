@@ -8,8 +8,7 @@
 //! program as `word("name")`.
 
 use crate::content::{ContentError, Source};
-use crate::places::Places;
-use crate::text::Language;
+use crate::language::Language;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
@@ -65,33 +64,6 @@ fn parse(source: &Source) -> Result<Words, ContentError> {
         }
     }
     Ok(words)
-}
-
-/// A text of the content with its words at their places; the text's own `places` come first. A word is one line, so lines
-/// keep their numbers.
-pub(crate) fn text(
-    language: Language,
-    name: &str,
-    places: &Places,
-) -> Result<Source, ContentError> {
-    let Source { file, text } = Source::text(language, name)?;
-    let words = words(language)?;
-    let mut pieces = text.split("{{");
-    let mut filled = pieces.next().unwrap_or_default().to_owned();
-    for piece in pieces {
-        let word = piece
-            .split_once("}}")
-            .filter(|(name, _)| places.get(name).is_none())
-            .and_then(|(name, rest)| Some([words.get(name)?, rest]));
-        filled += &match word {
-            Some(word) => word.concat(),
-            None => format!("{{{{{piece}"),
-        };
-    }
-    Ok(Source {
-        file,
-        text: filled.into(),
-    })
 }
 
 #[cfg(test)]

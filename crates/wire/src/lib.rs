@@ -20,10 +20,13 @@ pub mod message;
 mod names;
 mod quantise;
 pub mod text;
+mod text_error;
 mod text_line;
+mod text_parse;
 mod text_published;
 mod text_row;
 mod text_telemetry;
+mod text_units;
 #[cfg(feature = "names")]
 mod words;
 

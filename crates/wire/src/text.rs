@@ -6,90 +6,19 @@
 //! B the left one. The meaning of `REF` depends on the mode, so values stay as written.
 
 use core::fmt;
-
+use rumbo_control::Side;
 use rumbo_control::math::round;
 use rumbo_control::mode::{ModeId, ReferenceKind};
-use rumbo_control::{Range, Side};
 
 use crate::decimal;
 use crate::message::Command;
 
+pub use crate::text_error::TextError;
 pub use crate::text_line::Line;
 pub use crate::text_row::{DistanceRow, MissionRow, Row, RowKind, SpeedRow, WaypointsRow};
-
-/// rad/s in one rpm.
-pub const RAD_S_PER_RPM: f32 = core::f32::consts::PI / 30.0;
-/// rad in one degree.
-pub const RAD_PER_DEG: f32 = core::f32::consts::PI / 180.0;
-/// cm in one m.
-pub const CM_PER_M: f32 = 100.0;
-
-/// Length of the longest row, CR and LF included.
-pub const MAX_LINE: usize = 128;
-
-/// What a text row shows for a range [cm]: the original has numbers only. 0 is *faulty*, 400 (the end of the
-/// HC-SR04's scale, beyond the reach that is used) is *clear*.
-pub fn cm_from_range(range: Range) -> f32 {
-    match range {
-        Range::Valid(range_m) => range_m * CM_PER_M,
-        Range::Clear => CLEAR_CM,
-        Range::Faulty => 0.0,
-    }
-}
-
-/// Inverse of [`cm_from_range`].
-pub fn range_from_cm(range_cm: f32) -> Range {
-    if range_cm >= CLEAR_CM {
-        Range::Clear
-    } else if range_cm > 0.0 {
-        Range::Valid(range_cm / CM_PER_M)
-    } else {
-        Range::Faulty
-    }
-}
-
-const CLEAR_CM: f32 = 400.0;
-
-/// Why a line is no command or no row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TextError {
-    /// No command starts like this.
-    UnknownCommand,
-    /// The motor is neither `A` nor `B`.
-    UnknownMotor,
-    /// A value is missing.
-    Missing,
-    /// Something follows the last value.
-    Extra,
-    /// The value number `.0` (the first is 1) is no decimal number.
-    NotANumber(u8),
-    /// The number of values fits no row of telemetry.
-    Columns,
-    /// The value number `.0` (the first is 1) is a number that the column cannot hold.
-    OutOfRange(u8),
-}
-
-impl fmt::Display for TextError {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            TextError::UnknownCommand => out.write_str(
-                "unknown command; allowed: ON, OFF, REF, GOAL, PID, MODE, SAVE, RESET, each with its values",
-            ),
-            TextError::UnknownMotor => {
-                out.write_str("unknown motor; A is the right wheel, B the left one")
-            }
-            TextError::Missing => out.write_str("a value is missing"),
-            TextError::Extra => out.write_str("too many values"),
-            TextError::NotANumber(at) => write!(out, "value {at} is not a number"),
-            TextError::Columns => {
-                out.write_str("the number of values fits no row of telemetry (7, 10 or 13)")
-            }
-            TextError::OutOfRange(at) => write!(out, "value {at} is out of range"),
-        }
-    }
-}
-
-impl core::error::Error for TextError {}
+pub use crate::text_units::{
+    CM_PER_M, MAX_LINE, RAD_PER_DEG, RAD_S_PER_RPM, cm_from_range, range_from_cm,
+};
 
 /// A command of the original text protocol.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use rumbo_control::{Duty, Pose, Range, Wheels};
 
 use crate::decimal::Text;
-use crate::text::{MAX_LINE, RAD_PER_DEG, RAD_S_PER_RPM, cm_from_range};
+use crate::text_units::{MAX_LINE, RAD_PER_DEG, RAD_S_PER_RPM, cm_from_range};
 
 /// A row being written. Its first column is the time since the previous row; [`Row`](crate::text::Row) defines the
 /// rest.

@@ -11,7 +11,7 @@
 //! Units are the text protocol's. The first sonar of a pair is the right one ahead, the front one (`left`) on a side.
 
 use crate::decimal;
-use crate::text::{DistanceRow, Row, SpeedRow, WaypointsRow};
+use crate::text_row::{DistanceRow, Row, SpeedRow, WaypointsRow};
 use rumbo_control::Wheels;
 use rumbo_control::math::round;
 

@@ -18,9 +18,9 @@ mod execute;
 use crate::decode::{Code, FLASH_WORDS, Op, decode};
 use crate::io::{Demand, Io};
 use crate::model::Model;
-use crate::observe::Watchpoint;
 use crate::status::Status;
 use crate::verdict::{Arrival, Verdict};
+use crate::watchpoint::Watchpoint;
 
 /// Cycles from the recognition of an interrupt to the first instruction of its routine, a jump in the table, and as
 /// many more out of sleep; one less where addresses on the stack are short.

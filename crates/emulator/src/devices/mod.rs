@@ -12,6 +12,7 @@ pub(crate) mod interrupts;
 pub(crate) mod map;
 pub mod ports;
 mod power;
+mod prescaler;
 mod programming;
 pub(crate) mod schedule;
 mod shared;

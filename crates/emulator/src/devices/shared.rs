@@ -3,9 +3,9 @@
 use super::clock::Clock;
 use super::interrupts::Interrupts;
 use super::ports::{Change, Pin, Ports};
+use super::prescaler::Prescaler;
 use super::schedule::Schedule;
 use super::signal::{Event, Level, Output};
-use super::timer::Prescaler;
 use crate::io::Demand;
 use crate::model::Model;
 use std::collections::VecDeque;

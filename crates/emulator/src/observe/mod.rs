@@ -18,16 +18,7 @@ use std::ops::Range;
 use touch::{Touch, touch};
 use trace::{Trace, Traced};
 
-/// Addresses of the data space, an access to which stops the program.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Watchpoint {
-    /// Which: registers from 0, peripherals from 0x20, SRAM from 0x200.
-    pub addresses: Range<u16>,
-    /// Reading one of them stops.
-    pub reads: bool,
-    /// Writing one of them stops.
-    pub writes: bool,
-}
+pub use crate::watchpoint::Watchpoint;
 
 impl Watchpoint {
     fn hit(&self, touch: &Touch) -> Option<u16> {

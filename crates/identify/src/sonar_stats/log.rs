@@ -1,29 +1,8 @@
 //! Ranges of a recorded run, from the original program's CSV.
 
+use crate::error::SonarLogError;
 use crate::log::DAMAGED_IN;
-use std::fmt;
-use std::path::{Path, PathBuf};
-
-/// A log of ranges that cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SonarLogError {
-    path: PathBuf,
-    /// 1-based; 0 if the file as a whole is meant.
-    line: u64,
-    cause: String,
-}
-
-impl fmt::Display for SonarLogError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.path.display())?;
-        if self.line > 0 {
-            write!(f, ", line {}", self.line)?;
-        }
-        write!(f, ": {}", self.cause)
-    }
-}
-
-impl std::error::Error for SonarLogError {}
+use std::path::Path;
 
 /// The ranges of a recorded run of modes 1 to 4.
 #[derive(Clone, Debug, PartialEq)]

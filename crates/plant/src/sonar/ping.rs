@@ -7,7 +7,8 @@ use libm::{cos, hypot, sincos, sqrt};
 
 use super::{Burst, Line, Sonar, SonarId, State, View, micros};
 use crate::cone;
-use crate::world::{Point, World, add, dot, scale, sub};
+use crate::outline::{Point, add, dot, scale, sub};
+use crate::world::World;
 
 /// A ping of a sonar, as those of other robots receive it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,15 +5,16 @@ use super::maps;
 use super::panels;
 use super::parts::{self, LEFT, PWM, RIGHT, SPEED};
 use super::{Experiment, Highlight};
+use crate::channel::Channel;
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Scheme};
 use crate::judge;
 use crate::places::Places;
-use crate::signals::{Outcome, Place, RPM};
+use crate::signals::{Outcome, RPM};
 use crate::text::{Language, Text, same, word};
 use rumbo_plot::{Curve, Ink, Map, Panel, Plot, Points};
 
-pub(super) const FLOOR: Text = word("on-the-floor-forward");
+const FLOOR: Text = word("on-the-floor-forward");
 
 const fn of(
     what: Text,
@@ -128,14 +129,17 @@ fn fill(places: &mut Places, data: &Data) {
         "manual-ways-speed",
         Some(trajectories(language, data, "-speed")),
     );
-    places.block("movements", manual_tables::movements(language, data));
+    places.block(
+        "movements",
+        manual_tables::movements(language, data, &EXPERIMENT),
+    );
     let limits = judge::limits_together(language, &data.of(&EXPERIMENT));
     places.block("limits", limits);
 }
 
 /// Speed over PWM of both wheels.
 fn curves(language: Language, data: &Data) -> String {
-    let panel = |axis: Text, wheel: Place| {
+    let panel = |axis: Text, wheel: Channel| {
         let mut curves: Vec<Curve> = [35.0, -35.0, 65.0, -65.0]
             .map(|pwm| {
                 Curve::new(
@@ -165,8 +169,8 @@ fn curves(language: Language, data: &Data) -> String {
         Panel::new(axis.of(language), curves).exactly(-150.0, 150.0)
     };
     let panels = vec![
-        panel(LEFT_AXIS, Place::Left),
-        panel(RIGHT_AXIS, Place::Right),
+        panel(LEFT_AXIS, Channel::Left),
+        panel(RIGHT_AXIS, Channel::Right),
     ];
     Plot {
         x: PWM.of(language).to_owned(),
@@ -203,7 +207,7 @@ fn asymmetry(places: &mut Places, data: &Data) {
 
 /// True speeds of both wheels.
 fn speeds(language: Language, outcome: &Outcome, axis: Text) -> Panel {
-    let curve = |name: Text, ink, wheel: Place| {
+    let curve = |name: Text, ink, wheel: Channel| {
         Curve::new(
             name.of(language),
             ink,
@@ -213,8 +217,8 @@ fn speeds(language: Language, outcome: &Outcome, axis: Text) -> Panel {
     Panel::new(
         axis.of(language),
         vec![
-            curve(LEFT, Ink::First, Place::Left),
-            curve(RIGHT, Ink::Second, Place::Right),
+            curve(LEFT, Ink::First, Channel::Left),
+            curve(RIGHT, Ink::Second, Channel::Right),
         ],
     )
 }

@@ -1,12 +1,11 @@
 //! Tables of the basic movements: where each wheel starts, and the outcome of each movement.
 
-use super::manual::{EXPERIMENT, FLOOR};
-use crate::data::Data;
+use crate::data::{Data, Experiment};
 use crate::judge;
 use crate::metric_names::Shown;
 use crate::signals::{CM, DEG};
 use crate::table::{Cell, table};
-use crate::text::{Language, Text, word};
+use crate::text::{Language, Text, capital, word};
 
 const HEADER: [Text; 5] = [
     word("scenario"),
@@ -18,7 +17,7 @@ const HEADER: [Text; 5] = [
 const START_HEADER: [Text; 3] = [word("test"), word("left-wheel"), word("right-wheel")];
 const TESTS: [(Text, &str, &str); 4] = [
     (
-        FLOOR,
+        word("on-the-floor-forward"),
         "manual-deadzone-floor-forward",
         "manual-deadzone-floor-forward",
     ),
@@ -55,7 +54,7 @@ pub(super) fn starts(language: Language, data: &Data) -> String {
         .iter()
         .map(|(name, left, right)| {
             vec![
-                Cell::text(&judge::capital(name.of(language))),
+                Cell::text(&capital(name.of(language))),
                 cell(left, "left_dead_zone_duty"),
                 cell(right, "right_dead_zone_duty"),
             ]
@@ -66,8 +65,8 @@ pub(super) fn starts(language: Language, data: &Data) -> String {
 }
 
 /// Distance, sideways drift, turn and radius of every movement.
-pub(super) fn movements(language: Language, data: &Data) -> String {
-    let rows: Vec<Vec<Cell>> = EXPERIMENT
+pub(super) fn movements(language: Language, data: &Data, experiment: &Experiment) -> String {
+    let rows: Vec<Vec<Cell>> = experiment
         .scenarios
         .iter()
         .filter_map(|name| data.outcome(name))

@@ -1,5 +1,6 @@
 //! Maps that several chapters show: trajectories, walls and boxes, routes.
 
+use crate::places::Places;
 use crate::signals::Outcome;
 use crate::text::{Language, Text, same, word};
 use rumbo_plot::{Curve, Ink, Map, Points, Shape};
@@ -10,6 +11,8 @@ const Y_AXIS: Text = same("y (m)");
 const IDEAL: Text = word("ideal");
 const BY_ODOMETRY: Text = word("by-odometry");
 const TRUE_TRAJECTORY: Text = word("true");
+const STRAIGHT: Text = word("straight-line");
+const START: Text = word("start");
 
 /// A map with nothing on it.
 pub(crate) fn map(language: Language) -> Map {
@@ -77,4 +80,28 @@ pub(super) fn off_route(route: &Points, (x, y): (f64, f64)) -> f64 {
         .windows(2)
         .map(from_piece)
         .fold(f64::INFINITY, f64::min)
+}
+
+/// Paths between boxes, and where the robot started.
+pub(super) fn path_map(places: &Places, outcome: &Outcome, ideal: Points) -> Map {
+    let language = places.language;
+    let mut curves = trajectories(language, outcome, ideal);
+    if curves[0].points.is_empty() {
+        curves.remove(0);
+    } else {
+        curves[0].name = places.text(STRAIGHT).to_owned();
+    }
+    let start = outcome.setup.scenario.start;
+    let arena = &outcome.setup.world.arena;
+    Map {
+        // A lane has an end, the robot's path has none.
+        range: Some([
+            [arena.from_m[0], arena.to_m[0]],
+            [arena.from_m[1], arena.to_m[1]],
+        ]),
+        shapes: shapes(outcome),
+        curves,
+        marks: vec![(start.x_m, start.y_m, places.text(START).to_owned())],
+        ..map(language)
+    }
 }

@@ -4,10 +4,11 @@ use super::beside;
 use super::panels;
 use super::parts::{self, DISTANCE, ERROR_CM, MEASURED, REFERENCE};
 use super::{Experiment, highlight};
+use crate::channel::Channel;
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
-use crate::signals::{CM, Outcome, Place, difference};
+use crate::signals::{CM, Outcome, difference};
 use crate::text::{Language, Text, same, word};
 use rumbo_plot::{Curve, Ink, Panel, Plot};
 
@@ -76,7 +77,7 @@ fn fill(places: &mut Places, data: &Data) {
         panels::pwm_panel(language, outcome),
     ];
     parts::timed(places, "mode1-distances", panels);
-    let error = difference(&outcome.range_cm(Place::Front), &outcome.reference(CM));
+    let error = difference(&outcome.range_cm(Channel::Front), &outcome.reference(CM));
     let panel = Panel::new(
         places.text(ERROR_CM),
         vec![Curve::new("", Ink::First, error)],
@@ -134,7 +135,7 @@ fn distance_panel(language: Language, outcome: &Outcome) -> Panel {
         Curve::new(
             MEASURED.of(language),
             Ink::First,
-            outcome.range_cm(Place::Front),
+            outcome.range_cm(Channel::Front),
         ),
     ];
     Panel::new(DISTANCE.of(language), curves).at_least(0.0, 100.0)

@@ -4,10 +4,11 @@ use super::beside;
 use super::panels::Pair;
 use super::parts;
 use super::{Experiment, highlight};
+use crate::channel::Channel;
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
-use crate::signals::{CM, DEG, Outcome, Place, difference};
+use crate::signals::{CM, DEG, Outcome, difference};
 use crate::text::{Text, same, word};
 use rumbo_plot::{Curve, Ink, Panel};
 
@@ -86,8 +87,8 @@ fn angle_panel(places: &Places, outcome: &Outcome) -> Panel {
     };
     // The left one is nearer when the robot is turned to the right, a negative heading: the wall stands across x.
     let difference_cm = difference(
-        &outcome.range_cm(Place::Left),
-        &outcome.range_cm(Place::Right),
+        &outcome.range_cm(Channel::Left),
+        &outcome.range_cm(Channel::Right),
     );
     let angle = |(t_s, cm): (f64, f64)| (t_s, DEG * (cm / CM / gap_m).clamp(-1.0, 1.0).asin());
     let curves = vec![

@@ -4,11 +4,12 @@ use super::beside;
 use super::panels;
 use super::parts::{self, ERROR_RPM, LEFT, REFERENCE, RIGHT, SPEED};
 use super::{Experiment, highlight};
+use crate::channel::Channel;
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
 use crate::respond::{self, Kind};
-use crate::signals::{Outcome, Place, RPM, difference};
+use crate::signals::{Outcome, RPM, difference};
 use crate::text::{Language, Text, same, word};
 use rumbo_plot::{Curve, Ink, Panel};
 use rumbo_wire::text::Row;
@@ -94,8 +95,8 @@ pub(super) fn speed_panel(language: Language, outcome: &Outcome) -> Panel {
                 Ink::Reference,
                 outcome.reference(RPM),
             ),
-            curve(LEFT, Ink::First, Place::Left),
-            curve(RIGHT, Ink::Second, Place::Right),
+            curve(LEFT, Ink::First, Channel::Left),
+            curve(RIGHT, Ink::Second, Channel::Right),
         ],
     )
 }
@@ -103,8 +104,8 @@ pub(super) fn speed_panel(language: Language, outcome: &Outcome) -> Panel {
 fn errors(language: Language, outcome: &Outcome) -> Vec<Curve> {
     let reference = outcome.reference(RPM);
     [
-        (LEFT, Ink::First, Place::Left),
-        (RIGHT, Ink::Second, Place::Right),
+        (LEFT, Ink::First, Channel::Left),
+        (RIGHT, Ink::Second, Channel::Right),
     ]
     .into_iter()
     .map(|(name, ink, wheel)| {
@@ -124,7 +125,7 @@ fn beside(places: &mut Places, data: &Data) {
     let language = places.language;
     let real = |wheel| {
         recording.signal(|row| match row {
-            Row::Speed(row) if wheel == Place::Left => Some(f64::from(row.wheel_rpm.left)),
+            Row::Speed(row) if wheel == Channel::Left => Some(f64::from(row.wheel_rpm.left)),
             Row::Speed(row) => Some(f64::from(row.wheel_rpm.right)),
             _ => None,
         })
@@ -144,8 +145,8 @@ fn beside(places: &mut Places, data: &Data) {
         Panel::new(name.of(language), curves)
     };
     let panels = vec![
-        panel(RIGHT_SPEED, Place::Right),
-        panel(LEFT_SPEED, Place::Left),
+        panel(RIGHT_SPEED, Channel::Right),
+        panel(LEFT_SPEED, Channel::Left),
     ];
     parts::timed(places, "mode5-real", panels);
     let references: Vec<(f64, f64)> = recording
@@ -157,7 +158,7 @@ fn beside(places: &mut Places, data: &Data) {
         places,
         recording,
         Kind::Speed,
-        &respond::responses(Kind::Speed, &references, &ours.speed_rpm(Place::Right)),
-        &respond::responses(Kind::Speed, &references, &real(Place::Right)),
+        &respond::responses(Kind::Speed, &references, &ours.speed_rpm(Channel::Right)),
+        &respond::responses(Kind::Speed, &references, &real(Channel::Right)),
     );
 }

@@ -6,10 +6,11 @@ use super::mode5;
 use super::panels;
 use super::parts::{self, MEASURED, REFERENCE, SPEED};
 use super::{Experiment, highlight};
+use crate::channel::Channel;
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
-use crate::signals::{CM, DEG, Outcome, Place, RPM};
+use crate::signals::{CM, DEG, Outcome, RPM};
 use crate::text::{Language, Text, same, word};
 use rumbo_plot::{Curve, Ink, Map, Panel};
 use rumbo_wire::text::Row;
@@ -76,8 +77,8 @@ fn results(places: &mut Places, outcome: &Outcome) {
     let panel = speeds().at_least(38.0, 42.0);
     parts::timed_within(places, "mode6-steady", vec![panel], Some([3.0, 23.0]));
     let panels = vec![
-        variable(language, outcome, LEFT_AXIS, Ink::First, Place::Left),
-        variable(language, outcome, RIGHT_AXIS, Ink::Second, Place::Right),
+        variable(language, outcome, LEFT_AXIS, Ink::First, Channel::Left),
+        variable(language, outcome, RIGHT_AXIS, Ink::Second, Channel::Right),
     ];
     parts::timed_within(places, "mode6-variable", panels, Some([3.0, 23.0]));
     let base_cm = CM * outcome.setup.robot.plant.body.base_m;
@@ -114,7 +115,7 @@ fn results(places: &mut Places, outcome: &Outcome) {
     places.figure("mode6-way", Some(svg));
 }
 
-fn variable(language: Language, outcome: &Outcome, axis: Text, ink: Ink, wheel: Place) -> Panel {
+fn variable(language: Language, outcome: &Outcome, axis: Text, ink: Ink, wheel: Channel) -> Panel {
     let curves = vec![
         Curve::new(MEASURED.of(language), ink, outcome.speed_rpm(wheel)),
         Curve::new(
@@ -147,7 +148,7 @@ fn beside(places: &mut Places, data: &Data) {
     curves.extend(beside::both(
         places.language,
         recording,
-        ours.speed_rpm(Place::Left),
+        ours.speed_rpm(Channel::Left),
         real,
     ));
     let panel = Panel::new(places.text(SPEED), curves);

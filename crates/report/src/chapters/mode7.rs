@@ -11,7 +11,7 @@ use crate::judge;
 use crate::places::Places;
 use crate::respond::rms_and_worst;
 use crate::signals::{CM, Outcome, unwrapped};
-use crate::text::{Language, Text, same, word};
+use crate::text::{Language, Text, capital, same, word};
 use rumbo_plot::{Curve, Ink, Map, Panel, Points};
 use rumbo_wire::text::Row;
 
@@ -165,7 +165,7 @@ fn beside(places: &mut Places, data: &Data) {
     let row = |name: Text, index: usize, unit| {
         let shown = judge::plain(unit);
         let [ours, real] = [0, 1].map(|which| judge::value(language, &shown, rows[which][index]));
-        (judge::capital(name.of(language)), ours, real)
+        (capital(name.of(language)), ours, real)
     };
     let table = beside::values(
         language,

@@ -41,7 +41,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 const GOAL_X: Text = word("goal-x");
 const GOAL_Y: Text = word("goal-y");
 const POSITION: Text = word("position-m");
-pub(super) const HEADING: Text = word("heading-deg");
+const HEADING: Text = word("heading-deg");
 const HEADING_NAME: Text = word("heading");
 const HEADING_REFERENCE: Text = word("heading-reference");
 const STRAIGHT: Text = word("straight-line");
@@ -66,21 +66,15 @@ fn fill(places: &mut Places, data: &Data) {
 
 /// Panels until a little after the end of what the run is about: the last goal reached, or the end of the lane.
 fn until(places: &mut Places, outcome: &Outcome, id: &str, panels: Vec<Panel>) {
-    let end_s = end_s(outcome).map_or(outcome.duration_s(), |end_s| end_s + 2.0);
+    let end_s = outcome
+        .end_s()
+        .map_or(outcome.duration_s(), |end_s| end_s + 2.0);
     parts::timed_within(
         places,
         id,
         panels,
         Some([0.0, end_s.min(outcome.duration_s())]),
     );
-}
-
-/// When the run was done, since the arming [s]; `None` if it never was.
-pub(super) fn end_s(outcome: &Outcome) -> Option<f64> {
-    let lane = outcome
-        .metric("finish_s")
-        .filter(|finish_s| finish_s.is_finite());
-    lane.or_else(|| outcome.reached_s().last().copied())
 }
 
 fn goals(places: &mut Places, data: &Data) {
@@ -130,7 +124,7 @@ fn lane_results(places: &mut Places, data: &Data) {
     let language = places.language;
     let panel = panels::references_panel(language, outcome);
     until(places, outcome, "mode8-lane-speeds", vec![panel]);
-    let svg = path_map(places, outcome, Points::new()).svg(language);
+    let svg = maps::path_map(places, outcome, Points::new()).svg(language);
     places.figure("mode8-lane-way", Some(svg));
     let panels = panels::range_panels(language, outcome);
     until(places, outcome, "mode8-lane-ranges", panels);
@@ -152,7 +146,7 @@ fn obstacles(places: &mut Places, data: &Data) {
     let language = places.language;
     let start = outcome.setup.scenario.start;
     let straight = vec![(start.x_m, start.y_m), (start.x_m + 2.5, start.y_m)];
-    let svg = path_map(places, outcome, straight).svg(language);
+    let svg = maps::path_map(places, outcome, straight).svg(language);
     places.figure("mode8-obstacles-way", Some(svg));
     let panels = pose_panels(language, outcome, true);
     until(places, outcome, "mode8-obstacles-pose", panels);
@@ -162,30 +156,6 @@ fn obstacles(places: &mut Places, data: &Data) {
     until(places, outcome, "mode8-obstacles-ranges", panels);
     let panel = panels::state_panel(language, outcome, &machines::STATES);
     parts::timed(places, "mode8-obstacles-states", vec![panel]);
-}
-
-/// Paths between boxes, and where the robot started.
-pub(super) fn path_map(places: &Places, outcome: &Outcome, ideal: Points) -> Map {
-    let language = places.language;
-    let mut curves = maps::trajectories(language, outcome, ideal);
-    if curves[0].points.is_empty() {
-        curves.remove(0);
-    } else {
-        curves[0].name = places.text(STRAIGHT).to_owned();
-    }
-    let start = outcome.setup.scenario.start;
-    let arena = &outcome.setup.world.arena;
-    Map {
-        // A lane has an end, the robot's path has none.
-        range: Some([
-            [arena.from_m[0], arena.to_m[0]],
-            [arena.from_m[1], arena.to_m[1]],
-        ]),
-        shapes: maps::shapes(outcome),
-        curves,
-        marks: vec![(start.x_m, start.y_m, places.text(START).to_owned())],
-        ..maps::map(language)
-    }
 }
 
 /// Coordinates, with those of the goal, and heading with its reference.

@@ -1,7 +1,7 @@
 //! Mode 8 beside a recorded run: paths and poses by the odometry of both.
 
 use super::beside;
-use super::mode8;
+use super::maps;
 use super::parts;
 use crate::data::Data;
 use crate::judge;
@@ -41,12 +41,12 @@ pub(super) fn fill(places: &mut Places, data: &Data, scenario: &str) {
         );
         let map = Map {
             curves,
-            ..mode8::path_map(places, ours, Points::new())
+            ..maps::path_map(places, ours, Points::new())
         };
         let svg = map.svg(language);
         places.figure(&format!("{scenario}-real-way"), Some(svg));
     }
-    let end_s = mode8::end_s(ours).unwrap_or_else(|| ours.duration_s());
+    let end_s = ours.end_s().unwrap_or_else(|| ours.duration_s());
     let walked = [
         length(&x, &y, end_s),
         length(&theirs[0], &theirs[1], f64::INFINITY),
@@ -70,7 +70,7 @@ pub(super) fn fill(places: &mut Places, data: &Data, scenario: &str) {
             beside::both(language, recording, y, theirs[1].clone()),
         ),
         Panel::new(
-            places.text(mode8::HEADING),
+            places.text(word("heading-deg")),
             beside::both(
                 language,
                 recording,

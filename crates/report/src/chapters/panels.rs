@@ -1,8 +1,9 @@
 //! Panels that several chapters show: PWM, distances, speeds with their references, states.
 
 use super::parts::{self, DISTANCE, ERROR_CM, LEFT, MEASURED, PWM, REFERENCE, RIGHT};
+use crate::channel::Channel;
 use crate::places::Places;
-use crate::signals::{Outcome, Place, difference};
+use crate::signals::{Outcome, difference};
 use crate::text::{Language, Text, word};
 use rumbo_plot::{Curve, Ink, Panel, Points};
 
@@ -12,8 +13,8 @@ pub(crate) fn pwm_panel(language: Language, outcome: &Outcome) -> Panel {
     Panel::new(
         PWM.of(language),
         vec![
-            curve(LEFT, Ink::First, Place::Left),
-            curve(RIGHT, Ink::Second, Place::Right),
+            curve(LEFT, Ink::First, Channel::Left),
+            curve(RIGHT, Ink::Second, Channel::Right),
         ],
     )
     .at_least(0.0, 100.0)
@@ -62,8 +63,8 @@ impl Pair {
 }
 
 /// A curve for each of a pair.
-fn each(language: Language, outcome: &Outcome, points: impl Fn(Place) -> Points) -> Vec<Curve> {
-    let places = [(Ink::First, Place::Left), (Ink::Second, Place::Right)];
+fn each(language: Language, outcome: &Outcome, points: impl Fn(Channel) -> Points) -> Vec<Curve> {
+    let places = [(Ink::First, Channel::Left), (Ink::Second, Channel::Right)];
     let named = pair_names(outcome).into_iter().zip(places);
     named
         .map(|(name, (ink, sonar))| Curve::new(name.of(language), ink, points(sonar)))
@@ -92,10 +93,10 @@ fn pair_names(outcome: &Outcome) -> [Text; 2] {
 /// The mean of a pair's ranges \[cm\], or the front sonar's.
 pub(super) fn mean_cm(outcome: &Outcome) -> Points {
     if outcome.setup.rig.front.is_some() {
-        return outcome.range_cm(Place::Front);
+        return outcome.range_cm(Channel::Front);
     }
-    let right = outcome.range_cm(Place::Right);
-    let both = outcome.range_cm(Place::Left).into_iter().zip(right);
+    let right = outcome.range_cm(Channel::Right);
+    let both = outcome.range_cm(Channel::Left).into_iter().zip(right);
     both.map(|((t_s, left), (_, right))| (t_s, 0.5 * (left + right)))
         .collect()
 }
@@ -114,8 +115,8 @@ pub(super) fn references_panel(language: Language, outcome: &Outcome) -> Panel {
     Panel::new(
         REFERENCES_AXIS.of(language),
         vec![
-            curve(LEFT_REFERENCE, Ink::First, Place::Left),
-            curve(RIGHT_REFERENCE, Ink::Second, Place::Right),
+            curve(LEFT_REFERENCE, Ink::First, Channel::Left),
+            curve(RIGHT_REFERENCE, Ink::Second, Channel::Right),
         ],
     )
 }
@@ -134,8 +135,8 @@ pub(super) fn wheel_panels(language: Language, outcome: &Outcome) -> Vec<Panel> 
         Panel::new(axis.of(language), curves)
     };
     vec![
-        panel(LEFT_AXIS, Ink::First, Place::Left),
-        panel(RIGHT_AXIS, Ink::Second, Place::Right),
+        panel(LEFT_AXIS, Ink::First, Channel::Left),
+        panel(RIGHT_AXIS, Ink::Second, Channel::Right),
         pwm_panel(language, outcome),
     ]
 }
@@ -152,9 +153,9 @@ pub(super) fn range_panels(language: Language, outcome: &Outcome) -> Vec<Panel> 
         Panel::new(RANGE_AXIS.of(language), vec![curve]).at_least(0.0, 60.0)
     };
     vec![
-        panel(LEFT_RANGE, Ink::First, Place::Left),
-        panel(RIGHT_RANGE, Ink::Second, Place::Right),
-        panel(FRONT_RANGE, Ink::Third, Place::Front),
+        panel(LEFT_RANGE, Ink::First, Channel::Left),
+        panel(RIGHT_RANGE, Ink::Second, Channel::Right),
+        panel(FRONT_RANGE, Ink::Third, Channel::Front),
     ]
 }
 

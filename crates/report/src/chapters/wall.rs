@@ -4,13 +4,14 @@ use super::beside;
 use super::panels::{self, Pair};
 use super::parts::{self, ERROR_CM};
 use super::{Experiment, highlight};
+use crate::channel::Channel;
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::judge;
 use crate::places::Places;
 use crate::respond::rms_and_worst;
-use crate::signals::{CM, Outcome, Place, between, difference};
-use crate::text::{Text, same, word};
+use crate::signals::{CM, Outcome, between, difference};
+use crate::text::{Text, capital, same, word};
 use rumbo_plot::{Curve, Ink, Panel, Points};
 
 pub(super) const MODE3: Experiment = Experiment {
@@ -114,8 +115,8 @@ fn fill_mode4(places: &mut Places, data: &Data) {
     };
     pair.fill(places, "mode4", outcome);
     let between = difference(
-        &outcome.range_cm(Place::Left),
-        &outcome.range_cm(Place::Right),
+        &outcome.range_cm(Channel::Left),
+        &outcome.range_cm(Channel::Right),
     );
     let panel = Panel::new(
         places.text(DIFFERENCE_AXIS),
@@ -168,7 +169,7 @@ fn beside(places: &mut Places, data: &Data) {
         .zip(rms_and_worst(&mine).into_iter().zip(rms_and_worst(&real)))
         .map(|(name, (ours, real))| {
             (
-                judge::capital(places.text(name)),
+                capital(places.text(name)),
                 judge::value(language, &cm, ours),
                 judge::value(language, &cm, real),
             )

@@ -9,6 +9,7 @@ mod registers;
 mod wave;
 
 use super::ports::Pin;
+use super::prescaler::Prescaler;
 use super::schedule::Source;
 use super::{Core, Event, Pwm};
 use place::ASYNCHRONOUS;
@@ -25,26 +26,6 @@ const ICES: u8 = 0x40;
 const AS2: u8 = 0x20;
 /// Cycles for which the noise canceller requires the same level.
 const NOISE_CYCLES: u64 = 4;
-
-/// A prescaler: timers 0, 1, 3, 4 and 5 share one, timer 2 has its own.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Prescaler {
-    /// The cycle in which it last was 0.
-    reset: u64,
-    held: bool,
-}
-
-impl Prescaler {
-    /// Its clock stood for some cycles.
-    pub(crate) fn delay(&mut self, cycles: u64) {
-        self.reset += cycles;
-    }
-
-    /// Its ticks in front of `divisor` from the reset to `cycle`.
-    fn ticks(self, divisor: u64, cycle: u64) -> u64 {
-        cycle.saturating_sub(self.reset) / divisor
-    }
-}
 
 /// What drives a timer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
