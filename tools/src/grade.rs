@@ -6,7 +6,8 @@
 
 use rayon::prelude::*;
 use rumbo_experiment::grade::{Assignment, HandIn, Mark, grade};
-use rumbo_sketch::sandbox::{Limits, Sandbox};
+use rumbo_sketch::limits::Limits;
+use rumbo_sketch::sandbox::Sandbox;
 use rumbo_sketch::{BOARDS, Compiler, Given, Source, Toolchain, given};
 use std::error::Error;
 use std::path::Path;

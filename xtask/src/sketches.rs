@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::project::Project;
 use crate::test::{Stop, tools};
-use rumbo_sketch::sandbox::{Limits, Sandbox};
+use rumbo_sketch::limits::Limits;
+use rumbo_sketch::sandbox::Sandbox;
 use rumbo_sketch::{BOARDS, Board, Compiler, Given, SketchError, Toolchain, given};
 
 /// Folders of sketches: each sketch is a folder with a file of its name.

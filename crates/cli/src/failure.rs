@@ -1,10 +1,7 @@
 //! Why a command failed, and the exit status for it.
 
-use crate::interrupt;
-use crate::output;
 use rumbo_experiment::files::FileError;
 use std::fmt;
-use std::process::ExitCode;
 
 /// What ended a command.
 #[derive(Debug)]
@@ -27,26 +24,6 @@ impl Failure {
     /// A wrong input, from any error.
     pub(crate) fn input(error: impl fmt::Display) -> Self {
         Self::Input(error.to_string())
-    }
-
-    /// Prints the error to stderr and returns the exit status.
-    pub(crate) fn report(self) -> ExitCode {
-        match self {
-            Self::LimitMissed => ExitCode::from(1),
-            Self::Interrupted => ExitCode::from(interrupt::STATUS),
-            Self::Input(text) => Self::Inputs(vec![text]).report(),
-            Self::Inputs(lines) => {
-                for line in lines {
-                    output::aside(&format!("error: {line}"));
-                }
-                ExitCode::from(2)
-            }
-            Self::Rejected(lines) => {
-                lines.iter().for_each(|line| output::aside(line));
-                ExitCode::from(2)
-            }
-            Self::ReaderGone => ExitCode::SUCCESS,
-        }
     }
 }
 

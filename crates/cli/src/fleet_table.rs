@@ -1,6 +1,6 @@
 //! The metrics of several robots in one world as tables: a column for each robot, a row for each pair.
 
-use crate::run::in_words;
+use crate::output::in_words;
 use rumbo_experiment::compare::median;
 use rumbo_experiment::files::Setup;
 use std::collections::BTreeMap;

@@ -46,7 +46,7 @@ mod sweep;
 mod tune;
 mod workshop;
 
-use args::{Cli, Command};
+use args::{Cli, Command, NewKind};
 use failure::Failure;
 use std::process::ExitCode;
 
@@ -57,7 +57,7 @@ fn main() -> ExitCode {
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+        Err(failure) => output::report(failure),
     }
 }
 
@@ -65,7 +65,9 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         Some(Command::Import(args)) => import::import(&args),
         Some(Command::List(args)) => list::list(&args),
-        Some(Command::New(args)) => sketch::begin(&args),
+        Some(Command::New(args)) => match args.what {
+            NewKind::Sketch => sketch::begin(&args.folder, args.board),
+        },
         Some(Command::Completions(args)) => manual::completions(&args),
         Some(Command::Manual(args)) => manual::manual(&args),
         Some(Command::Lab(mut args)) => lab::lab(&mut args),

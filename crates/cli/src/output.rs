@@ -4,10 +4,12 @@
 //! terminal or forge a line ([`visible`]).
 
 use crate::failure::Failure;
+use crate::interrupt;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::io::Write;
 use std::path::Path;
+use std::process::ExitCode;
 
 /// Whether a terminal obeys a character instead of showing it: control characters, ends of lines, and what changes
 /// the direction of writing.
@@ -121,6 +123,33 @@ pub(crate) fn figure(value: f64) -> String {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
         text
+    }
+}
+
+/// A metric is no number where what it measures did not happen, such as settling.
+pub(crate) fn in_words(value: f64) -> String {
+    if value.is_nan() {
+        "never".into()
+    } else {
+        figure(value)
+    }
+}
+
+/// Prints why a command has failed to stderr, and returns the exit status.
+pub(crate) fn report(failure: Failure) -> ExitCode {
+    let print = |lines: &[String], before: &str| {
+        lines
+            .iter()
+            .for_each(|line| aside(&format!("{before}{line}")));
+        ExitCode::from(2)
+    };
+    match failure {
+        Failure::LimitMissed => ExitCode::from(1),
+        Failure::Interrupted => ExitCode::from(interrupt::STATUS),
+        Failure::Input(text) => print(&[text], "error: "),
+        Failure::Inputs(lines) => print(&lines, "error: "),
+        Failure::Rejected(lines) => print(&lines, ""),
+        Failure::ReaderGone => ExitCode::SUCCESS,
     }
 }
 

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::fleet_table;
 use crate::interrupt;
 use crate::observe;
-use crate::output::{self, figure};
+use crate::output::{self, in_words};
 use crate::place::{self, Guard};
 use crate::results::Results;
 use crate::run_log::{Kept, Source};
@@ -252,13 +252,4 @@ fn row(scenario: &ScenarioFile, metric: &str, mut values: Vec<f64>) -> Vec<Strin
         row.extend([bounds.to_string(), verdict]);
     }
     row
-}
-
-/// A metric is no number where what it measures did not happen, such as settling.
-pub(crate) fn in_words(value: f64) -> String {
-    if value.is_nan() {
-        "never".into()
-    } else {
-        figure(value)
-    }
 }

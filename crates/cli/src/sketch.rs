@@ -1,13 +1,13 @@
 //! `--sketch` and `rumbo new sketch`: Arduino sketches as programs of the robot.
 
-use crate::args::{NewArgs, NewKind};
 use crate::failure::Failure;
 use crate::output;
 use crate::place;
 use rumbo_experiment::files::Library;
 use rumbo_lab::manifest::crc32;
 use rumbo_sim::boards::Board;
-use rumbo_sketch::sandbox::{Limits, Sandbox};
+use rumbo_sketch::limits::Limits;
+use rumbo_sketch::sandbox::Sandbox;
 use rumbo_sketch::{
     BOARDS, Board as Target, Compiler, Given, SketchError, Toolchain, example, given, starter,
 };
@@ -98,10 +98,8 @@ pub(crate) fn cache() -> PathBuf {
     })
 }
 
-/// Makes a folder with a sketch to start from.
-pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
-    let NewKind::Sketch = args.what;
-    let folder = &args.folder;
+/// Makes a folder with a sketch for a board to start from.
+pub(crate) fn begin(folder: &Path, board: &'static Board) -> Result<(), Failure> {
     let name = folder.file_name().map(|name| name.to_string_lossy());
     let Some(name) = name.filter(|name| is_name(name)) else {
         return Err(Failure::Input(format!(
@@ -109,7 +107,7 @@ pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
             folder.display()
         )));
     };
-    let text = starter(target(args.board))?;
+    let text = starter(target(board))?;
     if let Some(parent) = folder.parent() {
         place::folder(parent)?;
     }
@@ -128,8 +126,8 @@ pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
         return Err(place::unwritable(&file, &error));
     }
     let (file, folder) = (output::shown(&file), output::shown(folder));
-    let robot = match Library::new().robot_with(|robot| robot.board == args.board) {
-        Some(robot) if args.board != <&Board>::default() => format!(" --robot {robot}"),
+    let robot = match Library::new().robot_with(|robot| robot.board == board) {
+        Some(robot) if board != <&Board>::default() => format!(" --robot {robot}"),
         _ => String::new(),
     };
     output::line(&format!(

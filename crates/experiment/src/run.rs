@@ -9,7 +9,7 @@ mod batch;
 pub use batch::{in_order, run_all, run_all_on, run_each};
 
 use crate::calibrate::calibrate_simulated;
-use crate::files::{Calibrated, FileError, Setup, near, unknown};
+use crate::files::{Calibrated, FileError, Setup, did_you_mean, near, unknown};
 use crate::metrics::{self, Metrics};
 use crate::operator::Operator;
 use rumbo_control::params::{ParamId, Params};
@@ -432,6 +432,6 @@ fn instead(name: &str, metrics: &Metrics) -> String {
     let known = || metrics.keys().map(String::as_str);
     match &near::near(name, known())[..] {
         [] => format!("it has {}", known().collect::<Vec<_>>().join(", ")),
-        near => near::did_you_mean(&near.iter().map(ToString::to_string).collect::<Vec<_>>()),
+        near => did_you_mean(&near.iter().map(ToString::to_string).collect::<Vec<_>>()),
     }
 }

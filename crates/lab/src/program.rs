@@ -1,16 +1,10 @@
-//! The program of the lab's emulated robot, and what happens when there is another one: the robot starts again with it,
-//! or stands still when there is none.
+//! The program of the lab's emulated robot, and what makes its images.
 
 use crate::manifest::hash_of;
-use crate::robot::SimulatedRobot;
-use rumbo_emulator::devices::CLOCK_HZ;
 use rumbo_emulator::image::Image;
-use rumbo_emulator::observe::profile::Profile;
 use rumbo_experiment::files::{FileError, Setup, firmware};
-use rumbo_log::{
-    Complaint, FunctionShare, InterruptShare, Level, ProgramPhase, ProgramProfile, ProgramState,
-};
-use rumbo_session::{LinkNews, TargetError};
+use rumbo_log::{Complaint, ProgramPhase};
+use rumbo_session::TargetError;
 use rumbo_sim::boards::Board;
 use rumbo_sim::mega::firmware::Firmware;
 use std::path::{Path, PathBuf};
@@ -44,39 +38,6 @@ pub fn problem(text: String) -> Complaint {
     Complaint {
         text,
         ..Complaint::default()
-    }
-}
-
-/// Most functions that the page lists.
-const FUNCTIONS: usize = 30;
-
-/// A profile for the page.
-fn shares(profile: &Profile) -> ProgramProfile {
-    let functions = profile.costliest(FUNCTIONS).into_iter();
-    let interrupts = profile.interrupts().into_iter();
-    ProgramProfile {
-        cycles: profile.cycles(),
-        asleep: profile.cycles_asleep(),
-        hertz: CLOCK_HZ as u32,
-        functions: functions
-            .map(|each| FunctionShare {
-                name: each.name,
-                calls: each.calls,
-                own: each.own,
-                total: each.total,
-            })
-            .collect(),
-        interrupts: interrupts
-            .map(|each| InterruptShare {
-                vector: each.vector,
-                name: profile.vector_name(each.vector).to_owned(),
-                count: each.count,
-                total: each.total,
-                mean: each.mean(),
-                longest: each.longest,
-                worst_latency: each.worst_latency,
-            })
-            .collect(),
     }
 }
 
@@ -115,13 +76,13 @@ impl Held {
 
 /// The program at the pins.
 pub struct OwnProgram {
-    name: String,
-    phase: ProgramPhase,
-    complaints: Vec<Complaint>,
+    pub(crate) name: String,
+    pub(crate) phase: ProgramPhase,
+    pub(crate) complaints: Vec<Complaint>,
     /// Its file is watched, and not only compiled once.
-    watched: bool,
+    pub(crate) watched: bool,
     /// Nothing is made where the program is no file of the user's.
-    workshop: Option<Box<dyn Workshop>>,
+    pub(crate) workshop: Option<Box<dyn Workshop>>,
 }
 
 impl OwnProgram {
@@ -141,110 +102,5 @@ impl OwnProgram {
     /// Why it cannot be started.
     pub(crate) fn is_rejected(&self) -> bool {
         self.phase == ProgramPhase::Rejected
-    }
-}
-
-impl SimulatedRobot {
-    /// For the page.
-    pub(crate) fn program_state(&self) -> Option<ProgramState> {
-        let (mega, program) = (self.sim.mega()?, self.program.as_ref());
-        Some(ProgramState {
-            name: match program {
-                Some(program) => program.name.clone(),
-                None => mega.firmware().name().to_owned(),
-            },
-            link_usart: mega.firmware().link_usart(),
-            watched: program.is_some_and(|program| program.watched),
-            phase: program.map(|program| program.phase).unwrap_or_default(),
-            complaints: program.map_or_else(Vec::new, |program| program.complaints.clone()),
-            profile: mega.chip().observers().profiled().map(shares),
-        })
-    }
-
-    /// Takes what the workshop has made.
-    pub(crate) fn renew_program(&mut self) {
-        let program = self.program.as_mut();
-        let made = program.and_then(|program| program.workshop.as_mut()?.next());
-        match made {
-            None => {}
-            Some(Made::Begun) => self.enter(ProgramPhase::Compiling, Vec::new()),
-            Some(Made::Image(path)) => self.start_program(path),
-            Some(Made::Rejected(complaints)) => self.reject(complaints),
-        }
-    }
-
-    /// Replaces the program by one that was dropped on the page: an image at once, another one when it is compiled.
-    pub(crate) fn drop_program(
-        &mut self,
-        name: String,
-        content: Vec<u8>,
-    ) -> Result<(), TargetError> {
-        let kind = Path::new(&name).extension().and_then(|kind| kind.to_str());
-        if !matches!(kind, Some("ino" | "elf" | "hex")) {
-            return Err(TargetError::NotAProgram);
-        }
-        let Some(make) = self.make else {
-            return match kind {
-                Some("ino") => Err(TargetError::NoCompiler),
-                _ => self.start_held(&name, &content),
-            };
-        };
-        let workshop = make(self.chip_board(), name.clone(), content)?;
-        self.program = Some(OwnProgram {
-            watched: false,
-            ..OwnProgram::new(&name, Some(workshop))
-        });
-        Ok(())
-    }
-
-    /// Starts again with an image; without one that fits, the robot goes on as it is.
-    fn start_held(&mut self, name: &str, bytes: &[u8]) -> Result<(), TargetError> {
-        let wrong = |error: FileError| TargetError::Setup(error.to_string());
-        let held = Held::new(name, bytes).map_err(wrong)?;
-        let before = self.held.replace(held);
-        if let Err(error) = self.start_again(self.scene.choice.clone()) {
-            self.held = before;
-            return Err(wrong(error));
-        }
-        self.program = Some(OwnProgram::new(name, None));
-        self.news.push_back(LinkNews::Renewed);
-        Ok(())
-    }
-
-    fn enter(&mut self, phase: ProgramPhase, complaints: Vec<Complaint>) {
-        if let Some(program) = &mut self.program {
-            (program.phase, program.complaints) = (phase, complaints);
-        }
-    }
-
-    fn start_program(&mut self, image: PathBuf) {
-        let shown = image.display().to_string();
-        let before = self.overrides.firmware.replace(image);
-        match self.start_again(self.scene.choice.clone()) {
-            Ok(()) => {
-                self.enter(ProgramPhase::Running, Vec::new());
-                self.news.push_back(LinkNews::Renewed);
-            }
-            Err(error) => {
-                self.overrides.firmware = before;
-                // By its name: which file that is, and in whose folder, no page says.
-                let name = self.program.as_ref().map_or("", |program| &program.name);
-                let text = error.to_string().replace(&shown, name);
-                self.reject(vec![problem(text)]);
-            }
-        }
-    }
-
-    fn reject(&mut self, complaints: Vec<Complaint>) {
-        self.sim.switch_off();
-        let text = "the changed program does not compile: the robot is switched off until it does";
-        self.news
-            .push_back(LinkNews::Program(Level::Fault, text.into()));
-        for Complaint { place, text, .. } in &complaints {
-            let place = place.as_ref().map(|place| format!("{place}: "));
-            let text = format!("compiler: {}{text}", place.unwrap_or_default());
-            self.news.push_back(LinkNews::Program(Level::Warning, text));
-        }
-        self.enter(ProgramPhase::Rejected, complaints);
     }
 }

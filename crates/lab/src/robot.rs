@@ -1,5 +1,7 @@
 //! The simulated robot behind the interface of a session's target.
 
+mod programs;
+
 use crate::prepare::{Prepared, prepare};
 use crate::program::{Held, Make, OwnProgram};
 use crate::sight;

@@ -14,6 +14,8 @@ mod encoders;
 mod governor;
 pub mod latch;
 mod ledger;
+#[cfg(not(target_arch = "avr"))]
+mod loops;
 mod outbox;
 mod pilot;
 mod policy;
@@ -24,8 +26,8 @@ mod store;
 mod supervisor;
 mod text;
 
-pub use policy::NETWORK_AT;
 #[cfg(not(target_arch = "avr"))]
-pub use robot::Loops;
+pub use loops::Loops;
+pub use policy::NETWORK_AT;
 pub use robot::{Config, Robot};
 pub use store::{Cell, START_AT};

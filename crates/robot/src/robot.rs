@@ -6,7 +6,9 @@
 //! and the simulator run the same robot.
 
 #[cfg(not(target_arch = "avr"))]
-use rumbo_control::drive::{DriveLayer, WheelTerms};
+use crate::loops::Loops;
+#[cfg(not(target_arch = "avr"))]
+use rumbo_control::drive::DriveLayer;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamId, SCHEMA};
 use rumbo_control::{Fault, Inputs, Outputs, ServoAngle};
@@ -40,18 +42,6 @@ pub struct Config {
     pub reset: ResetCause,
     /// Number of this start, wrapping: another one than at the starts before.
     pub start: u8,
-}
-
-/// What the control loops add up, for people to see: on this machine only, since the link has no room for it.
-#[cfg(not(target_arch = "avr"))]
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Loops {
-    /// Of the wheels' speeds; `None` for a wheel that is released or driven open loop.
-    pub wheels: rumbo_control::Wheels<Option<WheelTerms>>,
-    /// What the mode's loops ask of the wheels, from the next tick on.
-    pub request: rumbo_control::Drive,
-    /// Of the mode's own loops beside a wall; `None` in other modes.
-    pub wall: Option<rumbo_control::mode::WallTerms>,
 }
 
 /// The whole robot, but for its hardware.

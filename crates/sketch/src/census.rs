@@ -1,6 +1,6 @@
 //! The processes of a run, and the memory that they hold together: what no limit of a single process bounds.
 
-use crate::sandbox::Limits;
+use crate::limits::Limits;
 use std::fs;
 
 /// What a process and its descendants take beyond a limit, if they do. Where the system lists no children there is

@@ -13,9 +13,10 @@
 use crate::board::Board;
 use crate::diagnostics::{Diagnostic, Severity, parse};
 use crate::error::SketchError;
+use crate::limits::Limits;
 use crate::preprocess;
 use crate::product;
-use crate::sandbox::{Limits, Sandbox, Task};
+use crate::sandbox::{Sandbox, Task};
 use crate::source::{Source, ending};
 use crate::toolchain::Toolchain;
 use sha2::{Digest, Sha256};

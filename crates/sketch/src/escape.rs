@@ -1,7 +1,8 @@
 //! What a compiler could do that obeys the author of a sketch: a shell script takes its place, and tries.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests too")]
 
-use crate::sandbox::{Limits, Sandbox};
+use crate::limits::Limits;
+use crate::sandbox::Sandbox;
 use crate::{BOARDS, Compiler, SketchError, Source, Toolchain};
 use std::fs;
 use std::os::unix::fs::{FileTypeExt, PermissionsExt};

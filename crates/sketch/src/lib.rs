@@ -18,6 +18,7 @@ mod error;
 mod escape;
 mod examples;
 mod libraries;
+pub mod limits;
 mod preprocess;
 mod product;
 pub mod sandbox;

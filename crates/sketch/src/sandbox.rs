@@ -9,6 +9,7 @@
 use crate::census;
 use crate::diagnostics::plain;
 use crate::error::SketchError;
+use crate::limits::Limits;
 use crate::toolchain::{Toolchain, on_path};
 use std::ffi::OsString;
 use std::fs::File;
@@ -23,34 +24,6 @@ const LOOK: Duration = Duration::from_millis(4);
 const COUNT: u32 = 5;
 /// Path of the build in the sandbox.
 const INSIDE: &str = "/build";
-
-/// Limits of a compilation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// For all of a sketch.
-    pub time: Duration,
-    /// Address space of each process, and memory of all together [MB].
-    pub memory_mb: u64,
-    /// Processes and their threads, at a time.
-    pub processes: usize,
-    /// Of each file it writes [MB].
-    pub file_mb: u64,
-    /// Of what it prints [bytes].
-    pub output: usize,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self {
-            time: Duration::from_secs(180),
-            memory_mb: 1024,
-            // The linker's deepest chain is of ten.
-            processes: 40,
-            file_mb: 32,
-            output: 256 << 10,
-        }
-    }
-}
 
 /// How a compiler is run.
 #[derive(Clone, Debug, PartialEq, Eq)]

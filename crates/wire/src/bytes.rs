@@ -1,7 +1,7 @@
 //! Little-endian fields, bounds-checked: a writer that fills a payload and a reader that must use it up.
 
-use crate::codec::Malformed;
 use crate::frame::MAX_PAYLOAD;
+use crate::malformed::Malformed;
 
 /// Fills a payload from the front. What does not fit is dropped; the codec's tests show that everything fits.
 #[derive(Default)]

@@ -10,19 +10,9 @@ use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Velocity, Wheels};
 
 use crate::bytes::{Reader, Writer};
 use crate::frame::{Body, Frame, Kind};
+use crate::malformed::Malformed;
 use crate::message::*;
 use crate::quantise::{from_i12, from_i16, from_turn, limited, to_i12, to_i16, to_turn};
-
-/// Why a frame that passed the CRC is no message: the other end uses another protocol.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Malformed {
-    /// A frame of the other direction.
-    Direction,
-    /// The payload is too short or too long for what it is.
-    Length,
-    /// A number without a meaning: mode, fault, command, refusal...
-    Number,
-}
 
 /// What travels in frames in one direction.
 pub trait Message: Sized {

@@ -15,6 +15,7 @@ pub mod csv;
 mod decimal;
 pub mod decoder;
 pub mod frame;
+mod malformed;
 pub mod message;
 #[cfg(feature = "names")]
 mod names;
@@ -30,9 +31,10 @@ mod text_units;
 #[cfg(feature = "names")]
 mod words;
 
-pub use codec::{Malformed, Message};
+pub use codec::Message;
 pub use decoder::{Decoder, Received};
 pub use frame::{Body, Frame, Kind, crc as crc16};
+pub use malformed::Malformed;
 pub use message::*;
 
 /// The example of the README is a test.

@@ -1,13 +1,22 @@
 //! Options that several commands have.
 
-use super::runs::ProgramName;
 use super::values::parameter;
 use crate::failure::Failure;
 use crate::sketch;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use rumbo_experiment::files::{FileError, Library, NativeProgram, Overrides};
 use rumbo_sim::boards::Board;
 use std::path::{Path, PathBuf};
+
+/// The programs that can drive the simulated robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ProgramName {
+    /// Ours
+    #[default]
+    Rumbo,
+    /// The report's, as a baseline
+    Baseline,
+}
 
 /// Options that replace values of the scenario.
 #[derive(Args, Clone, Debug)]

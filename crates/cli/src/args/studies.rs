@@ -1,7 +1,7 @@
 //! Options of the commands that run one scenario many times to learn about its parameters: `sweep`, `tune`.
 
-use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, SeedArgs, SettingArgs};
-use super::runs::{LanguageName, ProgramName};
+use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, ProgramName, SeedArgs, SettingArgs};
+use super::runs::LanguageName;
 use clap::Args;
 use rumbo_experiment::sweep::Axis;
 use rumbo_experiment::tune::{Objective, Over};

@@ -4,7 +4,8 @@
 
 use crate::support;
 use rumbo_sketch::Toolchain;
-use rumbo_sketch::sandbox::{Limits, Sandbox};
+use rumbo_sketch::limits::Limits;
+use rumbo_sketch::sandbox::Sandbox;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,7 +1,7 @@
 //! Fits the movements by least squares. Derivation: docs/theory/calibration.md.
 
 use super::error::CalibrateError;
-use super::station::Sample;
+use super::sample::Sample;
 use nalgebra::{DMatrix, DVector};
 use rumbo_control::{SIDES, SonarId, Wheels};
 

@@ -11,6 +11,7 @@
 //! It works from the station's end of a link, with ordinary commands and telemetry, and blocks on nothing: a
 //! [`Calibrator`] is advanced with the time and the bytes received.
 
+mod calibrator;
 mod error;
 mod fit;
 mod link;
@@ -18,12 +19,13 @@ mod moves;
 mod procedure;
 mod report;
 mod rewrite;
+mod sample;
 pub(crate) mod simulated;
 mod station;
 
+pub use calibrator::{Calibrator, Linked, calibrate};
 pub use error::CalibrateError;
 pub use fit::{Feedforward, Measured};
-pub use link::{Calibrator, Linked, calibrate};
 pub use report::{Row, rows};
 pub use rewrite::{is_calibrated, rewrite};
 pub use simulated::{WORLD, calibrate_simulated};

@@ -1,7 +1,8 @@
 //! The movements of a calibration: a leg along the wall, a turn on the spot, a slow ramp of the duty.
 
 use super::error::CalibrateError;
-use super::station::{Sample, Station};
+use super::sample::Sample;
+use super::station::Station;
 use rumbo_control::mode::{Level, ModeId, Movement};
 use rumbo_control::{SIDES, SonarId, Wheels};
 use rumbo_wire::{Command, Waypoint};

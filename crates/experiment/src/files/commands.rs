@@ -25,7 +25,6 @@ use super::names::{find_mode, find_movement};
 use super::parameters;
 use super::read::{Allowed, Source, Table};
 use super::route::{self, GOAL, read_route};
-use super::scenario::TimedCommand;
 use rumbo_control::mode::{Description, ModeId, Movement, ReferenceKind, Takes};
 use rumbo_control::{Duty, Wheels};
 use rumbo_wire::message::{Command, Level};
@@ -67,6 +66,19 @@ const ACTIONS: [&str; 15] = [
 ];
 /// The keys that only go with an action.
 const COMPANIONS: [&str; 5] = ["right_rpm", "value", "duty", "ramp_to_duty", "ramp_s"];
+
+/// A command and when the station sends it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimedCommand {
+    /// Time since the start, in s.
+    pub at_s: f64,
+    /// It is sent earlier, as soon as the robot reports that it has reached the previous command's reference.
+    pub after_reached: bool,
+    /// What is sent, in the units of the link (m, rad/s, fraction of full PWM).
+    pub command: Command,
+    /// The goal is the one of the seed's world: `command` is put in by [`super::Setup::of_seed`].
+    pub goal_of_world: bool,
+}
 
 /// Reads all commands; `mode` is the mode selected at the start, if valid: mistakes in it have been reported.
 pub(crate) fn read_commands(

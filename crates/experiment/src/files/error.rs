@@ -52,11 +52,7 @@ impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unknown { kind, name, near } => {
-                write!(
-                    f,
-                    "unknown {kind} `{name}`; {}",
-                    super::near::did_you_mean(near)
-                )
+                write!(f, "unknown {kind} `{name}`; {}", did_you_mean(near))
             }
             Self::Unreadable { path, reason } => {
                 write!(
@@ -81,5 +77,18 @@ impl std::error::Error for FileError {}
 impl From<SimError> for FileError {
     fn from(error: SimError) -> Self {
         Self::Setting(error.to_string())
+    }
+}
+
+/// `did you mean ...?` in words.
+pub(crate) fn did_you_mean(names: &[String]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    match quoted.split_last() {
+        None => "none is like it; see `rumbo list`".into(),
+        Some((only, [])) => format!("did you mean {only}?"),
+        Some((last, others)) if names.len() <= 3 => {
+            format!("did you mean {} or {last}?", others.join(", "))
+        }
+        Some(_) => format!("known are {}", quoted.join(", ")),
     }
 }

@@ -19,13 +19,11 @@
 
 use super::Library;
 use super::commands::read_commands;
+use super::faults::{MOST_FAULTS, read_sonar_faults, read_wire_faults};
 use super::parameters::read_parameters;
 use super::read::Table;
 use super::robot::read_plant;
-use super::scenario::{
-    MOST_COMMANDS, MOST_FAULTS, ScenarioFile, read_given_mode, read_sonar_faults, read_start,
-    read_wire_faults,
-};
+use super::scenario::{MOST_COMMANDS, ScenarioFile, read_given_mode, read_start};
 use super::setup::{NativeProgram, Overrides};
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -8,6 +8,7 @@
 pub mod bounded;
 pub mod commands;
 mod error;
+mod faults;
 pub mod firmware;
 mod fit;
 mod fleet;
@@ -28,6 +29,8 @@ mod value;
 mod word;
 mod world;
 
+pub use commands::TimedCommand;
+pub(crate) use error::did_you_mean;
 pub use error::{FileError, Problem};
 pub use fleet::Member;
 pub(crate) use kept::Calibrated;
@@ -39,7 +42,7 @@ pub(crate) use near::near_or_all;
 pub use near::unknown;
 pub use policy::PolicyFile;
 pub use robot::{FirmwareCaps, RobotFile};
-pub use scenario::{Bounds, ScenarioFile, Spread, Start, TimedCommand};
+pub use scenario::{Bounds, ScenarioFile, Spread, Start};
 pub use setup::{NativeProgram, Overrides, Port, Setup, TimedText, goal_seen_from};
 pub use start::fleet_around;
 pub use word::WordError;

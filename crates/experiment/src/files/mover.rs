@@ -17,8 +17,7 @@
 //! ```
 
 use super::read::{Allowed, Table};
-use super::value::shown;
-use super::world::{ANGLE, PLACE, SIDE};
+use super::value::{ANGLE, PLACE, SIDE, shown};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::moving::{Body, Course, Repeat, Route, Waypoint};
 use rumbo_plant::world::{Point, ShapeError};

@@ -1,6 +1,6 @@
 //! Suggestions for mistyped names and keys.
 
-use super::error::FileError;
+use super::error::{FileError, did_you_mean};
 
 /// A unit's suffix in a key, what it measures, and how many of the dimension's base unit it is.
 const UNITS: [(&str, &str, f64); 24] = [
@@ -85,19 +85,6 @@ pub(crate) fn near_or_all<'a>(
         near
     };
     chosen.into_iter().map(str::to_owned).collect()
-}
-
-/// `did you mean ...?` in words.
-pub(crate) fn did_you_mean(names: &[String]) -> String {
-    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-    match quoted.split_last() {
-        None => "none is like it; see `rumbo list`".into(),
-        Some((only, [])) => format!("did you mean {only}?"),
-        Some((last, others)) if names.len() <= 3 => {
-            format!("did you mean {} or {last}?", others.join(", "))
-        }
-        Some(_) => format!("known are {}", quoted.join(", ")),
-    }
 }
 
 /// What to write instead of an unknown key: the known key in another unit, the near ones, or all of them.

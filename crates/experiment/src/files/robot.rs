@@ -14,11 +14,10 @@
 //! open_circuit_v = 7.4
 //! ```
 
-use super::error::FileError;
-use super::near;
+use super::error::{FileError, did_you_mean};
 use super::parameters::read_parameters;
 use super::read::{Allowed, Source, Table};
-use super::world::ANGLE;
+use super::value::ANGLE;
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
@@ -178,7 +177,7 @@ fn read_board(root: &Table<'_, '_>) -> &'static Board {
     };
     Board::named(&name.value).unwrap_or_else(|| {
         let known: Vec<String> = BOARDS.map(|board| board.name.to_owned()).into();
-        root.complain("board", name.line, &name.value, &near::did_you_mean(&known));
+        root.complain("board", name.line, &name.value, &did_you_mean(&known));
         <&Board>::default()
     })
 }

@@ -1,8 +1,7 @@
 //! `route_m = [[x, y], [x, y, heading_deg], ...]` of a command: the waypoints of mode 7.
 
 use super::read::{Allowed, Table};
-use super::value::shown;
-use super::world::ANGLE;
+use super::value::{ANGLE, shown};
 use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
 use rumbo_wire::message::{Command, Waypoint};
 

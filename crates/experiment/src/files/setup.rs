@@ -1,9 +1,9 @@
 //! A scenario with everything it names, and the overrides of the command line.
 
-use super::error::FileError;
+use super::error::{FileError, did_you_mean};
 use super::fit::{has_its_goal, has_its_sonars};
 use super::kept::Calibrations;
-use super::near::{did_you_mean, near, near_or_all};
+use super::near::{near, near_or_all};
 use super::read::Allowed;
 use super::start::{pose, stand_apart, stands_free};
 use super::{

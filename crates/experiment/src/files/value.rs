@@ -35,6 +35,13 @@ impl Allowed {
     }
 }
 
+/// Coordinates of anything in a world.
+pub(crate) const PLACE: Allowed = Allowed::new(-50.0, 50.0, "m");
+/// Lengths of what stands in one.
+pub(crate) const SIDE: Allowed = Allowed::new(0.01, 50.0, "m");
+/// Directions there.
+pub(crate) const ANGLE: Allowed = Allowed::new(-360.0, 360.0, "deg");
+
 /// A value with its line, for loaders that check it themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Placed<T> {

@@ -1,5 +1,6 @@
 //! Why a word or a number in a file or a command is refused: what to write instead.
 
+use super::error::did_you_mean;
 use super::near;
 use super::value::Allowed;
 use rumbo_control::mode::ModeId;
@@ -34,7 +35,7 @@ impl fmt::Display for WordError {
                 write!(f, "unknown mode; did you mean {}?", names.join(" or "))
             }
             Self::Movement(names) => {
-                write!(f, "unknown movement; {}", near::did_you_mean(names))
+                write!(f, "unknown movement; {}", did_you_mean(names))
             }
             Self::Parameter(name) => {
                 let known = ParamId::ALL.map(ParamId::name);

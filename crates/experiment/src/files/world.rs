@@ -31,19 +31,16 @@ use super::error::FileError;
 use super::mover::{MOST_MOVERS, Mover, read_mover};
 use super::read::{Allowed, Source, Table};
 use super::scenario::{Start, read_start};
+use super::value::{ANGLE, PLACE, SIDE};
 use crate::random_world::{Journey, RandomWorld};
 use rumbo_plant::world::{Block, Point, ShapeError, Wall, World};
 
-/// Coordinates of anything in a world.
-pub(crate) const PLACE: Allowed = Allowed::new(-50.0, 50.0, "m");
 /// Each ray of a sonar meets all of them.
 const MOST_SHAPES: usize = 1_000;
-pub(crate) const SIDE: Allowed = Allowed::new(0.01, 50.0, "m");
 const GROUPS: Allowed = Allowed::new(0.0, 20.0, "count");
 const AWAY: Allowed = Allowed::new(0.5, 15.0, "m");
 const SHARE: Allowed = Allowed::new(0.0, 1.0, "");
 const THICKNESS: Allowed = Allowed::new(0.0, 1.0, "m");
-pub(crate) const ANGLE: Allowed = Allowed::new(-360.0, 360.0, "deg");
 
 /// A world, as `worlds/*.toml` describes it. World frame: x and y in metres, angles counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]

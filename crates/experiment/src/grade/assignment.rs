@@ -24,7 +24,7 @@
 //! ```
 
 use crate::files::read::{Allowed, Placed, Source, Table};
-use crate::files::{FileError, Library, Overrides, Setup, bounded, near};
+use crate::files::{FileError, Library, Overrides, Setup, bounded, did_you_mean, near};
 use crate::metrics::Metrics;
 use crate::run::run;
 use std::path::Path;
@@ -273,7 +273,7 @@ fn read_test(table: &Table<'_, '_>, library: &Library) -> Option<Test> {
         && !setup.robot.wirings.contains_key(value)
     {
         let known: Vec<String> = setup.robot.wirings.keys().cloned().collect();
-        table.complain("wiring", *line, value, &near::did_you_mean(&known));
+        table.complain("wiring", *line, value, &did_you_mean(&known));
     }
     Some(Test {
         name: setup.scenario.name.clone(),
@@ -330,10 +330,7 @@ fn read_criterion(table: &Table<'_, '_>, tests: &[Test], known: &[Metrics]) -> C
         if found.is_none() {
             let names = tests.iter().map(|test| test.name.as_str());
             let near: Vec<String> = near::near_or_all(&of.value, names);
-            let remedy = format!(
-                "no [[scenario]] of this name; {}",
-                near::did_you_mean(&near)
-            );
+            let remedy = format!("no [[scenario]] of this name; {}", did_you_mean(&near));
             table.complain("scenario", of.line, &of.value, &remedy);
         }
         found
@@ -372,7 +369,7 @@ fn not_measured(criterion: &Criterion, known: &[Metrics]) -> Option<String> {
     let names = near::near_or_all(metric, metrics.keys().map(String::as_str));
     Some(format!(
         "no such metric in its scenario; {}",
-        near::did_you_mean(&names)
+        did_you_mean(&names)
     ))
 }
 

@@ -1,7 +1,8 @@
 //! Sketches become images as with the Arduino IDE, and what is wrong with them is said with its place.
 #![cfg(test)]
 
-use rumbo_sketch::sandbox::{Limits, Sandbox};
+use rumbo_sketch::limits::Limits;
+use rumbo_sketch::sandbox::Sandbox;
 use rumbo_sketch::{BOARDS, Board, Compiler, SketchError, Source, Toolchain, example, examples};
 use tempfile::TempDir;
 

@@ -2,7 +2,8 @@
 #![cfg(test)]
 #![cfg(target_os = "linux")]
 
-use rumbo_sketch::sandbox::{Limits, Sandbox};
+use rumbo_sketch::limits::Limits;
+use rumbo_sketch::sandbox::Sandbox;
 use rumbo_sketch::{BOARDS, Compiler, SketchError, Source, Toolchain};
 use std::path::Path;
 use std::time::Duration;
