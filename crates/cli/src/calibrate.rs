@@ -187,7 +187,7 @@ pub(crate) fn rewritten(
     text: &str,
     rewrite: impl FnOnce(&str, &str) -> Result<String, RewriteError>,
 ) -> Result<String, Failure> {
-    let today = time::OffsetDateTime::now_utc().date().to_string();
+    let today = rumbo_station::today_utc();
     let text = rewrite(text, &today)
         .map_err(|error| Failure::Input(format!("{file}: is no robot file ({error})")))?;
     RobotFile::parse("", file, &text)?;

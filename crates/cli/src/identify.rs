@@ -35,6 +35,9 @@ struct Report<'a> {
     /// A simulated robot's true parameters.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     against_truth: Vec<AgainstTruth>,
+    /// Why the parameters are not to be believed.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    doubts: &'a [String],
     written: Option<String>,
 }
 
@@ -65,6 +68,11 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     }
     .map_err(Failure::input)?;
     let found = outcome.identification();
+    let doubts = match found {
+        Some(found) => found.doubts(logs.check(&robot.plant).map_err(Failure::input)?.runs()),
+        None => Vec::new(),
+    };
+    let is_believed = doubts.is_empty() || args.overwrite.force;
     let params = found.map_or(robot.plant, |found| found.params);
     let sonars = logs.compare_sonars(&params);
     let plots = match &args.plots {
@@ -78,7 +86,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
         (None, false) => None,
     };
     let written = match (found, into) {
-        (Some(found), Some(path)) => Some(write(path, &robot.text, found)?),
+        (Some(found), Some(path)) if is_believed => Some(write(path, &robot.text, found)?),
         _ => None,
     };
     let truth = driving.as_ref().and_then(|driving| driving.truth);
@@ -87,15 +95,17 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
         _ => Vec::new(),
     };
     if args.json {
-        return output::json(&Report {
+        output::json(&Report {
             robot: name,
             drive: &outcome,
             sonars: &sonars,
             plots: plots.iter().map(|path| output::shown(path)).collect(),
             log: driving.as_ref().map(|driving| output::shown(&driving.path)),
             against_truth,
+            doubts: &doubts,
             written: written.map(output::shown),
-        });
+        })?;
+        return refused(&doubts, is_believed);
     }
     report(&logs, &outcome, &sonars, &plots)?;
     if !against_truth.is_empty() {
@@ -108,6 +118,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
             output::shown(&driving.path)
         ))?;
     }
+    refused(&doubts, is_believed)?;
     match written {
         Some(path) => output::remark(&format!(
             "{}: its [plant] table is rewritten",
@@ -118,6 +129,19 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
         ),
         None => Ok(()),
     }
+}
+
+/// The verdict on a fit with such doubts.
+fn refused(doubts: &[String], is_believed: bool) -> Result<(), Failure> {
+    if is_believed {
+        doubts.iter().for_each(|doubt| output::note(doubt));
+        return Ok(());
+    }
+    let doubts = doubts
+        .iter()
+        .map(|doubt| format!("the fit is refused: {doubt}"));
+    let remedy = "nothing is written; --plots DIR shows each run beside its simulation, --force takes the fit all the same";
+    Err(Failure::Inputs(doubts.chain([remedy.into()]).collect()))
 }
 
 /// Drives the robot, if one is to be driven.
@@ -204,7 +228,7 @@ fn write<'a>(path: &'a Path, robot: &str, found: &Identification) -> Result<&'a 
         true => bounded::read_text(path).map_err(|error| wrong(error.to_string()))?,
         false => robot.to_owned(),
     };
-    let today = time::OffsetDateTime::now_utc().date().to_string();
+    let today = rumbo_station::today_utc();
     let text =
         rumbo_identify::rewrite(&text, found, &today).map_err(|error| wrong(error.to_string()))?;
     RobotFile::parse("", &file, &text)?;

@@ -22,6 +22,7 @@ pub mod sonar_stats;
 
 mod contradiction;
 mod descent;
+mod doubts;
 mod error;
 mod fit;
 mod log;

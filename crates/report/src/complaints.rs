@@ -114,7 +114,7 @@ fn of_image(line: &str) -> Option<Complaint> {
 }
 
 /// Notes beside a run or a hand-in, with names where values stand, and their names in `messages.md`.
-const NOTES: [(&str, &str); 6] = [
+const NOTES: [(&str, &str); 9] = [
     (
         "firmware {name}: it never drove a motor; are its pins those of wiring {wiring}? (docs/emulator.md)",
         "no-motor",
@@ -126,6 +126,18 @@ const NOTES: [(&str, &str); 6] = [
     (
         "firmware {name}: nothing came over the Bluetooth link, {link} in wiring {wiring}, but on {others}",
         "other-link",
+    ),
+    (
+        "firmware {name}: a trigger of a sonar was high for {us} us; the HC-SR04's data sheet asks for 10 us, and some modules do not answer a shorter one",
+        "short-trigger",
+    ),
+    (
+        "firmware {name}: the supply fell too low and reset the chip {times} times; start the motors more gently, or charge the battery",
+        "brown-outs",
+    ),
+    (
+        "firmware {name}: the watchdog reset the chip {times} times; call wdt_reset() in time, or wdt_disable() at the start of setup()",
+        "watchdog-resets",
     ),
     (
         "handed in as an image: its compiler is not known",
@@ -220,6 +232,18 @@ mod tests {
             (
                 format!("firmware {name}: nothing came over the Bluetooth link, Serial1 in wiring final, on no other either"),
                 "no llegó nada por el enlace Bluetooth, Serial1 en el cableado final, ni por otro",
+            ),
+            (
+                format!("firmware {name}: a trigger of a sonar was high for 9.5 us; the HC-SR04's data sheet asks for 10 us, and some modules do not answer a shorter one"),
+                "un disparo de sonar estuvo en alto 9.5 us",
+            ),
+            (
+                format!("firmware {name}: the supply fell too low and reset the chip 11 times; start the motors more gently, or charge the battery"),
+                "reinició el microcontrolador 11 veces",
+            ),
+            (
+                format!("firmware {name}: the watchdog reset the chip 16 times; call wdt_reset() in time, or wdt_disable() at the start of setup()"),
+                "el watchdog reinició el microcontrolador 16 veces",
             ),
             (
                 "handed in as an image: its compiler is not known".into(),

@@ -11,8 +11,7 @@ use crate::topics::Topic;
 use crate::types::{Byte, Covariance, Message, encode};
 use rumbo_log::{Level, Log, LoggedEvent, MapPose, Row, SonarMount, State, compose};
 use std::fmt;
-use time::OffsetDateTime;
-use time::format_description::well_known::Rfc3339;
+use std::time::UNIX_EPOCH;
 
 /// Shortest distance that the sonars measure [m]: HC-SR04.
 const LEAST_M: f32 = 0.02;
@@ -67,18 +66,14 @@ pub fn messages(log: &Log) -> Result<Vec<Sent>, ConvertError> {
     }
     let parameters = log.parameters();
     let geometry = Geometry::new(log.scene(), |name| parameters.get(name).copied());
-    let started = log.manifest.as_ref().and_then(|manifest| {
-        let started = manifest.started.as_ref()?;
-        OffsetDateTime::parse(started, &Rfc3339).ok()
+    let started_ns = log.manifest.as_ref().and_then(|manifest| {
+        let started = humantime::parse_rfc3339(manifest.started.as_ref()?).ok()?;
+        let since = started.duration_since(UNIX_EPOCH).ok()?;
+        u64::try_from(since.as_nanos()).ok()
     });
-    let started = started.map_or(0, OffsetDateTime::unix_timestamp_nanos);
     let robot = log.manifest.as_ref();
     let robot = robot.and_then(|manifest| manifest.robot.clone());
-    let mut converter = Converter::new(
-        SPEAKER,
-        robot.unwrap_or_default(),
-        u64::try_from(started).unwrap_or(0),
-    );
+    let mut converter = Converter::new(SPEAKER, robot.unwrap_or_default(), started_ns.unwrap_or(0));
     converter.know(geometry.ok_or(ConvertError::NoGeometry)?);
     for row in &log.rows {
         converter.row(row)?;

@@ -32,7 +32,7 @@ pub use echo::Print;
 pub use ending::asked_to_end;
 pub use error::{ServeError, SessionError};
 pub use folder::{Folder, serve_folder};
-pub use recorder::{Recording, now_utc};
+pub use recorder::{Recording, now_utc, today_utc};
 pub use serve::{
     DEFAULT_PORT, Lab, LabConfig, Named, ServeAt, serve, serve_fleet, serve_log, serve_with,
 };

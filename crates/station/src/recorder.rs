@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 /// Entries reach the file within this time: half of what may be missing after a crash.
 pub(crate) const FLUSH: Duration = Duration::from_millis(400);
@@ -196,17 +196,15 @@ fn write(
 /// The time of day, UTC, as a manifest has it.
 #[must_use]
 pub fn now_utc() -> String {
-    let now = time::OffsetDateTime::now_utc();
-    let (date, clock) = (now.date(), now.time());
-    format!(
-        "{}-{:02}-{:02}T{:02}:{:02}:{:02}Z",
-        date.year(),
-        u8::from(date.month()),
-        date.day(),
-        clock.hour(),
-        clock.minute(),
-        clock.second()
-    )
+    humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
+}
+
+/// Its date, `2026-11-29`.
+#[must_use]
+pub fn today_utc() -> String {
+    let mut now = now_utc();
+    now.truncate("2026-11-29".len());
+    now
 }
 
 #[cfg(test)]

@@ -188,7 +188,8 @@ minute.
 
 Logs of Rumbo are cut into stretches: where frames are lost, the robot started again or the mode changed, and where it is
 OFF. The robot is believed to be of the kind of --robot, each value within some 30 %. Logs that no one robot explains are
-refused; intervals are those of 95 %.")]
+refused; intervals are those of 95 %. A fit is refused too, and nothing written, if it explains less than half of how the
+wheels turned, repeats the runs worse than the robot file does, or tells nothing about any parameter: --force takes it.")]
 pub(crate) struct IdentifyArgs {
     /// Recorded runs: logs of Rumbo (connect, lab, run), CSV of the original program, or logs made of it by `rumbo import`
     #[arg(required_unless_present = "drive", value_name = "LOG")]

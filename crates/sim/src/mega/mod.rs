@@ -64,8 +64,10 @@ pub const CYCLES_PER_US: u64 = 16;
 const BROWN_OUT_V: f64 = 3.8;
 /// Cost of an output that the robot feels: the plant follows to its instant.
 pub const ACT: u64 = 10;
-/// A sonar needs its trigger high for 10 us (HC-SR04 user's manual); what is shorter it may ignore.
+/// A sonar's trigger is to be high for 10 us (HC-SR04 user's manual); modules fire from about half of that on.
 const TRIGGER_CYCLES: u64 = 10 * CYCLES_PER_US;
+/// The shortest that fires.
+const FIRING_CYCLES: u64 = 4 * CYCLES_PER_US;
 /// The rate of a terminal at a USART that does not receive \[baud\].
 const UNSET_BAUD: u32 = 9600;
 /// An input goes into the chip's queue this long before its cycle: until then nothing the chip does can change it.
@@ -117,6 +119,8 @@ pub struct Mega {
     marks: Marks,
     /// A motor was driven.
     has_driven: bool,
+    /// What its program did that a note tells.
+    oddities: notes::Oddities,
     /// What its outputs have cost so far.
     toil: u64,
     /// The program does one instruction and halts.
@@ -147,6 +151,7 @@ impl Mega {
             verdict: None,
             marks: Marks::default(),
             has_driven: false,
+            oddities: notes::Oddities::default(),
             toil: 0,
             stepping: false,
             halt: None,

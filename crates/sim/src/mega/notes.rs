@@ -1,13 +1,65 @@
 //! What is odd about a program on the robot, a line each: registers that are not modelled, motors and links that it never used.
 
-use super::Mega;
 use super::console::Console;
 use super::firmware::Language;
+use super::{CYCLES_PER_US, Mega, TRIGGER_CYCLES};
 use rumbo_emulator::cpu::Standstill;
-use rumbo_emulator::devices::Unmodelled;
+use rumbo_emulator::devices::{Cause, Unmodelled};
 
 /// The USARTs as a sketch calls them.
 const NAMES: [&str; 4] = ["Serial (USB)", "Serial1", "Serial2", "Serial3"];
+
+/// What a program did that people wonder about.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Oddities {
+    /// The shortest trigger of a sonar below what its data sheet asks for [cycles].
+    short_trigger: Option<u64>,
+    brown_outs: u32,
+    watchdog_resets: u32,
+}
+
+/// Resets by one cause that are more than a program's own way to begin anew.
+const RESETS: u32 = 2;
+
+impl Oddities {
+    /// A sonar's trigger was high for so many cycles.
+    pub(super) fn triggered(&mut self, high: u64) {
+        if high < TRIGGER_CYCLES {
+            self.short_trigger = Some(self.short_trigger.map_or(high, |short| short.min(high)));
+        }
+    }
+
+    /// The chip was reset.
+    pub(super) fn reset(&mut self, cause: Cause) {
+        match cause {
+            Cause::BrownOut => self.brown_outs += 1,
+            Cause::Watchdog => self.watchdog_resets += 1,
+            _ => {}
+        }
+    }
+
+    fn told(&self, name: &str) -> impl Iterator<Item = String> {
+        let short = self.short_trigger.map(|high| {
+            let us = high as f64 / CYCLES_PER_US as f64;
+            format!(
+                "firmware {name}: a trigger of a sonar was high for {us:.1} us; the HC-SR04's data sheet asks for 10 us, and some modules do not answer a shorter one"
+            )
+        });
+        let browned = (self.brown_outs >= RESETS).then(|| {
+            format!(
+                "firmware {name}: the supply fell too low and reset the chip {} times; start the motors more gently, or charge the battery",
+                self.brown_outs
+            )
+        });
+        let watched = (self.watchdog_resets >= RESETS).then(|| {
+            format!(
+                "firmware {name}: the watchdog reset the chip {} times; call wdt_reset() in time, or wdt_disable() at the start of setup()",
+                self.watchdog_resets
+            )
+        });
+        [short, browned, watched].into_iter().flatten()
+    }
+}
 
 impl Mega {
     /// Registers that the emulator does not model, and what a program for this robot would have done.
@@ -24,6 +76,7 @@ impl Mega {
         };
         let strange = self.chip.unmodelled().iter().map(line);
         let notes = strange.chain(self.standstill()).chain(self.unsent());
+        let notes = notes.chain(self.oddities.told(self.firmware.name()));
         notes.chain(self.silence()).collect()
     }
 

@@ -1,7 +1,7 @@
 //! Outputs of the chip's pins and USARTs, as actions on the robot.
 
 use super::bridge::{self, HalfBridge};
-use super::{ACT, Action, CYCLES_PER_US, Mega, TRIGGER_CYCLES, firmware, module};
+use super::{ACT, Action, CYCLES_PER_US, FIRING_CYCLES, Mega, firmware, module};
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Event, Output, Pwm};
 use rumbo_plant::drivetrain::{Bridge, Side};
@@ -21,8 +21,8 @@ impl Mega {
                 }
                 Event::Duty { pin, pwm } => self.modulate(cycle, pin, pwm),
                 Event::Byte { usart, byte, baud } => self.byte_sent(cycle, usart, byte as u8, baud),
-                // Covered by the events of the pins.
-                Event::Reset(_) => {}
+                // What it does to the pins comes as their own events.
+                Event::Reset(cause) => self.oddities.reset(cause),
             }
             if self.actions.len() > before {
                 acted = Some(cycle);
@@ -61,10 +61,12 @@ impl Mega {
             let rise = &mut self.triggers[sonar.index()];
             if high {
                 rise.get_or_insert(cycle);
-            } else if let Some(rise) = rise.take()
-                && cycle - rise >= TRIGGER_CYCLES
-            {
-                self.actions.push(Action::Trigger(sonar));
+            } else if let Some(rise) = rise.take() {
+                let high = cycle - rise;
+                self.oddities.triggered(high);
+                if high >= FIRING_CYCLES {
+                    self.actions.push(Action::Trigger(sonar));
+                }
             }
         }
     }

@@ -144,6 +144,27 @@ fn without_a_wiring_the_report_s_build_is_taken_unless_the_program_uses_another_
 }
 
 #[test]
+fn a_short_trigger_fires_and_it_and_resets_over_and_over_are_told() {
+    let Some(mut setup) = setup("mode1", "impatient", None) else {
+        return;
+    };
+    setup.scenario.duration_s = 2.0;
+    let result = run(&setup, 1).unwrap();
+    let ranges_cm = String::from_utf8(result.trace.console(0)).unwrap();
+    let ranges_cm: Vec<&str> = ranges_cm.lines().collect();
+    assert!(ranges_cm.len() > 20, "{ranges_cm:?}");
+    assert!(!ranges_cm.contains(&"0"), "{ranges_cm:?}");
+    let [trigger, watchdog, ..] = &result.notes[..] else {
+        panic!("{:?}", result.notes);
+    };
+    assert!(trigger.contains("high for 9.5 us"), "{trigger}");
+    assert!(
+        watchdog.contains("watchdog reset the chip 3 times"),
+        "{watchdog}"
+    );
+}
+
+#[test]
 fn a_program_that_is_not_for_this_robot_gets_a_list_of_what_it_never_did() {
     let Some(mut setup) = setup("mode1", "blink", None) else {
         return;

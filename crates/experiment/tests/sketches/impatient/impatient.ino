@@ -1,0 +1,17 @@
+// A sonar triggered by port writes around delayMicroseconds(10): 9.5 us. Nobody feeds the watchdog.
+
+#include <avr/wdt.h>
+
+void setup() {
+  Serial.begin(9600);
+  wdt_enable(WDTO_500MS);
+  DDRJ |= _BV(1);  // Pin 14.
+}
+
+void loop() {
+  PORTJ |= _BV(1);
+  delayMicroseconds(10);
+  PORTJ &= ~_BV(1);
+  Serial.println(pulseIn(3, HIGH, 40000) / 58);
+  delay(60);
+}
