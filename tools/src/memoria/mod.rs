@@ -38,15 +38,21 @@ fn print(seeds: u64, names: &[String]) -> Result<(), FileError> {
         "| scenario | | the sketch | its native form | ours | ours on the Mega |\n\
          |---|---|---|---|---|---|\n",
     );
+    let mut times = format!(
+        "| the sketch, ours on the Mega | {} |\n{}\n",
+        TIMES.map(|(what, _)| what).join(" | "),
+        "|---".repeat(TIMES.len() + 1) + "|"
+    );
     let mut short = String::from(
         "| the report's program, ours on the Mega | median of 5 | period of the loop | time that waits | echo to PWM |\n|---|---|---|---|---|\n",
     );
     for experiment in EXPERIMENTS {
         if names.is_empty() || names.iter().any(|name| name == experiment.scenario) {
             eprintln!("{} ...", experiment.scenario);
-            rows(&experiment, seeds, &mut whole, &mut short)?;
+            rows(&experiment, seeds, [&mut whole, &mut times, &mut short])?;
         }
     }
+    let whole = format!("{whole}\n{times}");
     println!("{whole}\n{short}");
     if names.is_empty() && seeds == SEEDS {
         pages::write("docs/theory/baseline.md", "beside", &whole)?;
@@ -88,12 +94,11 @@ fn slow(experiment: &Experiment, overrides: &Overrides) -> Result<Setup, FileErr
     Ok(setup)
 }
 
-/// Appends the rows of a scenario to both tables.
+/// Appends the rows of a scenario to the tables of results and of times, and to the short one.
 fn rows(
     experiment: &Experiment,
     seeds: u64,
-    whole: &mut String,
-    short: &mut String,
+    [whole, times, short]: [&mut String; 3],
 ) -> Result<(), FileError> {
     let natively = Overrides {
         program: NativeProgram::Baseline,
@@ -124,17 +129,12 @@ fn rows(
     ours.echo_to_pwm_ms = ours
         .echo_to_pwm_ms
         .filter(|_| sketch.echo_to_pwm_ms.is_some());
-    for (what, figure) in TIMES {
-        let [sketch, ours] = [figure(&sketch), figure(&ours)];
-        *whole += &format!("| {scenario} | {what} | {sketch} | | | {ours} |\n");
-    }
+    let both = TIMES.map(|(_, figure)| [figure(&sketch), figure(&ours)].join(", "));
+    *times += &format!("| {scenario} | {} |\n", both.join(" | "));
     if let Some(metric) = experiment.metrics.first() {
-        let both = |figures: [String; 2]| figures.join(", ");
-        let [period, waits, latency] = [0, 2, 4].map(|index: usize| {
-            let (_, figure) = TIMES[index];
-            both([figure(&sketch), figure(&ours)])
-        });
-        let result = both([0, 3].map(|index: usize| median(metric, &results[index])));
+        let [period, _, waits, _, latency, ..] = &both;
+        let result = [0, 3].map(|index: usize| median(metric, &results[index]));
+        let result = result.join(", ");
         let what = metric.what;
         *short += &format!("| {scenario}: {what} | {result} | {period} | {waits} | {latency} |\n");
     }
@@ -147,21 +147,17 @@ const TIMES: [(&str, Figure); 7] = [
     ("period of the loop, median", |times| {
         format!("{:.0} ms", times.period_ms[0])
     }),
-    ("the same, longest", |times| {
-        format!("{:.1} ms", times.period_ms[1])
-    }),
+    ("longest", |times| format!("{:.1} ms", times.period_ms[1])),
     ("time that waits, at least", |times| percent(times.waits[1])),
-    ("of it, for the serial line", |times| {
-        percent(times.waits[0])
-    }),
-    ("from an echo to the PWM, median", |times| {
+    ("of it, for the line", |times| percent(times.waits[0])),
+    ("echo to PWM, median", |times| {
         let text = times.echo_to_pwm_ms.map(|ms| format!("{ms:.1} ms"));
         text.unwrap_or_else(|| "-".to_owned())
     }),
     ("longest interrupt", |times| {
         format!("{:.1} us", times.interrupt_us)
     }),
-    ("worst wait of an encoder's interrupt", |times| {
+    ("longest wait of an encoder's edge", |times| {
         let text = times.encoder_us.map(|us| format!("{us:.1} us"));
         text.unwrap_or_else(|| "-".to_owned())
     }),

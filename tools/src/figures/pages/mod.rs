@@ -1,6 +1,5 @@
 //! The sections of each page of docs/theory, and of docs/wiring.md.
 
-mod baseline;
 mod manual;
 mod states;
 mod walls;
@@ -47,7 +46,6 @@ pub(crate) const PAGES: &[Page] = &[
     page("mode8-lane", "lane.md", ways::mode8_lane),
     page("mode8-goals", "baseline.md", ways::mode8_goals),
     page("mode8-obstacles", "baseline.md", ways::mode8_obstacles),
-    page("baseline", "baseline.md", baseline::beside),
     page("wiring", "../wiring.md", wiring::wiring),
     page("modes", "README.md", states::modes),
     page("states-0", "manual.md", states::states::<0>),
