@@ -3,7 +3,7 @@
 //! `cargo xtask memoria` builds and starts it.
 //!
 //! Arguments: how many seeds (default 5), and scenarios (default all). All of them with 5 seeds go into
-//! docs/theory/baseline.md, and in short into docs/figures.md, between their markers.
+//! docs/theory/baseline.md, between its markers.
 
 mod experiments;
 mod time;
@@ -43,20 +43,16 @@ fn print(seeds: u64, names: &[String]) -> Result<(), FileError> {
         TIMES.map(|(what, _)| what).join(" | "),
         "|---".repeat(TIMES.len() + 1) + "|"
     );
-    let mut short = String::from(
-        "| the report's program, ours on the Mega | median of 5 | period of the loop | time that waits | echo to PWM |\n|---|---|---|---|---|\n",
-    );
     for experiment in EXPERIMENTS {
         if names.is_empty() || names.iter().any(|name| name == experiment.scenario) {
             eprintln!("{} ...", experiment.scenario);
-            rows(&experiment, seeds, [&mut whole, &mut times, &mut short])?;
+            rows(&experiment, seeds, [&mut whole, &mut times])?;
         }
     }
     let whole = format!("{whole}\n{times}");
-    println!("{whole}\n{short}");
+    println!("{whole}");
     if names.is_empty() && seeds == SEEDS {
         pages::write("docs/theory/baseline.md", "beside", &whole)?;
-        pages::write("docs/figures.md", "beside", &short)?;
     }
     Ok(())
 }
@@ -94,11 +90,11 @@ fn slow(experiment: &Experiment, overrides: &Overrides) -> Result<Setup, FileErr
     Ok(setup)
 }
 
-/// Appends the rows of a scenario to the tables of results and of times, and to the short one.
+/// Appends the rows of a scenario to the tables of results and of times.
 fn rows(
     experiment: &Experiment,
     seeds: u64,
-    [whole, times, short]: [&mut String; 3],
+    [whole, times]: [&mut String; 2],
 ) -> Result<(), FileError> {
     let natively = Overrides {
         program: NativeProgram::Baseline,
@@ -131,13 +127,6 @@ fn rows(
         .filter(|_| sketch.echo_to_pwm_ms.is_some());
     let both = TIMES.map(|(_, figure)| [figure(&sketch), figure(&ours)].join(", "));
     *times += &format!("| {scenario} | {} |\n", both.join(" | "));
-    if let Some(metric) = experiment.metrics.first() {
-        let [period, _, waits, _, latency, ..] = &both;
-        let result = [0, 3].map(|index: usize| median(metric, &results[index]));
-        let result = result.join(", ");
-        let what = metric.what;
-        *short += &format!("| {scenario}: {what} | {result} | {period} | {waits} | {latency} |\n");
-    }
     Ok(())
 }
 
@@ -173,14 +162,6 @@ fn sorted(metric: &Metric, runs: &[RunResult]) -> Vec<f64> {
     let mut values: Vec<f64> = runs.iter().filter_map(value).collect();
     values.sort_by(f64::total_cmp);
     values
-}
-
-fn median(metric: &Metric, runs: &[RunResult]) -> String {
-    let values = sorted(metric, runs);
-    match values.get(values.len() / 2) {
-        None => "-".to_owned(),
-        Some(median) => with_unit(shown(metric, *median), metric),
-    }
 }
 
 fn with_unit(number: String, metric: &Metric) -> String {
