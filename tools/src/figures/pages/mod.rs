@@ -47,8 +47,6 @@ pub(crate) const PAGES: &[Page] = &[
     page("mode8-goals", "baseline.md", ways::mode8_goals),
     page("mode8-obstacles", "baseline.md", ways::mode8_obstacles),
     page("wiring", "../wiring.md", wiring::wiring),
-    page("modes", "README.md", states::modes),
-    page("states-7", "waypoints.md", states::states::<7>),
     page("states-8", "mission.md", states::states::<8>),
 ];
 

@@ -1,56 +1,7 @@
-//! Tables of the modes, and of their states and transitions, from their descriptions.
+//! The table of a mode's states and transitions, from its description.
 
-use super::{Made, RPM};
-use rumbo_control::mode::{ModeId, Reference, ReferenceKind};
-use rumbo_control::rig::Rig;
-
-/// The modes, one a row.
-pub(crate) fn modes() -> Result<Option<Made>, String> {
-    let mut words = String::from(
-        "| mode | does | setpoint | rigs | parameters first |\n|---|---|---|---|---|\n",
-    );
-    for mode in ModeId::ALL {
-        let about = mode.description();
-        let rigs: Vec<_> = about.rigs.iter().map(Rig::name).collect();
-        let rigs = match rigs.len() {
-            all if all == Rig::ALL.len() => "any".into(),
-            _ => format!("`{}`", rigs.join("`, `")),
-        };
-        let first = about.parameters.first().into_iter();
-        let first: Vec<_> = first
-            .flat_map(|group| group.parameters)
-            .map(|id| format!("`{}`", id.name()))
-            .collect();
-        words += &format!(
-            "| {} `{}` | {} | {} | {rigs} | {} |\n",
-            about.number,
-            about.name,
-            about.about,
-            about.reference.as_ref().map(reference).unwrap_or_default(),
-            first.join(", ")
-        );
-    }
-    Ok(Some(Made {
-        figures: Vec::new(),
-        words,
-    }))
-}
-
-/// A reference with its range, in the units that people use.
-fn reference(reference: &Reference) -> String {
-    if !reference.commanded {
-        return "found by the mode".into();
-    }
-    let (what, factor, unit) = match reference.kind {
-        ReferenceKind::Distance => ("distance", 100.0, "cm"),
-        ReferenceKind::WheelSpeed => ("speed of each wheel", RPM, "rpm"),
-        ReferenceKind::Speed => ("speed", RPM, "rpm"),
-        ReferenceKind::Goal => ("x and y", 1.0, "m"),
-    };
-    let shown = |value: f32| (f64::from(value) * factor).round();
-    let (min, max) = (shown(reference.min), shown(reference.max));
-    format!("{what}, {min} to {max} {unit}")
-}
+use super::Made;
+use rumbo_control::mode::ModeId;
 
 /// A way out that leaves this many states has one row, below them.
 const SHARED: usize = 4;
