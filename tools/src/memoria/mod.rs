@@ -1,5 +1,5 @@
 //! The report's program as an Arduino sketch (`examples/arduino/memoria`) on the emulated Mega, beside its native form and our
-//! core, natively and as the Mega's image: one table of each scenario's metrics and of the chip's time.
+//! core, natively and as the Mega's image: a metric of each scenario, and the chip's time.
 //! `cargo xtask memoria` builds and starts it.
 //!
 //! Arguments: how many seeds (default 5), and scenarios (default all). All of them with 5 seeds go into
@@ -112,13 +112,12 @@ fn rows(
         results.push(runs(setup, seeds)?);
     }
     let scenario = experiment.scenario;
-    for metric in experiment.metrics {
-        *whole += &format!("| {scenario} | {} |", metric.what);
-        for runs in &results {
-            *whole += &format!(" {} |", cell(metric, runs));
-        }
-        *whole += "\n";
+    let metric = &experiment.metric;
+    *whole += &format!("| {scenario} | {} |", metric.what);
+    for runs in &results {
+        *whole += &format!(" {} |", cell(metric, runs));
     }
+    *whole += "\n";
     let sketch = time::of_the_sketch(experiment)?;
     let mut ours = time::of_ours(experiment)?;
     // Without requested echoes, those of the idle sonars carry no information.
