@@ -20,7 +20,6 @@ pub(crate) struct Experiment {
     pub(crate) metric: Metric,
 }
 
-
 const fn metric(what: &'static str, name: &'static str, factor: f64, unit: &'static str) -> Metric {
     Metric {
         what,
