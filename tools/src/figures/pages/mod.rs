@@ -1,7 +1,6 @@
 //! The sections of each page of docs/theory, and of docs/wiring.md.
 
 mod manual;
-mod states;
 mod walls;
 mod ways;
 mod wheels;
@@ -47,7 +46,6 @@ pub(crate) const PAGES: &[Page] = &[
     page("mode8-goals", "baseline.md", ways::mode8_goals),
     page("mode8-obstacles", "baseline.md", ways::mode8_obstacles),
     page("wiring", "../wiring.md", wiring::wiring),
-    page("states-8", "mission.md", states::states::<8>),
 ];
 
 const fn page(
