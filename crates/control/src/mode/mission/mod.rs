@@ -45,7 +45,7 @@ use proof::Proof;
 pub(super) use watch::Watch;
 use watch::Worth;
 
-/// Way around an obstacle without an echo of the sonar towards it, after which that may be silent for ever [m].
+/// Way around an obstacle without an echo of the sonar towards it, after which that sonar is suspected [m].
 const UNSEEN_M: f32 = 0.25;
 /// What passes a robot that gives way nearer than this is remembered [m].
 const PASSING_M: f32 = 0.2;
@@ -305,8 +305,8 @@ impl State {
         self.fresh = true;
     }
 
-    /// Whether a sonar may be wrong: the robot should be slow. That at the obstacle's side is one if it has long been
-    /// silent.
+    /// Whether a sonar may be wrong, so that the robot should be slow. The one towards the obstacle counts once it has
+    /// been silent for too long.
     fn doubts(&self) -> bool {
         self.watch.doubts() || self.unseen_m > UNSEEN_M
     }
