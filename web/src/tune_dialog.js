@@ -256,7 +256,7 @@ export class TuneDialog {
       create('p', { className: pass_tuned === seeds.length ? 'passed' : 'failed', textContent: t('on {} robots that the search has not seen: {} passed, {} pass', seeds.length, pass_now, pass_tuned) }),
       ...resultTables(found, (name) => unitWords(this.#table.get(name)?.unit ?? '')),
       create('div', { className: 'row' }, this.#set, robot_file === null ? none : save),
-      create('p', { className: 'hint', textContent: t('{} runs of the search. Lines whose interval holds no zero are sure; the others may be chance.', found.runs) }));
+      create('p', { className: 'hint', textContent: t('{} runs of the search. Lines whose interval excludes zero are certain; the others may be chance.', found.runs) }));
     this.#result.hidden = false;
     this.#result.scrollIntoView({ block: 'start' });
   }

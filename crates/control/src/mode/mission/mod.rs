@@ -181,12 +181,12 @@ states! {
         }
         /// Stands and turns the front sonar, and then itself, to what must answer.
         Prove = "prove the front sonar" {
-            GoToGoal: "it hears",
+            GoToGoal: "the sonar answers",
             InitialTurn: "the goal is not ahead",
-            AvoidanceTurn: "it hears, beside an obstacle",
-            Seek: "it hears, before an obstacle",
-            Along: "it hears, along an obstacle",
-            SafeDistance: "it hears, around a corner",
+            AvoidanceTurn: "the sonar answers, beside an obstacle",
+            Seek: "the sonar answers, before an obstacle",
+            Along: "the sonar answers, along an obstacle",
+            SafeDistance: "the sonar answers, around a corner",
             Unreachable: "there is no way",
             GiveWay: "something approaches",
         }
