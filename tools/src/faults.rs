@@ -118,7 +118,8 @@ fn line(drive: &Drive) -> String {
     )
 }
 
-/// Rows of failures, columns of drives: runs, those with a contact, and the fastest contact.
+/// Rows of failures, columns of drives: runs, those with a contact, and the fastest contact. A failure without a contact
+/// has no row.
 fn table(drives: &[Drive]) -> String {
     let columns: Vec<usize> = (0..DRIVES.len())
         .filter(|column| drives.iter().any(|drive| drive.drive == *column))
@@ -128,10 +129,17 @@ fn table(drives: &[Drive]) -> String {
         text += &format!(" {} |", DRIVES[*column].0);
     }
     text += &format!("\n|---|{}\n", "---|".repeat(columns.len()));
+    let (mut rows, mut quiet) = (0, 0);
     for class in [Class::Knowable, Class::FreeFloor] {
         for failure in Failure::all() {
             let of_row = |drive: &&Drive| drive.failure == failure && drive.class == class;
-            if !drives.iter().any(|drive| of_row(&drive)) {
+            let row: Vec<&Drive> = drives.iter().filter(of_row).collect();
+            if row.is_empty() {
+                continue;
+            }
+            rows += 1;
+            if row.iter().all(|drive| drive.touch.is_none()) {
+                quiet += 1;
                 continue;
             }
             let free = if class == Class::FreeFloor {
@@ -141,15 +149,14 @@ fn table(drives: &[Drive]) -> String {
             };
             text += &format!("| {failure}{free} |");
             for column in &columns {
-                let here = drives
-                    .iter()
-                    .filter(of_row)
-                    .filter(|drive| drive.drive == *column);
-                text += &format!(" {} |", cell(&here.collect::<Vec<_>>()));
+                let here = row.iter().filter(|drive| drive.drive == *column);
+                text += &format!(" {} |", cell(&here.copied().collect::<Vec<_>>()));
             }
             text += "\n";
         }
     }
+    text +=
+        &format!("\n{quiet} of {rows} failures have no contact in any drive and are left out.\n");
     text
 }
 

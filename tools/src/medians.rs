@@ -106,8 +106,8 @@ impl Table {
             let is_alike = by_share || differs <= quantum.unwrap_or(0.0);
             self.compared += 1;
             self.alike += usize::from(is_alike);
-            if native == chip {
-                self.equal += 1;
+            self.equal += usize::from(native == chip);
+            if is_alike {
                 continue;
             }
             let share = match native {
@@ -116,10 +116,9 @@ impl Table {
             };
             let [native, chip, quantum] =
                 [Some(native), Some(chip), quantum].map(|value| value.map_or("-".into(), shown));
-            let verdict = if is_alike { "" } else { "no" };
             let _ = writeln!(
                 self.rows,
-                "| {name} | `{metric}` | {native} | {chip} | {share} | {quantum} | {verdict} |"
+                "| {name} | `{metric}` | {native} | {chip} | {share} | {quantum} |"
             );
         }
         let [native, chip] =
@@ -141,9 +140,9 @@ impl Table {
             ),
         };
         format!(
-            "Medians of {seeds} seeds: {} of {} figures are alike, {} of them the same number and left out below.\nWithin their limits are \
-             all {seeds} seeds{passes}\n\n\
-             | scenario | figure | natively | on the Mega | difference | quantum | alike |\n|---|---|---|---|---|---|---|\n{}",
+            "Medians of {seeds} seeds: {} of {} figures are alike, {} of them the same number. Those that are not:\n\n\
+             | scenario | figure | natively | on the Mega | difference | quantum |\n|---|---|---|---|---|---|\n{}\n\
+             Within their limits are all {seeds} seeds{passes}\n",
             self.alike, self.compared, self.equal, self.rows
         )
     }

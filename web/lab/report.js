@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * Makes the report of `rumbo experiments`, in a worker of its own, so that the lab goes on; to end the worker is to cancel it.
+ * Makes the report of `rumbo experiments`, in its own worker, so that the lab goes on; terminating the worker cancels it.
  * Its name is the language. To the page go first the `{ experiments }`, each with its name and title; for
  * `{ only, seed }` numbers follow, the part that is done, and the `{ page }`, a file. `{ error }` is why it has ended.
  */

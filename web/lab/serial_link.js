@@ -19,7 +19,7 @@ const PATIENCE_MS = 100;
 export async function openPort(kind, baudRate) {
   const alike = (await serial()?.getPorts() ?? []).filter((port) => kindOf(port) === kind);
   const [port] = alike;
-  // With two, a robot might be driven that nobody looks at.
+  // With two, a robot might drive unobserved.
   if (!port || alike.length > 1) throw new Error(port ? 'there are two of the kind: choose one again' : 'the browser does not offer it: plug it in, or choose it again');
   await port.open({ baudRate, bufferSize: BUFFER });
   return port;
@@ -138,7 +138,7 @@ export class SerialLink {
   async #closePort() {
     const [port, writer] = [this.#port, this.#writer];
     this.#port = this.#writer = null;
-    // What waits is not sent to a robot that nobody drives any more; a port that is gone is closed already.
+    // Queued bytes are not sent to a robot without a session; a port that is gone is closed already.
     await writer?.abort().catch(() => {});
     writer?.releaseLock();
     await port?.close().catch(() => {});

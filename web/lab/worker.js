@@ -186,7 +186,7 @@ function askRobot(robot, data) {
 }
 
 /**
- * Begins anew, as `changes` say; a scenario that is given comes with its own world and robots.
+ * Restarts with `changes`; a given scenario comes with its own world and robots.
  * @param {Lab} before @param {import('../src/run_link.js').Start} changes
  */
 function begin(before, changes) {

@@ -29,7 +29,7 @@ export function fold(text) {
 }
 
 /**
- * What there is to find, for a reader of this language: of what is there in both languages, this one.
+ * The searchable entries for a reader of this language: of pages in both languages, the reader's.
  * @param {Page[]} pages
  * @param {string} language
  * @returns {Entry[]}
@@ -39,7 +39,7 @@ export function entriesOf(pages, language) {
     if (own !== language && translated) return [];
     const weight = (LATER.test(page) ? LATER_WEIGHT : 1) * (own === language ? 1 : OTHER_LANGUAGE_WEIGHT);
     return sections.map(([anchor, heading, text], index) => ({
-      // A page's first heading stands at its top.
+      // A page's first heading is at its top.
       address: index === 0 ? page : `${page}#${anchor}`, title, heading: heading || title, text, language: own, weight,
       folded: { title: fold(title), heading: fold(heading || title), text: fold(text) },
     }));

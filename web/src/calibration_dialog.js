@@ -58,7 +58,7 @@ export class CalibrationDialog {
       this.#shown = '';
       this.#layOut(calibration.phase);
     } else if (!calibration && this.#shown === 'running') {
-      // The robot was put elsewhere meanwhile.
+      // The robot was moved in the meantime.
       this.#layOut('begin');
     }
   }

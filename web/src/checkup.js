@@ -81,7 +81,7 @@ export function sonarInVain(sonar, range_cm) {
   const name = [t('left|sonar'), t('right|sonar'), t('front|sonar')][sonar] ?? '';
   return range_cm === null
     ? bad(t('The {} sonar gives no reading. See its 5 V supply, its trigger wire and its echo wire.', name))
-    : bad(t('The {} sonar does not see the hand. See that it looks where it should, and that nothing stands in its beam.', name));
+    : bad(t('The {} sonar does not see the hand. Check that it points where it should, and that nothing is in its beam.', name));
 }
 
 /** What is to be done about the servo. @param {'ahead' | 'left' | 'right'} seen @returns {Verdict} */

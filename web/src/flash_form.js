@@ -42,7 +42,7 @@ export class FlashForm {
     const file = fileButton(t('Another program…'), '.hex,.elf', (file) => this.#take(file));
     this.#write.addEventListener('click', () => this.#begin());
     this.body.append(create('div', { className: 'stack' },
-      create('p', { textContent: t('Over the USB cable, by the board\'s own boot loader. All of it is read back. Should the cable go meanwhile, the board stands still until it is written again. Parameters saved on the robot stay.') }),
+      create('p', { textContent: t('Over the USB cable, by the board\'s own boot loader. All of it is read back. If the cable comes off meanwhile, the board does nothing until it is written again. Parameters saved on the robot stay.') }),
       create('div', { className: 'row' }, this.#name, file), create('div', { className: 'row' }, this.#write, this.#bar, this.#phase), this.#complaint));
     this.#take(null);
   }

@@ -38,7 +38,7 @@ export class Notice {
 
   #back() {
     if (this.#since !== null && this.#known) {
-      this.#say('good', t('The station is there again; it was not since {}.', this.#since));
+      this.#say('good', t('The station is back; it was gone since {}.', this.#since));
       this.#timer = setTimeout(() => { this.#bar.hidden = true; }, GOOD_NEWS_MS);
     } else {
       this.#bar.hidden = true;

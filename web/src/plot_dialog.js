@@ -144,7 +144,7 @@ export class PlotDialog {
     if (signals.length === 0) return this.#complain(t('choose a signal at least'));
     if (left === undefined || right === undefined) return this.#complain(t('give y min and y max, min below max, or leave both empty'));
     const old = this.#panel?.spec ?? null;
-    // A title that stands in two languages is kept as it is.
+    // A title in two languages is kept as it is.
     const title = old && this.#title.value === t(old.title) ? old.title : this.#title.value;
     this.#plots.change(old, { title, signals, min: left?.[0] ?? null, max: left?.[1] ?? null, ...(right ? { right } : {}), weight: old?.weight ?? 4 });
     return this.#dialog.dialog.close();

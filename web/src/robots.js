@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * The robots in one world, each with a session of its own: which of them the page is of. On the site also how many there
+ * The robots in one world, each with its own session: which of them this page shows. On the site also how many there
  * are, and a scenario of the reader's.
  */
 import { create, element } from './dom.js';
@@ -36,7 +36,7 @@ export function listen(ask, known) {
     const runs = known();
     if (!runs || !count.reportValidity()) return;
     const robots = count.valueAsNumber;
-    // Until they are there.
+    // Until they have loaded.
     count.value = count.defaultValue;
     ask({ open: { ...runs, world: runs.world === EDITED ? null : runs.world, robots, ...robotOf() } });
   });

@@ -15,7 +15,7 @@ export class Steering {
   /** Who is steered; null: nobody. @type {Steer | null} */
   #steer = null;
 
-  /** @param {() => void} onStop The gamepad's STOP, whoever is steered. */
+  /** @param {() => void} onStop The gamepad's STOP, whichever robot is steered. */
   constructor(onStop) {
     addEventListener('keydown', (event) => this.#press(event), { capture: true });
     addEventListener('keyup', (event) => {

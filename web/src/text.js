@@ -103,7 +103,7 @@ const PATTERNS = Object.keys(SPANISH).filter((english) => english.includes('{}')
 })).sort((a, b) => b.letters - a.letters);
 
 /**
- * A sentence of the station or of the robot in the page's language; what stands in it is one too, where it is known.
+ * A sentence of the station or of the robot in the page's language; sentences within it are translated too, if known.
  * @param {string} english
  * @returns {string}
  */

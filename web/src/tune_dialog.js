@@ -53,7 +53,7 @@ export class TuneDialog {
   #boxes = new Map();
   /** The robot's, by their names. @type {Map<string, Parameter>} */
   #table = new Map();
-  /** Those that were set last: what the robot refuses of them is told. @type {Set<string>} */
+  /** Parameters that were set last: the refusals among them are shown. @type {Set<string>} */
   #sent = new Set();
   /** @type {import('./types.js').Scene | null} */
   #scene = null;
@@ -187,7 +187,7 @@ export class TuneDialog {
     return create('label', { title: parameter ? said(parameter.description) : '' }, box, ` ${name} `, value);
   }
 
-  /** The values to search from, as far as the robot has told its own. */
+  /** The values to search from, as far as the robot has reported its own. */
   #showValues() {
     for (const [name, line] of this.#boxes) {
       const parameter = this.#table.get(name);
@@ -256,7 +256,7 @@ export class TuneDialog {
       create('p', { className: pass_tuned === seeds.length ? 'passed' : 'failed', textContent: t('on {} robots that the search has not seen: {} passed, {} pass', seeds.length, pass_now, pass_tuned) }),
       ...resultTables(found, (name) => unitWords(this.#table.get(name)?.unit ?? '')),
       create('div', { className: 'row' }, this.#set, robot_file === null ? none : save),
-      create('p', { className: 'hint', textContent: t('{} runs of the search. Lines whose interval holds no zero are sure; the others may be chance.', found.runs) }));
+      create('p', { className: 'hint', textContent: t('{} runs of the search. Lines whose interval excludes zero are certain; the others may be chance.', found.runs) }));
     this.#result.hidden = false;
     this.#result.scrollIntoView({ block: 'start' });
   }

@@ -1,5 +1,5 @@
 // @ts-check
-/** A search of *Tune* at the station, over a WebSocket of its own: it ends with that, so with the page too. */
+/** A search of *Tune* at the station, over its own WebSocket: it ends with that, and so with the page. */
 import { askForKey } from './key.js';
 
 /** As `rumbo tune` takes them. @typedef {{scenario: string, over: string[], params: Record<string, number>, aims: string, runs: number, seed: number}} Wanted */

@@ -20,7 +20,7 @@ export function format(value, decimals = 1) {
 }
 
 /**
- * A number with as many decimals as it needs, `digits` in all at most.
+ * A number with as many decimals as it needs, at most `digits` digits in all.
  * @param {number} value
  * @param {number} [digits]
  */

@@ -1,6 +1,6 @@
 //! `cargo xtask memoria`: the report's program as an Arduino sketch, its native form, our core and our image, scenario by scenario.
 //!
-//! The table of docs/theory/baseline.md and its short form in docs/figures.md come from here;
+//! The tables of docs/theory/baseline.md come from here;
 //! `tools/src/memoria/` runs all of it.
 
 use crate::project::{Project, run as run_command};

@@ -62,7 +62,7 @@ impl Host for Page {
     }
 }
 
-/// What a session's page is told first: the robots in its world, if there are several, and which of them it is of.
+/// The first message to a session's page: the robots in its world, if there are several, and which one is its own.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Place {
     pub(crate) robots: Rc<[String]>,

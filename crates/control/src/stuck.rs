@@ -12,7 +12,7 @@ const SAME_M: f32 = 0.000_2;
 /// one repeats itself in at most three of ten readings: so many come about once in ten million.
 const REPEATED: u8 = 14;
 const DIFFERS: u8 = 2;
-/// So many suffice where the robot has come this much nearer to what it hears [m].
+/// Repetitions that suffice once the robot has come this much nearer to the target [m].
 const SOON: (u8, f32) = (3, 0.04);
 
 /// The answers of one sonar.
@@ -26,7 +26,7 @@ pub struct Stuck {
 }
 
 impl Stuck {
-    /// An answer; since the last one the sonar `moved`, and came `closer_m` nearer to what it hears. Says whether it is
+    /// Takes an answer; since the last one the sonar `moved`, and came `closer_m` nearer to the target. Returns whether it is
     /// stuck.
     pub fn ingest(&mut self, range_m: f32, moved: bool, closer_m: f32) -> bool {
         self.closer_m = clamp(self.closer_m + closer_m, -1.0, 1.0);

@@ -472,7 +472,7 @@ impl Fault {
             Fault::NotFinite => "a value was not a finite number; reset the parameters",
             Fault::Overrun => "a control tick took too long",
             Fault::Blocked => {
-                "blocked: something stands in the way or holds both wheels; clear the way or turn the robot, then clear the fault and arm again"
+                "blocked: something is in the way or holds both wheels; clear the way or turn the robot, then clear the fault and arm again"
             }
             Fault::LeftEncoderImplausible => {
                 "left encoder implausible: it loses edges or picks up noise, or something drags at its wheel; see its wires, its ground, and the gap between sensor and magnet"

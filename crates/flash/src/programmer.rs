@@ -142,7 +142,9 @@ impl Programmer {
     #[must_use]
     pub fn aftermath(&self) -> &'static str {
         match self.begun && !self.steps.is_empty() {
-            true => ". The board has no whole program now, and stands still until one is written",
+            true => {
+                ". The board has no complete program now, and does nothing until one is written"
+            }
             false => "",
         }
     }

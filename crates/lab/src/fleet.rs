@@ -138,7 +138,7 @@ impl FleetRobot {
         self.of_it(|about| about.name.clone())
     }
 
-    /// What a thread did that panicked, the session's own end tells.
+    /// The world, also after a thread has panicked: that is reported when its session ends.
     fn shared(&self) -> MutexGuard<'_, World> {
         self.world.lock().unwrap_or_else(PoisonError::into_inner)
     }

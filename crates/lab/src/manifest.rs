@@ -13,7 +13,7 @@ pub const OF_FLEET: &str = "robot ";
 /// So does that of a policy.
 pub const OF_POLICY: &str = "policy ";
 
-/// The manifest of a setup as these overrides made it; `step_us` and the time are for the one who runs it.
+/// The manifest of a setup as these overrides made it; `step_us` and the time are left to the caller.
 #[must_use]
 pub fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manifest {
     // Of several robots each may have a program of its own, which the scenario says.

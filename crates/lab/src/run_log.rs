@@ -138,7 +138,7 @@ impl Source<'_> {
 struct Records<'a> {
     seed: u64,
     trace: &'a Trace,
-    /// A goal that nobody told it.
+    /// The goal of a robot that got none by a command.
     goal_m: Option<[f32; 2]>,
     outcome: Option<Outcome>,
 }

@@ -123,8 +123,8 @@ impl<T: Copy> EchoLine<T> {
     }
 }
 
-/// The sonar's answer, if it is decided by now.
 impl EchoLine<Micros> {
+    /// The sonar's answer, if it is decided by now.
     fn echo(self, now: Micros) -> Option<Echo> {
         match self {
             EchoLine::Fallen(rise, fall) => Some(Echo::Pulse(fall.since(rise))),

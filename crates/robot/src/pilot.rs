@@ -153,7 +153,7 @@ impl Pilot {
         })
     }
 
-    /// There is such a network for mode 9.
+    /// Sets the network of mode 9.
     pub(crate) fn learn(&mut self, network: Option<Shape>) {
         self.network = network;
     }

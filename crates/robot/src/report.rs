@@ -19,7 +19,7 @@ use crate::outbox::{Outbox, Priority};
 const TELEMETRY_TICKS: u8 = 4;
 /// The earlier of its two speed samples is so many ticks older: 20 ms.
 const SAMPLE_TICKS: u8 = 2;
-/// What is due waits for so many busy ticks in a row: a late echo and that of the next ping.
+/// Busy ticks in a row for which a due frame waits: a late echo and that of the next ping.
 const MOST_BUSY_TICKS: u8 = 2;
 /// The heading reference with every so many telemetry frames at most: 12.5 Hz.
 const HEADING_FRAMES: u8 = 2;

@@ -195,7 +195,7 @@ impl Robot {
         self.reporter.transmit()
     }
 
-    /// The robot stands here, as seen from its origin: for a simulated one that is put elsewhere.
+    /// Sets the pose relative to the origin: for a simulated robot that is placed elsewhere.
     #[cfg(not(target_arch = "avr"))]
     pub fn set_pose(&mut self, pose: rumbo_control::Pose) {
         self.pilot.set_pose(pose);
@@ -217,7 +217,7 @@ impl Robot {
         self.reporter.acknowledge(ack);
     }
 
-    /// The one who gives orders without a link is there.
+    /// Counts as a heartbeat from the caller that commands the robot without a link.
     #[cfg(not(target_arch = "avr"))]
     pub fn stay_alive(&mut self) {
         self.supervisor.sign_of_life(self.clock.now());

@@ -70,7 +70,7 @@ impl Anomaly {
                 "the robot sends far more than it should: switch it off, and flash it again"
             }
             Self::Repeats => {
-                "the robot repeats what it said before: what is shown may be old; switch it off, and check what is on the link"
+                "the robot repeats earlier messages: what is shown may be old; switch it off, and check what is on the link"
             }
         }
     }

@@ -231,7 +231,7 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
         Ok(true)
     }
 
-    /// Advances the target by a slice, whether one is due or not: for one whose time is that of another.
+    /// Advances the target by a slice, whether one is due or not: for a driver that follows another one's clock.
     ///
     /// # Errors
     /// When the target is gone for good.
@@ -254,7 +254,7 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
         Ok(())
     }
 
-    /// Takes over the pace of the one whose time its own is.
+    /// Follows the clock of `leader`.
     pub fn follow(&mut self, leader: &Self) {
         self.pace = leader.pace;
     }

@@ -31,7 +31,7 @@ impl Meter {
         self.buckets.iter().sum::<u64>() as f64 * 1e6 / span_us as f64
     }
 
-    /// Empties the buckets whose time is over.
+    /// Empties the buckets that have expired.
     fn turn_to(&mut self, now_us: u64) {
         let bucket = now_us / BUCKET_US;
         let passed = bucket.saturating_sub(self.current).min(BUCKETS as u64);

@@ -19,9 +19,9 @@ pub struct Config {
     pub plant: Params,
     /// Where its sonars sit.
     pub rig: Rig,
-    /// What it drives among.
+    /// The world that it drives in.
     pub world: World,
-    /// Where it stands at first, in the world.
+    /// Start pose in the world.
     pub start: Pose,
     /// The wheels turn freely: no floor, the body stays where it is.
     pub wheels_in_air: bool,

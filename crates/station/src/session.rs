@@ -74,7 +74,7 @@ fn recorder(recordings: &Recordings, manifest: Manifest) -> Result<Recorder, Log
     Recorder::in_folder(recordings.folder(), &manifest)
 }
 
-/// The session of one of several robots, whose time is that of the first.
+/// The session of one of several robots, which follows the clock of the first.
 struct Follower {
     driver: Driver<Around>,
     orders: Orders,

@@ -1,4 +1,4 @@
-//! The scenarios, the report's program's time in each, and the metrics compared.
+//! The scenarios, the report's program's time in each, and the metric compared.
 
 /// One row.
 pub(crate) struct Metric {
@@ -17,11 +17,8 @@ pub(crate) struct Experiment {
     pub(crate) duration_s: f64,
     /// Lines sent for the profile besides `ON`.
     pub(crate) line: &'static str,
-    pub(crate) metrics: &'static [Metric],
+    pub(crate) metric: Metric,
 }
-
-const DEG: f64 = 180.0 / std::f64::consts::PI;
-const RPM: f64 = 30.0 / std::f64::consts::PI;
 
 const fn metric(what: &'static str, name: &'static str, factor: f64, unit: &'static str) -> Metric {
     Metric {
@@ -32,138 +29,89 @@ const fn metric(what: &'static str, name: &'static str, factor: f64, unit: &'sta
     }
 }
 
-const CONTACTS: Metric = metric("contacts", "contacts", 1.0, "");
-
 pub(crate) const EXPERIMENTS: [Experiment; 12] = [
     Experiment {
         scenario: "mode1",
         sketch: "mode1",
         duration_s: 9.0,
         line: "REF 30",
-        metrics: &[
-            metric("107 to 30 cm, within 5 %", "step1.settling_s", 1.0, "s"),
-            metric("overshoot", "step1.overshoot_m", 100.0, "cm"),
-            metric("30 to 50 cm, within 5 %", "step2.settling_s", 1.0, "s"),
-        ],
+        metric: metric("107 to 30 cm, within 5 %", "step1.settling_s", 1.0, "s"),
     },
     Experiment {
         scenario: "mode2",
         sketch: "mode2",
         duration_s: 24.0,
         line: "REF 30",
-        metrics: &[
-            metric("119 to 30 cm, within 5 %", "step1.settling_s", 1.0, "s"),
-            metric("angle at rest", "step1.angle_rad", DEG, "degrees"),
-            metric("50 to 15 cm, within 2 cm", "step3.within_2cm_s", 1.0, "s"),
-            CONTACTS,
-        ],
+        metric: metric("119 to 30 cm, within 5 %", "step1.settling_s", 1.0, "s"),
     },
     Experiment {
         scenario: "mode3",
         sketch: "mode3",
         duration_s: 28.0,
         line: "",
-        metrics: &[
-            metric("distance error, rms", "distance_rms_m", 100.0, "cm"),
-            metric("distance error, worst", "distance_worst_m", 100.0, "cm"),
-        ],
+        metric: metric("distance error, rms", "distance_rms_m", 100.0, "cm"),
     },
     Experiment {
         scenario: "mode4",
         sketch: "mode4",
         duration_s: 28.0,
         line: "REF 50",
-        metrics: &[
-            metric("59 to 50 cm, within 2 cm", "step1.within_2cm_s", 1.0, "s"),
-            metric("50 to 30 cm, within 2 cm", "step2.within_2cm_s", 1.0, "s"),
-            metric("30 to 40 cm, within 2 cm", "step3.within_2cm_s", 1.0, "s"),
-        ],
+        metric: metric("59 to 50 cm, within 2 cm", "step1.within_2cm_s", 1.0, "s"),
     },
     Experiment {
         scenario: "mode5",
         sketch: "mode5",
         duration_s: 45.5,
         line: "REF 60",
-        metrics: &[
-            metric("0 to 60 rpm, within 5 %", "step1.settling_s", 1.0, "s"),
-            metric("50 to 100 rpm", "step3.settling_s", 1.0, "s"),
-            metric("0 to -100 rpm", "step6.settling_s", 1.0, "s"),
-            metric("ripple at 60 rpm", "step1.ripple_rad_s", RPM, "rpm"),
-        ],
+        metric: metric("0 to 60 rpm, within 5 %", "step1.settling_s", 1.0, "s"),
     },
     Experiment {
         scenario: "mode5-reversal",
         sketch: "mode5",
         duration_s: 15.5,
         line: "REF 70",
-        metrics: &[metric("70 to -100 rpm", "step2.settling_s", 1.0, "s")],
+        metric: metric("70 to -100 rpm", "step2.settling_s", 1.0, "s"),
     },
     Experiment {
         scenario: "mode6",
         sketch: "mode6",
         duration_s: 26.0,
         line: "REF 40",
-        metrics: &[
-            metric("sideways after 3 m", "after_3_m.sideways_m", 100.0, "cm"),
-            metric("heading after 3 m", "after_3_m.heading_rad", DEG, "degrees"),
-        ],
+        metric: metric("sideways after 3 m", "after_3_m.sideways_m", 100.0, "cm"),
     },
     Experiment {
         scenario: "mode7",
         sketch: "mode7",
         duration_s: 60.0,
         line: "",
-        metrics: &[
-            metric("once round", "finish_s", 1.0, "s"),
-            metric(
-                "off the square by odometry",
-                "odometry_worst_m",
-                100.0,
-                "cm",
-            ),
-        ],
+        metric: metric("once round", "finish_s", 1.0, "s"),
     },
     Experiment {
         scenario: "mode7-repeat",
         sketch: "mode7",
         duration_s: 60.0,
         line: "",
-        metrics: &[
-            metric("off the square in 60 s, true", "true_worst_m", 100.0, "cm"),
-            metric("way in 60 s", "path_m", 1.0, "m"),
-        ],
+        metric: metric("off the square in 60 s, true", "true_worst_m", 100.0, "cm"),
     },
     Experiment {
         scenario: "mode8-goals",
         sketch: "mode8",
         duration_s: 150.0,
         line: "GOAL 1 1",
-        metrics: &[
-            metric("all four goals", "total_time_s", 1.0, "s"),
-            metric("goals reached", "reached", 1.0, ""),
-            metric("way", "path_m", 1.0, "m"),
-        ],
+        metric: metric("all four goals", "total_time_s", 1.0, "s"),
     },
     Experiment {
         scenario: "mode8-obstacles",
         sketch: "mode8",
         duration_s: 150.0,
         line: "GOAL 2.5 0",
-        metrics: &[
-            metric("time", "total_time_s", 1.0, "s"),
-            metric("way", "path_m", 1.0, "m"),
-            CONTACTS,
-        ],
+        metric: metric("time", "total_time_s", 1.0, "s"),
     },
     Experiment {
         scenario: "mode8-lane",
         sketch: "lane",
         duration_s: 150.0,
         line: "",
-        metrics: &[
-            metric("time", "finish_s", 1.0, "s"),
-            metric("straights", "straights", 1.0, ""),
-            CONTACTS,
-        ],
+        metric: metric("time", "finish_s", 1.0, "s"),
     },
 ];

@@ -1,9 +1,9 @@
 //! The report's program as an Arduino sketch (`examples/arduino/memoria`) on the emulated Mega, beside its native form and our
-//! core, natively and as the Mega's image: one table of each scenario's metrics and of the chip's time.
+//! core, natively and as the Mega's image: a metric of each scenario, and the chip's time.
 //! `cargo xtask memoria` builds and starts it.
 //!
 //! Arguments: how many seeds (default 5), and scenarios (default all). All of them with 5 seeds go into
-//! docs/theory/baseline.md, and in short into docs/figures.md, between their markers.
+//! docs/theory/baseline.md, between its markers.
 
 mod experiments;
 mod time;
@@ -38,19 +38,21 @@ fn print(seeds: u64, names: &[String]) -> Result<(), FileError> {
         "| scenario | | the sketch | its native form | ours | ours on the Mega |\n\
          |---|---|---|---|---|---|\n",
     );
-    let mut short = String::from(
-        "| the report's program, ours on the Mega | median of 5 | period of the loop | time that waits | echo to PWM |\n|---|---|---|---|---|\n",
+    let mut times = format!(
+        "| the sketch, ours on the Mega | {} |\n{}\n",
+        TIMES.map(|(what, _)| what).join(" | "),
+        "|---".repeat(TIMES.len() + 1) + "|"
     );
     for experiment in EXPERIMENTS {
         if names.is_empty() || names.iter().any(|name| name == experiment.scenario) {
             eprintln!("{} ...", experiment.scenario);
-            rows(&experiment, seeds, &mut whole, &mut short)?;
+            rows(&experiment, seeds, [&mut whole, &mut times])?;
         }
     }
-    println!("{whole}\n{short}");
+    let whole = format!("{whole}\n{times}");
+    println!("{whole}");
     if names.is_empty() && seeds == SEEDS {
         pages::write("docs/theory/baseline.md", "beside", &whole)?;
-        pages::write("docs/figures.md", "beside", &short)?;
     }
     Ok(())
 }
@@ -88,12 +90,11 @@ fn slow(experiment: &Experiment, overrides: &Overrides) -> Result<Setup, FileErr
     Ok(setup)
 }
 
-/// Appends the rows of a scenario to both tables.
+/// Appends the rows of a scenario to the tables of results and of times.
 fn rows(
     experiment: &Experiment,
     seeds: u64,
-    whole: &mut String,
-    short: &mut String,
+    [whole, times]: [&mut String; 2],
 ) -> Result<(), FileError> {
     let natively = Overrides {
         program: NativeProgram::Baseline,
@@ -111,33 +112,20 @@ fn rows(
         results.push(runs(setup, seeds)?);
     }
     let scenario = experiment.scenario;
-    for metric in experiment.metrics {
-        *whole += &format!("| {scenario} | {} |", metric.what);
-        for runs in &results {
-            *whole += &format!(" {} |", cell(metric, runs));
-        }
-        *whole += "\n";
+    let metric = &experiment.metric;
+    *whole += &format!("| {scenario} | {} |", metric.what);
+    for runs in &results {
+        *whole += &format!(" {} |", cell(metric, runs));
     }
+    *whole += "\n";
     let sketch = time::of_the_sketch(experiment)?;
     let mut ours = time::of_ours(experiment)?;
     // Without requested echoes, those of the idle sonars carry no information.
     ours.echo_to_pwm_ms = ours
         .echo_to_pwm_ms
         .filter(|_| sketch.echo_to_pwm_ms.is_some());
-    for (what, figure) in TIMES {
-        let [sketch, ours] = [figure(&sketch), figure(&ours)];
-        *whole += &format!("| {scenario} | {what} | {sketch} | | | {ours} |\n");
-    }
-    if let Some(metric) = experiment.metrics.first() {
-        let both = |figures: [String; 2]| figures.join(", ");
-        let [period, waits, latency] = [0, 2, 4].map(|index: usize| {
-            let (_, figure) = TIMES[index];
-            both([figure(&sketch), figure(&ours)])
-        });
-        let result = both([0, 3].map(|index: usize| median(metric, &results[index])));
-        let what = metric.what;
-        *short += &format!("| {scenario}: {what} | {result} | {period} | {waits} | {latency} |\n");
-    }
+    let both = TIMES.map(|(_, figure)| [figure(&sketch), figure(&ours)].join(", "));
+    *times += &format!("| {scenario} | {} |\n", both.join(" | "));
     Ok(())
 }
 
@@ -147,21 +135,17 @@ const TIMES: [(&str, Figure); 7] = [
     ("period of the loop, median", |times| {
         format!("{:.0} ms", times.period_ms[0])
     }),
-    ("the same, longest", |times| {
-        format!("{:.1} ms", times.period_ms[1])
-    }),
+    ("longest", |times| format!("{:.1} ms", times.period_ms[1])),
     ("time that waits, at least", |times| percent(times.waits[1])),
-    ("of it, for the serial line", |times| {
-        percent(times.waits[0])
-    }),
-    ("from an echo to the PWM, median", |times| {
+    ("of it, for the line", |times| percent(times.waits[0])),
+    ("echo to PWM, median", |times| {
         let text = times.echo_to_pwm_ms.map(|ms| format!("{ms:.1} ms"));
         text.unwrap_or_else(|| "-".to_owned())
     }),
     ("longest interrupt", |times| {
         format!("{:.1} us", times.interrupt_us)
     }),
-    ("worst wait of an encoder's interrupt", |times| {
+    ("longest wait of an encoder's edge", |times| {
         let text = times.encoder_us.map(|us| format!("{us:.1} us"));
         text.unwrap_or_else(|| "-".to_owned())
     }),
@@ -177,14 +161,6 @@ fn sorted(metric: &Metric, runs: &[RunResult]) -> Vec<f64> {
     let mut values: Vec<f64> = runs.iter().filter_map(value).collect();
     values.sort_by(f64::total_cmp);
     values
-}
-
-fn median(metric: &Metric, runs: &[RunResult]) -> String {
-    let values = sorted(metric, runs);
-    match values.get(values.len() / 2) {
-        None => "-".to_owned(),
-        Some(median) => with_unit(shown(metric, *median), metric),
-    }
 }
 
 fn with_unit(number: String, metric: &Metric) -> String {

@@ -17,7 +17,7 @@ export const FILES = {
   'two numbers [x, y], each {}': 'dos números [x, y], y cada uno {}', 'must be two numbers [x, y] in {}': 'deben ser dos números [x, y] en {}', 'must be [x, y] in m': 'debe ser [x, y] en m',
   'must be text in quotes': 'debe ser un texto entre comillas', 'must be a name in quotes or a whole number': 'debe ser un nombre entre comillas o un número entero', 'must be true or false': 'debe ser true o false',
   'must be a table': 'debe ser una tabla', 'must be tables [[{}]]': 'deben ser tablas [[{}]]', '{}: must be a table [[{}]]': '{}: debe ser una tabla [[{}]]', '{} tables': '{} tablas', 'at most {} of them are read': 'se leen {} como máximo',
-  'must be {}': 'debe ser {}', 'must be {} or {}': 'debe ser {} o {}', 'write one of {}': 'escribe una de {}', '{}: the smaller value stands first': '{}: el valor menor va primero', '{} to {}': '{} a {}', 'at least {}': 'al menos {}', 'at most {}': 'como mucho {}',
+  'must be {}': 'debe ser {}', 'must be {} or {}': 'debe ser {} o {}', 'write one of {}': 'escribe una de {}', '{}: the smaller value comes first': '{}: el valor menor va primero', '{} to {}': '{} a {}', 'at least {}': 'al menos {}', 'at most {}': 'como mucho {}',
   'unknown mode; did you mean {}?': 'modo desconocido; ¿quizá {}?', 'unknown mode; did you mean {} or {}?': 'modo desconocido; ¿quizá {} o {}?', 'unknown mode; did you mean {} or {} or {}?': 'modo desconocido; ¿quizá {}, {} o {}?', 'unknown movement; {}': 'movimiento desconocido; {}', 'unknown parameter; {}': 'parámetro desconocido; {}',
   'the value must be finite': 'el valor debe ser finito', '`{}` is not a number': '`{}` no es un número', '{} {}, not `{}`': '{} {}, no `{}`',
   // Scenarios.
@@ -42,7 +42,7 @@ export const FILES = {
   'what the robot is called, e.g. "north"': 'cómo se llama el robot, p. ej. "north"', 'write at most 20 of a to z, 0 to 9 and _': 'escribe 20 caracteres como máximo, de a a z, de 0 a 9 y _',
   'the robot of line {} has that name; give each its own': 'ese nombre lo tiene el robot de la línea {}; da a cada uno el suyo', 'an image is a program: leave one of program and firmware out': 'una imagen es un programa: quita program o firmware',
   'write "rumbo" or "baseline", or firmware = "image.hex"': 'escribe "rumbo" o "baseline", o firmware = "imagen.hex"',
-  'a fleet has no room in world {}, whose boxes each seed draws anew; give it a world without [random]': 'una flota no cabe en el mundo {}, cuyas cajas cambian con cada semilla; usa un mundo sin [random]',
+  'a fleet cannot use world {}, whose boxes differ with each seed; give it a world without [random]': 'una flota no cabe en el mundo {}, cuyas cajas cambian con cada semilla; usa un mundo sin [random]',
   'robots {} and {} start inside each other; move the start of one': 'los robots {} y {} salen uno dentro del otro; mueve la salida de uno', 'robots {} and {} stand inside each other; move one of them': 'los robots {} y {} están uno dentro del otro; mueve uno',
   'world {}: has room for {} of {} robots; ask for fewer, or choose a larger world': 'mundo {}: caben {} de {} robots; pide menos o elige un mundo mayor',
   '{} robots: scenario {} has robots of its own; leave their number out': '{} robots: el escenario {} ya tiene los suyos; quita el número',

@@ -32,7 +32,7 @@ export const GUIDE = {
   'The {} sonar sees the hand.': 'El sonar {} ve la mano.',
   'The {} sonar sees the hand instead of the {} one. Swap their trigger and echo wires.': 'El sonar {} ve la mano en lugar del {}. Intercambia sus cables de disparo y eco.',
   'The {} sonar gives no reading. See its 5 V supply, its trigger wire and its echo wire.': 'El sonar {} no da lecturas. Mira su alimentación de 5 V y sus cables de disparo y eco.',
-  'The {} sonar does not see the hand. See that it looks where it should, and that nothing stands in its beam.': 'El sonar {} no ve la mano. Mira que apunte adonde debe y que no haya nada en su haz.',
+  'The {} sonar does not see the hand. Check that it points where it should, and that nothing is in its beam.': 'El sonar {} no ve la mano. Mira que apunte adonde debe y que no haya nada en su haz.',
   'The servo looks straight ahead.': 'El servo mira al frente.',
   'The servo looks to the left. Take its horn off and put it back a tooth further to the right.': 'El servo mira a la izquierda. Quita su brazo y ponlo un diente más a la derecha.',
   'The servo looks to the right. Take its horn off and put it back a tooth further to the left.': 'El servo mira a la derecha. Quita su brazo y ponlo un diente más a la izquierda.',

@@ -64,8 +64,8 @@ export const ROBOT = {
   'ranges agree again': 'las distancias vuelven a coincidir',
   'out of its way, before an obstacle': 'fuera de su camino, ante un obstáculo',
   'out of its way, the front sonar is in doubt': 'fuera de su camino, duda del sonar delantero',
-  'the front sonar is in doubt': 'duda del sonar delantero', 'it hears': 'oye', 'it hears, beside an obstacle': 'oye, junto a un obstáculo',
-  'it hears, before an obstacle': 'oye, ante un obstáculo', 'it hears, along an obstacle': 'oye, a lo largo de un obstáculo', 'it hears, around a corner': 'oye, en torno a una esquina',
+  'the front sonar is in doubt': 'duda del sonar delantero', 'the sonar answers': 'el sonar responde', 'the sonar answers, beside an obstacle': 'el sonar responde, junto a un obstáculo',
+  'the sonar answers, before an obstacle': 'el sonar responde, ante un obstáculo', 'the sonar answers, along an obstacle': 'el sonar responde, a lo largo de un obstáculo', 'the sonar answers, around a corner': 'el sonar responde, en torno a una esquina',
   'looked to the left': 'ha mirado a la izquierda', 'looked to the right': 'ha mirado a la derecha', 'near the distance': 'cerca de la distancia',
   'pure pursuit': 'persecución pura', 'slow enough': 'bastante despacio', 'something ahead, or a sonar in doubt': 'algo delante, o un sonar dudoso',
   'square': 'perpendicular', 'the bearing is known': 'se conoce el ángulo', 'the distance is known': 'se conoce la distancia',
@@ -93,7 +93,7 @@ export const ROBOT = {
   'battery low: charge it': 'batería baja: cárgala',
   'a value was not a finite number; reset the parameters': 'un valor no era un número finito; vuelve a los parámetros de fábrica',
   'a control tick took too long': 'un paso de control tardó demasiado',
-  'blocked: something stands in the way or holds both wheels; clear the way or turn the robot, then clear the fault and arm again':
+  'blocked: something is in the way or holds both wheels; clear the way or turn the robot, then clear the fault and arm again':
     'bloqueado: hay algo en el camino o algo retiene las dos ruedas; despéjalo o gira el robot, borra el fallo y arma otra vez',
   // Refusals, each with its remedy.
   'the value is not a finite number; send a number': 'el valor no es un número finito; envía un número',
@@ -143,7 +143,7 @@ export const ROBOT = {
   'the robot\'s clock runs at another speed than the station\'s: check that its program is built for its crystal':
     'el reloj del robot no va a la misma velocidad que el de la estación: comprueba que su programa está compilado para su cristal',
   'the robot sends far more than it should: switch it off, and flash it again': 'el robot envía muchas más tramas de las debidas: apágalo y grábalo otra vez',
-  'the robot repeats what it said before: what is shown may be old; switch it off, and check what is on the link':
+  'the robot repeats earlier messages: what is shown may be old; switch it off, and check what is on the link':
     'el robot repite lo que ya dijo: lo que se muestra puede ser antiguo; apágalo y comprueba qué hay en el enlace',
   'refused: this page may watch, and stop the robot': 'rechazado: esta página puede mirar, y parar el robot',
   'refused: another page has control; take it first': 'rechazado: otra página tiene el control; tómalo antes',
@@ -223,7 +223,7 @@ export const ROBOT = {
   'the log is damaged: {}': 'la grabación está dañada: {}',
   'the log ends early: {}': 'la grabación acaba antes de tiempo: {}', 'this is a replay: nothing is sent to a robot': 'esto es una grabación: no se envía nada a ningún robot',
   'the program of this site is damaged: load the page again': 'el programa de este sitio está dañado: carga la página otra vez',
-  '{}: {}. The board has no whole program now, and stands still until one is written': '{}: {}. La placa no tiene ahora ningún programa entero, y se queda parada hasta que se grabe uno',
+  '{}: {}. The board has no complete program now, and does nothing until one is written': '{}: {}. La placa no tiene ahora ningún programa entero, y se queda parada hasta que se grabe uno',
   'connecting': 'conectando', 'writing': 'grabando', 'reading back': 'leyendo de vuelta', 'finishing': 'terminando', 'it gives no bytes': 'no da bytes',
   'the port is gone ({}): plug it in and write again': 'el puerto ya no está ({}): enchúfalo y graba otra vez',
   'no Arduino Mega answers: is it on its USB cable, is the port the right one, does another program use it? If its reset by the cable is disabled, press its RESET button now and then while this runs': 'no responde ningún Arduino Mega: ¿está conectado por su cable USB, es ese el puerto, lo usa otro programa? Si su reinicio por el cable está desactivado, pulsa su botón RESET de vez en cuando mientras se graba',

@@ -44,7 +44,7 @@ test('a station that is started again has a new key: the page says where to find
   again = await start(['lab', '--out', folder()], Number(new URL(dashboard.url).port));
   await notice('open the address that it printed');
   const other = await showPage(page.context(), again.url);
-  await notice('The station is there again');
+  await notice('The station is back');
   await page.waitForSelector('#connection.good');
   assert.equal(await page.evaluate(() => /** @type {any} */ (window).rumbo.state().robot.armed), false, 'nothing arms by itself');
   await other.close();

@@ -265,7 +265,7 @@ test('a program is written to a Mega and read back; one for another chip and a l
     else port.unplug();
   };
   await page.locator('#flash-write').click();
-  await says('The board has no whole program now, and stands still until one is written');
+  await says('The board has no complete program now, and does nothing until one is written');
   assert.deepEqual([...board.flash.subarray(0, 4)], [0xFF, 0xCF, 0xFF, 0xCF]);
   // The lab goes on beside it.
   assert.equal((await page.evaluate(() => /** @type {any} */ (window).rumbo.state())).simulated, true);

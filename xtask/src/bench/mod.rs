@@ -79,7 +79,7 @@ const PARTS: [Part; 8] = [
     },
 ];
 
-/// Prints a table of its own, which is also that of docs/theory/baseline.md and docs/figures.md.
+/// Prints a table of its own, which is also in docs/theory/baseline.md.
 fn memoria(project: &Project) -> Result<Vec<Figure>, String> {
     crate::memoria::run(project, None, &[]).map(|_| Vec::new())
 }

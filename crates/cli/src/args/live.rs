@@ -88,7 +88,7 @@ Examples:
   rumbo flash COM5 --image my_sketch.hex
 
 The board's own boot loader writes it, and no other program is needed. The board is asked for its signature before anything is written, and all of it is
-read back. Should the cable go meanwhile, the board stands still until it is written again. Parameters saved on the robot stay. `rumbo list ports` shows
+read back. If the cable comes off meanwhile, the board does nothing until it is written again. Parameters saved on the robot stay. `rumbo list ports` shows
 the serial ports of this computer. Before the first run: docs/wiring.md.")]
 pub(crate) struct FlashArgs {
     /// Serial port of the Mega's USB cable

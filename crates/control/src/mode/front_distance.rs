@@ -143,7 +143,7 @@ impl FrontDistance<'_> {
         }
     }
 
-    /// The speed at a distance error, slow where the sonars are `uneasy`.
+    /// The speed at a distance error, slow while a sonar has many outliers (`uneasy`).
     pub(super) fn speed_m_s(&self, error_m: f32, uneasy: bool) -> f32 {
         let off = abs(error_m);
         let braking = sqrt(2.0 * self.params.get(ParamId::FrontBrake) * off);

@@ -270,8 +270,8 @@ struct Aim {
     far: bool,
 }
 
-/// The state for a distance error, and the speed limit in it.
 impl WallFollow<'_> {
+    /// The state for a distance error, and the speed limit in it.
     fn drive(
         &self,
         state: &mut State,

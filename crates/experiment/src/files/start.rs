@@ -50,7 +50,7 @@ pub(super) fn stand_apart(scenario: &str, fleet: &[Setup]) -> Result<(), FileErr
         let (name, world) = (setup.scenario.name.as_str(), &setup.world);
         if world.random.is_some() {
             return refused(format!(
-                "a fleet has no room in world {}, whose boxes each seed draws anew; give it a world without [random]",
+                "a fleet cannot use world {}, whose boxes differ with each seed; give it a world without [random]",
                 world.name
             ));
         }

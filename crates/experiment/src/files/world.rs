@@ -188,7 +188,7 @@ fn read_random(table: &Table<'_, '_>) -> RandomWorld {
     let span = |key: &str, allowed: Allowed, usual: [f64; 2]| {
         let [low, high] = table.pair(key, allowed).unwrap_or(usual);
         if low > high {
-            table.complain_here(&format!("{key}: the smaller value stands first"));
+            table.complain_here(&format!("{key}: the smaller value comes first"));
         }
         [low, high]
     };

@@ -523,7 +523,7 @@ fn a_random_world_is_checked_and_a_fixed_one_has_no_goal_to_give() {
         WorldFile::parse("x", "worlds/x.toml", text)
             .unwrap_err()
             .to_string(),
-        "worlds/x.toml:2: [random] groups: the smaller value stands first\n\
+        "worlds/x.toml:2: [random] groups: the smaller value comes first\n\
          worlds/x.toml:4: random.goal_away_m = 0: must be within 0.5..15 m\n\
          worlds/x.toml:5: random.blocked = 2: must be within 0..1"
     );

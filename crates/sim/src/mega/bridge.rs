@@ -106,7 +106,7 @@ impl HalfBridge {
         self.lines.iter().filter_map(Line::expires_cycle).min()
     }
 
-    /// Ends the waves whose time is over.
+    /// Ends the waves that have timed out.
     pub(super) fn expire(&mut self, cycle: u64) {
         for line in &mut self.lines {
             if line.expires_cycle().is_some_and(|due| due <= cycle) {

@@ -33,7 +33,7 @@ pub enum Language {
     Text,
 }
 
-/// A program with all that is known of it.
+/// A program image and what is known about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Firmware {
     name: String,

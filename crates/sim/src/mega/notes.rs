@@ -80,7 +80,7 @@ impl Mega {
         notes.chain(self.silence()).collect()
     }
 
-    /// That the program stands still for good, and why.
+    /// Why the program has halted for good, if it has.
     pub fn standstill(&self) -> Option<String> {
         let still = self.chip.cpu().standstill()?;
         let (name, image) = (self.firmware.name(), self.firmware.image());

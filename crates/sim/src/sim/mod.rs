@@ -250,8 +250,8 @@ impl Sim {
         self.note(false, into.get(from..).unwrap_or_default());
     }
 
-    /// Records what crosses the link from now on; of a robot without one, what it would say, and the commands that it is
-    /// given but for the setpoints of its wheels.
+    /// Records what crosses the link from now on; for a robot without one, the bytes that it would send and the commands
+    /// that it receives, except the setpoints of its wheels.
     pub fn tap_link(&mut self) {
         self.greet_unlinked();
         self.tapped = Some(Vec::new());

@@ -39,13 +39,13 @@ impl Memory {
     }
 }
 
-/// The robot, and what it has not done yet.
+/// The robot, and the outputs and conversions that are pending.
 #[derive(Clone, Debug)]
 pub(super) struct Native {
     robot: Robot,
     /// Its drive layer before the last tick.
     before: DriveLayer,
-    /// It gets what another robot is given.
+    /// It receives the commands sent to another robot.
     is_ghost: bool,
     pub(super) board: Board,
     /// Its battery's divider.
@@ -61,9 +61,9 @@ pub(super) struct Native {
     pub(super) pending: Option<(u64, Outputs)>,
     /// Its inputs, while they are recorded.
     pub(super) recorded: Option<Vec<Latched>>,
-    /// Its orders come from the caller, not over the link, which is silent.
+    /// Commands come from the caller; the link is silent.
     pub(super) is_unlinked: bool,
-    /// Where that caller points the servo, in place of the mode.
+    /// Servo angle set by that caller instead of the mode.
     pub(super) aim: Option<ServoAngle>,
     /// How many of that caller's commands were acknowledged, wrapping.
     answered: u16,
@@ -120,7 +120,7 @@ impl Native {
         })
     }
 
-    /// The robot stands here, as it believes.
+    /// Sets the estimated pose.
     pub(super) fn set_pose(&mut self, pose: rumbo_control::Pose) {
         self.robot.set_pose(pose);
     }
@@ -154,12 +154,12 @@ impl Native {
         self.answered
     }
 
-    /// All that it has to say.
+    /// All bytes that are queued for the link.
     pub(super) fn said(&mut self) -> Vec<u8> {
         std::iter::from_fn(|| self.robot.transmit()).collect()
     }
 
-    /// Has it introduce itself; what it had to say before is dropped.
+    /// Makes it send HELLO; bytes queued before are dropped.
     pub(super) fn greet(&mut self) {
         self.said();
         let hello = ToRobot::Hello.frame(0);
@@ -320,7 +320,7 @@ impl Sim {
         }
     }
 
-    /// Hands what a robot without a link says to the tap. Out of the way of the robots that nobody listens to.
+    /// Passes the bytes of a robot without a link to the tap. Cold: most robots have no tap.
     #[cold]
     fn overhear(&mut self, native: &mut Native) {
         self.note(false, &native.said());

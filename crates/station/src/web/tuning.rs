@@ -95,7 +95,7 @@ fn admitted(hub: &Hub, role: Role) -> Result<Arc<Tuning>, Refused> {
 }
 
 /// Serves one search: takes the page's request, says how far it is, `{"share": 0.4}`, and at last `{"found": ...}` or
-/// `{"error": "why"}`. A page without control (`may`) is told so.
+/// `{"error": "why"}`. A page without control (`may`) gets that as the error.
 async fn talk(mut page: WebSocket, tuning: Arc<Tuning>, may: bool) {
     let done = match may {
         true => look(&mut page, &tuning).await,

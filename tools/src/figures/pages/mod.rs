@@ -1,8 +1,6 @@
 //! The sections of each page of docs/theory, and of docs/wiring.md.
 
-mod baseline;
 mod manual;
-mod states;
 mod walls;
 mod ways;
 mod wheels;
@@ -47,17 +45,7 @@ pub(crate) const PAGES: &[Page] = &[
     page("mode8-lane", "lane.md", ways::mode8_lane),
     page("mode8-goals", "baseline.md", ways::mode8_goals),
     page("mode8-obstacles", "baseline.md", ways::mode8_obstacles),
-    page("baseline", "baseline.md", baseline::beside),
     page("wiring", "../wiring.md", wiring::wiring),
-    page("modes", "README.md", states::modes),
-    page("states-0", "manual.md", states::states::<0>),
-    page("states-1", "front_distance.md", states::states::<1>),
-    page("states-2", "front_align.md", states::states::<2>),
-    page("states-4", "wall_follow.md", states::states::<4>),
-    page("states-5", "wheel_speed.md", states::states::<5>),
-    page("states-6", "straight_line.md", states::states::<6>),
-    page("states-7", "waypoints.md", states::states::<7>),
-    page("states-8", "mission.md", states::states::<8>),
 ];
 
 const fn page(
@@ -122,16 +110,12 @@ fn words(columns: &[(&str, &Runs)], scenario: &str, rows: &[Row]) -> String {
         [(_, baseline), .., (_, ours)]
             if baseline.setup.scenario.duration_s > ours.setup.scenario.duration_s =>
         {
-            format!(
-                "; the report's was given {} s",
-                baseline.setup.scenario.duration_s
-            )
+            format!(", given {} s", baseline.setup.scenario.duration_s)
         }
         _ => String::new(),
     };
     format!(
-        "{}\nThe same {seeds} simulated robots with both programs: median, and the range of all.\n`rumbo run {scenario} --runs {seeds}`, and \
-with `--program baseline`{end}.\n",
+        "{}\n`rumbo run {scenario} --runs {seeds}`, and with `--program baseline`{end}. The figure shows median and range.\n",
         table(columns, rows),
         seeds = runs::SEEDS,
     )

@@ -63,8 +63,8 @@ enum Stage {
     Straight = Phase::StraightOn as u8,
 }
 
-/// What is ahead: the second nearest of the last five looks, moved along with the robot. One wild look brings nothing
-/// nearer, and what was near is only gone when four looks say so.
+/// What is ahead: the second nearest of the last five looks, moved along with the robot. One outlier brings nothing
+/// nearer, and what was near is only gone after four looks without it.
 ///
 /// A face that looks in a row have agreed on is not gone by silence, nor by looks that disagree: it is missing, until
 /// it is seen again, looks agree on one behind it, or the robot has been where it was.

@@ -58,7 +58,7 @@ const PROGRESS_M: f32 = 0.05;
 const DOUBT_M_S: f32 = 0.08;
 /// A robot that may not even drive so fast stands [m/s].
 const CREEP_M_S: f32 = 0.03;
-/// Way around an obstacle without an echo of the sonar towards it, after which that may be silent for ever [m].
+/// Way around an obstacle without an echo of the sonar towards it, after which that sonar is suspected [m].
 const UNSEEN_M: f32 = 0.25;
 /// What passes a robot that gives way nearer than this is remembered [m].
 const PASSING_M: f32 = 0.2;
@@ -194,12 +194,12 @@ states! {
         }
         /// Stands and turns the front sonar, and then itself, to what must answer.
         Prove = "prove the front sonar" {
-            GoToGoal: "it hears",
+            GoToGoal: "the sonar answers",
             InitialTurn: "the goal is not ahead",
-            AvoidanceTurn: "it hears, beside an obstacle",
-            Seek: "it hears, before an obstacle",
-            Along: "it hears, along an obstacle",
-            SafeDistance: "it hears, around a corner",
+            AvoidanceTurn: "the sonar answers, beside an obstacle",
+            Seek: "the sonar answers, before an obstacle",
+            Along: "the sonar answers, along an obstacle",
+            SafeDistance: "the sonar answers, around a corner",
             Unreachable: "there is no way",
             GiveWay: "something approaches",
         }
@@ -336,8 +336,8 @@ impl State {
         self.fresh = true;
     }
 
-    /// Whether a sonar may be wrong: the robot should be slow. That at the obstacle's side is one if it has long been
-    /// silent.
+    /// Whether a sonar may be wrong, so that the robot should be slow. The one towards the obstacle counts once it has
+    /// been silent for too long.
     fn doubts(&self) -> bool {
         self.watch.doubts() || self.unseen_m > UNSEEN_M
     }

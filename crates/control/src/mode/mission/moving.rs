@@ -11,8 +11,8 @@
 //! the robot drives on, if the way is free, since it may stand in its way, or else backs off. Nobody is sure to stop for
 //! the robot, and two that wait for each other do not wait for equally long.
 //!
-//! What only passes or recedes, a robot sees that stands ([`super::still`]): it does so before a detour. Where an echo is
-//! new, it slows down and looks there.
+//! What only passes or recedes is seen by a robot at rest ([`super::still`]), as before each detour. Where an echo is new,
+//! the robot slows down and looks there.
 
 use super::{Drive, Mission, Phase, SWEEP_RAD, State};
 use crate::estimate::Estimate;

@@ -2,7 +2,7 @@
 //! face that must answer.
 //!
 //! Two consecutive readings along the same beam are a pair. A healthy sonar repeats its range, corrected for the way
-//! rolled; a pair that differs is wild. Wild pairs slow the robot first, then it stands: before things that move, or
+//! rolled; a pair that differs is an outlier. Outliers slow the robot first, then it stands: before things that move, or
 //! other robots that ping, ranges agree again after a while. If they do not, the sonar is faulty. Any other reading is
 //! an echo or a silence: [`Landmarks`] judge the silences of the front sonar.
 
@@ -28,12 +28,12 @@ const BESIDE_RAD: f32 = 0.12;
 /// Ranges of a pair differ by at most this and a share of the range [m].
 const ALIKE_M: f32 = 0.05;
 const ALIKE_SHARE: f32 = 0.1;
-/// Added to a sonar's outlier score by a wild range, and subtracted by a repeated one.
+/// Added to a sonar's outlier score by an outlier, and subtracted by a repeated range.
 const WILD: u8 = 10;
 const CALM: u8 = 2;
 /// An outlier score that slows the robot.
 const UNEASY: u8 = 20;
-/// One at which the robot stands, and that of a sonar that is faulty.
+/// The score at which the robot stands, and that of a faulty sonar.
 const WILD_LIMIT: u8 = 60;
 const FAULTY_LIMIT: u8 = 120;
 /// Ranges beyond this are not judged: there corners and the noise of weak echoes make them change [m].
