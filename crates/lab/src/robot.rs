@@ -13,11 +13,9 @@ use rumbo_session::{Abilities, EditedWorld, LinkNews, Shown, Standing, Target, T
 use rumbo_sim::Sim;
 use rumbo_sim::boards::Board;
 use rumbo_sim::debugging::Debugging;
+use rumbo_sim::mega::USB;
 use rumbo_wire::Command;
 use std::collections::VecDeque;
-
-/// The USART of the USB port.
-const USB: u8 = 0;
 
 /// Another program at the USB port of an emulated Mega.
 pub trait Cable: Send {

@@ -114,7 +114,7 @@ fn of_image(line: &str) -> Option<Complaint> {
 }
 
 /// Notes beside a run or a hand-in, with names where values stand, and their names in `messages.md`.
-const NOTES: [(&str, &str); 9] = [
+const NOTES: [(&str, &str); 10] = [
     (
         "firmware {name}: it never drove a motor; are its pins those of wiring {wiring}? (docs/emulator.md)",
         "no-motor",
@@ -138,6 +138,10 @@ const NOTES: [(&str, &str); 9] = [
     (
         "firmware {name}: the watchdog reset the chip {times} times; call wdt_reset() in time, or wdt_disable() at the start of setup()",
         "watchdog-resets",
+    ),
+    (
+        "firmware {name}: it sends over the Bluetooth link at {sent} baud; the module is set to {own}, and what it passes on is garbage: give begin() that rate",
+        "link-rate",
     ),
     (
         "handed in as an image: its compiler is not known",
@@ -244,6 +248,10 @@ mod tests {
             (
                 format!("firmware {name}: the watchdog reset the chip 16 times; call wdt_reset() in time, or wdt_disable() at the start of setup()"),
                 "el watchdog reinició el microcontrolador 16 veces",
+            ),
+            (
+                format!("firmware {name}: it sends over the Bluetooth link at 38462 baud; the module is set to 9600, and what it passes on is garbage: give begin() that rate"),
+                "envía por el enlace Bluetooth a 38462 baudios",
             ),
             (
                 "handed in as an image: its compiler is not known".into(),

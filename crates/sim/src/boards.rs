@@ -18,6 +18,8 @@ pub struct Board {
     pins: &'static [&'static str],
     /// Receiving and transmitting pin of each USART, by number.
     usarts: &'static [[u8; 2]],
+    /// Pins with a resistor of 10 kOhm to the supply on the board.
+    pulled_up: &'static [u8],
     /// The number of pin A0; the others follow.
     pub first_analogue: u8,
     /// Whether our own control program fits into its chip.
@@ -37,6 +39,8 @@ pub static MEGA: Board = Board {
         "F6", "F7", "K0", "K1", "K2", "K3", "K4", "K5", "K6", "K7",
     ],
     usarts: &[[0, 1], [19, 18], [17, 16], [15, 14]],
+    // Of the two-wire bus.
+    pulled_up: &[20, 21],
     first_analogue: 54,
     runs_rumbo: true,
 };
@@ -51,6 +55,7 @@ pub static UNO: Board = Board {
         "C0", "C1", "C2", "C3", "C4", "C5",
     ],
     usarts: &[[0, 1]],
+    pulled_up: &[],
     first_analogue: 14,
     // Its state alone takes more than the 2 KB of SRAM.
     runs_rumbo: false,
@@ -99,6 +104,11 @@ impl Board {
         self.usarts
             .iter()
             .filter_map(|[receive, _]| self.pin(*receive))
+    }
+
+    /// The pins that are high where nothing is connected.
+    pub(crate) fn pulled_up(&self) -> impl Iterator<Item = Pin> {
+        self.pulled_up.iter().filter_map(|pin| self.pin(*pin))
     }
 
     /// The pins on which its USARTs transmit, by number of the USART.

@@ -39,6 +39,8 @@ pub struct Profile {
     asleep: u16,
     main: Option<u16>,
     interrupts: Vec<InterruptUse>,
+    /// Cycles of the last entry of each, and of the end of its routine.
+    served: Vec<(u64, u64)>,
     start: Option<u64>,
     end: u64,
 }
@@ -114,6 +116,7 @@ impl Profile {
             asleep: UNKNOWN,
             main: None,
             interrupts: Vec::new(),
+            served: Vec::new(),
             start: None,
             end: 0,
         };
@@ -233,8 +236,14 @@ impl Profile {
     }
 
     fn enter(&mut self, cpu: &Cpu, before: &Moment, vector: u8, requested: u64) {
-        let latency = cpu.cycle().saturating_sub(requested);
         let index = self.interrupt(vector);
+        // A request that has stood since before the last entry is a level that lasts: it waits from the routine's end on.
+        let since = match self.served[index] {
+            (entry, end) if requested <= entry => end,
+            _ => requested,
+        };
+        self.served[index].0 = before.cycle;
+        let latency = cpu.cycle().saturating_sub(since);
         let interrupt = &mut self.interrupts[index];
         interrupt.count += 1;
         interrupt.worst_latency = interrupt.worst_latency.max(latency);
@@ -269,6 +278,7 @@ impl Profile {
                 longest: 0,
                 worst_latency: 0,
             });
+            self.served.push((0, 0));
             self.interrupts.len() - 1
         })
     }
@@ -295,6 +305,7 @@ impl Profile {
                 let interrupt = &mut self.interrupts[index];
                 interrupt.total += cycle - start;
                 interrupt.longest = interrupt.longest.max(cycle - start);
+                self.served[index].1 = cycle;
             }
         }
     }

@@ -27,8 +27,14 @@ fn words(main: &[u16]) -> Vec<u16> {
 
 /// Any edge on INT0 is served; the loop calls a routine of 3 NOPs for ever.
 fn busy() -> Chip {
-    let mut main = vec![ldi(16, 1)];
+    busy_with(1)
+}
+
+/// The same with this sense of INT0: 0 for its low level, 1 for any edge.
+fn busy_with(sense: u8) -> Chip {
+    let mut main = vec![ldi(16, sense)];
     main.extend(sts(0x69, 16));
+    main.extend((sense != 1).then_some(ldi(16, 1)));
     main.extend([out(0x1D, 16), ldi(16, 0x80), out(0x04, 16), SEI]);
     // The loop: RCALL the routine two words on; RJMP back; then the routine.
     main.extend([RCALL_OVER_2 - 1, 0xCFFE, NOP, NOP, NOP, RET]);
@@ -100,6 +106,27 @@ fn the_lowest_stack_pointer_is_that_of_the_interrupt_within_the_call() {
     chip.observers_mut().measure_stack();
     chip.run_until(2000);
     assert_eq!(chip.observers().lowest_stack_pointer(), Some(0x21FF - 6));
+}
+
+#[test]
+fn a_level_that_lasts_waits_for_its_routine_from_the_end_of_the_one_before() {
+    let mut chip = busy_with(0);
+    chip.observers_mut()
+        .profile(Profile::new(&Image::default()));
+    chip.run_until(2000);
+    let [
+        InterruptUse {
+            count,
+            worst_latency,
+            ..
+        },
+    ] = chip.observers().profiled().unwrap().interrupts()[..]
+    else {
+        panic!("one interrupt");
+    };
+    // The pin is low at the start, for 67 cycles and for the last thousand.
+    assert!(count > 50, "{count}");
+    assert!(worst_latency < 20, "{worst_latency}");
 }
 
 #[test]

@@ -132,7 +132,7 @@ pub struct Opening {
 #[must_use]
 pub fn opening(board: &Board, image: &Image) -> Opening {
     let mut chip = Chip::new(image);
-    for pin in board.receivers() {
+    for pin in board.receivers().chain(board.pulled_up()) {
         chip.input(0, Input::Pin(pin, Some(true)));
     }
     chip.pass_boot_loader(LONGEST_BOOT);

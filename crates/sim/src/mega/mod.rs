@@ -58,6 +58,8 @@ use rumbo_plant::sonar::SonarId;
 use servo::ServoInput;
 use std::sync::Arc;
 
+/// The USART of the USB port.
+pub const USB: u8 = 0;
 /// The boards' clock is 16 MHz.
 pub const CYCLES_PER_US: u64 = 16;
 /// Battery at which the chip's brown-out detector, set to 2.7 V by the boards' fuses, resets it: the regulator drops 1.1 V.
@@ -157,7 +159,9 @@ impl Mega {
             halt: None,
             firmware,
         };
-        for pin in mega.wires().receivers.into_iter().flatten() {
+        let idle = mega.wires().receivers.into_iter().flatten();
+        let idle = idle.chain(mega.firmware.board().pulled_up());
+        for pin in idle.collect::<Vec<_>>() {
             mega.chip.input(0, Input::Pin(pin, Some(true)));
         }
         // The boot loader's wait is over before the run begins, as when the robot is switched on before the laptop.

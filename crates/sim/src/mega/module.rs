@@ -6,12 +6,17 @@
 /// Largest error of the sender's rate with which the tenth bit is still sampled within itself.
 const TOLERANCE: f64 = 0.045;
 
+/// Whether what is sent at `baud` arrives as it was sent.
+pub(super) fn understands(baud: f64, own_baud: f64) -> bool {
+    (baud / own_baud - 1.0).abs() <= TOLERANCE
+}
+
 /// The byte received at `own_baud` when `byte` is sent at `baud`; `None` if the start bit is too short to be one.
 pub(super) fn decode(byte: u8, baud: f64, own_baud: f64) -> Option<u8> {
-    let ratio = baud / own_baud;
-    if (ratio - 1.0).abs() <= TOLERANCE {
+    if understands(baud, own_baud) {
         return Some(byte);
     }
+    let ratio = baud / own_baud;
     // The sender's line: start bit, data from the lowest, then idle.
     let level = |own_bits: f64| match (own_bits * ratio) as u64 {
         0 => false,

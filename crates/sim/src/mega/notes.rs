@@ -16,6 +16,8 @@ pub(super) struct Oddities {
     short_trigger: Option<u64>,
     brown_outs: u32,
     watchdog_resets: u32,
+    /// A rate at which the Bluetooth module does not understand the chip \[baud\].
+    link_baud: Option<f64>,
 }
 
 /// Resets by one cause that are more than a program's own way to begin anew.
@@ -27,6 +29,11 @@ impl Oddities {
         if high < TRIGGER_CYCLES {
             self.short_trigger = Some(self.short_trigger.map_or(high, |short| short.min(high)));
         }
+    }
+
+    /// A byte went to the Bluetooth module at a rate that is not its own.
+    pub(super) fn sent_at(&mut self, baud: f64) {
+        self.link_baud = Some(baud);
     }
 
     /// The chip was reset.
@@ -57,7 +64,13 @@ impl Oddities {
                 self.watchdog_resets
             )
         });
-        [short, browned, watched].into_iter().flatten()
+        let garbled = self.link_baud.map(|baud| {
+            format!(
+                "firmware {name}: it sends over the Bluetooth link at {baud:.0} baud; the module is set to {}, and what it passes on is garbage: give begin() that rate",
+                super::firmware::LINK_BAUD
+            )
+        });
+        [short, browned, watched, garbled].into_iter().flatten()
     }
 }
 

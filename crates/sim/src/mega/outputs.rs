@@ -1,7 +1,7 @@
 //! Outputs of the chip's pins and USARTs, as actions on the robot.
 
 use super::bridge::{self, HalfBridge};
-use super::{ACT, Action, CYCLES_PER_US, FIRING_CYCLES, Mega, firmware, module};
+use super::{ACT, Action, CYCLES_PER_US, FIRING_CYCLES, Mega, USB, firmware, module};
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Event, Output, Pwm};
 use rumbo_plant::drivetrain::{Bridge, Side};
@@ -102,12 +102,20 @@ impl Mega {
     }
 
     fn byte_sent(&mut self, cycle: u64, usart: u8, byte: u8, baud: f64) {
-        if let Some(console) = self.consoles.get_mut(usize::from(usart)) {
+        let is_link = self.wires().link == Some(usart);
+        let passed_on = match is_link && !module::understands(baud, firmware::LINK_BAUD) {
+            true => {
+                self.oddities.sent_at(baud);
+                module::decode(byte, baud, firmware::LINK_BAUD)
+            }
+            false => Some(byte),
+        };
+        // Behind the module a person reads what it passes on, at a USB cable what the chip sends.
+        let read = if usart == USB { Some(byte) } else { passed_on };
+        if let (Some(console), Some(byte)) = (self.consoles.get_mut(usize::from(usart)), read) {
             console.push(byte);
         }
-        if self.wires().link == Some(usart)
-            && let Some(byte) = module::decode(byte, baud, firmware::LINK_BAUD)
-        {
+        if let (true, Some(byte)) = (is_link, passed_on) {
             let at_us = cycle
                 .saturating_sub(self.zero_cycle)
                 .div_ceil(CYCLES_PER_US);
