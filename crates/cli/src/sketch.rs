@@ -13,6 +13,7 @@ use rumbo_sketch::{
 };
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::Duration;
 
 /// Prefix of an example's name.
@@ -47,10 +48,29 @@ pub(crate) fn path(name: &str) -> Option<&Path> {
     (!name.starts_with(EXAMPLE)).then(|| Path::new(name))
 }
 
+/// The folders of `--libraries`.
+static LIBRARIES: OnceLock<Vec<PathBuf>> = OnceLock::new();
+
+/// Takes folders of libraries for the user's own sketches, from here on.
+pub(crate) fn take_libraries(folders: &[PathBuf]) -> Result<(), Failure> {
+    for folder in folders {
+        if !folder.is_dir() {
+            return Err(Failure::Input(format!(
+                "--libraries {}: no such folder; give the one that has a folder for each library",
+                folder.display()
+            )));
+        }
+    }
+    LIBRARIES.get_or_init(|| folders.to_vec());
+    Ok(())
+}
+
 /// A compiler for the user's own sketches.
 pub(crate) fn compiler(board: &Board) -> Result<Compiler, SketchError> {
     let sandbox = Sandbox::trusting(Limits::default());
-    Compiler::new(target(board), Toolchain::find()?, sandbox, cache())
+    let given = LIBRARIES.get().map_or(&[][..], Vec::as_slice);
+    let toolchain = Toolchain::find()?.with_libraries(given);
+    Compiler::new(target(board), toolchain, sandbox, cache())
 }
 
 /// A compiler for sketches of others, in the sandbox.

@@ -1,76 +1,27 @@
 //! Compiles core, libraries and a sketch; products are cached by the hash of all inputs.
-//!
-//! ```text
-//! build-XXXX/sketch/   copies of the sketch's files; those to compile once more, by names of ours
-//!           /main/     the joined .ino
-//!           /out/      products
-//! ```
-//!
-//! The compiler takes names that begin with `-` or `@` as orders, so that no file's name of a sketch is an argument:
-//! `src/pid.cpp` is compiled as `src/rumbo~3.cpp`, in its folder for what it includes, and begins with
-//! `#line 1 "src/pid.cpp"` for messages.
 
 use crate::board::Board;
-use crate::diagnostics::{Diagnostic, Severity, parse};
+use crate::build::{Build, IMAGE, MAIN, OUT, SKETCH, seen, source_ending};
+use crate::diagnostics::Diagnostic;
 use crate::error::SketchError;
+use crate::layout::{Beside, Layout};
+use crate::libraries::Library;
 use crate::limits::Limits;
+use crate::options::{C, COMMON, CPP, LINK, OBJECT};
 use crate::preprocess;
-use crate::product;
-use crate::sandbox::{Sandbox, Task};
-use crate::source::{Source, ending};
+use crate::sandbox::Sandbox;
+use crate::source::Source;
 use crate::toolchain::Toolchain;
 use sha2::{Digest, Sha256};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
-/// Options of every call besides the board's: the clock and the version macros for the sketch.
-const COMMON: [&str; 4] = [
-    "-DF_CPU=16000000L",
-    "-DARDUINO=10819",
-    "-DARDUINO_ARCH_AVR",
-    "-Os",
-];
-/// For C, C++ and assembler.
-const OBJECT: [&str; 5] = [
-    "-c",
-    "-g",
-    "-flto",
-    "-ffunction-sections",
-    "-fdata-sections",
-];
-const C: [&str; 2] = ["-std=gnu11", "-fno-fat-lto-objects"];
-/// Debian's compiler knows `DECIMAL_DIG` in C only; the core's strings want it.
-const CPP: [&str; 6] = [
-    "-DDECIMAL_DIG=__DECIMAL_DIG__",
-    "-std=gnu++11",
-    "-fpermissive",
-    "-fno-exceptions",
-    "-fno-threadsafe-statics",
-    "-Wno-error=narrowing",
-];
-const LINK: [&str; 5] = [
-    "-w",
-    "-g",
-    "-flto",
-    "-fuse-linker-plugin",
-    "-Wl,--gc-sections",
-];
-/// Folders of a build; the compiler runs in the first.
-const SKETCH: &str = "sketch";
-const MAIN: &str = "main";
-const OUT: &str = "out";
-/// The linker's product.
-const IMAGE: &str = "sketch.elf";
 /// Part of every key: products of another layout are another's.
-const LAYOUT: &str = "own names";
+const LAYOUT: &str = "preprocessed";
 /// Most headers that a sketch may include by different names.
 const MOST_HEADERS: usize = 1_000;
-/// Most complaints kept of a compilation.
-const MOST_COMPLAINTS: usize = 200;
 
 /// Compiles sketches.
 #[derive(Clone, Debug)]
@@ -132,16 +83,19 @@ impl Compiler {
     /// If the compiler rejects it, or it exceeds a limit.
     pub fn compile(&self, source: &Source, macros: &[&str]) -> Result<Image, SketchError> {
         source.check()?;
-        let main =
-            preprocess::join(source).ok_or_else(|| SketchError::NoSketch(source.name.clone()))?;
-        let libraries = self.libraries_of(source)?;
+        let layout = Layout::of(source);
+        let main = preprocess::join(source, layout.main);
+        if main.is_none() && !layout.own.iter().any(|name| is_source(name)) {
+            return Err(SketchError::NoSketch(source.name.clone()));
+        }
+        let needed = self.libraries_of(source, &layout)?;
         let mut key = self.key(macros);
         for (name, bytes) in &source.files {
             part(&mut key, name.as_bytes());
             part(&mut key, bytes);
         }
         part(&mut key, source.name.as_bytes());
-        for file in libraries.iter().flat_map(|library| &library.files) {
+        for file in needed.installed.iter().flat_map(|library| &library.files) {
             part(&mut key, &read(file)?);
         }
         let image = self.cache.join(hex(key)).join(file_name(&source.name));
@@ -152,34 +106,80 @@ impl Compiler {
                 warnings: Vec::new(),
             });
         }
-        let folders = libraries.iter().map(|library| library.folder.clone());
-        let mut build = Build::new(self, folders.collect())?;
+        let folders = needed
+            .installed
+            .iter()
+            .flat_map(|library| library.include.clone());
+        let mut build = self.build(&self.sandbox, folders.collect())?;
         for (name, bytes) in &source.files {
             build.put(SKETCH, name, bytes)?;
         }
-        let own = [macros, &["-Wall", "-Wextra", "-I", "."]].concat();
-        build.put(MAIN, "main.ino.cpp", main.as_bytes())?;
-        build.object(Path::new(&seen(MAIN, "main.ino.cpp")), &own);
-        for (name, bytes) in &source.files {
-            // As the IDE has it: files beside the sketch, and all below `src`.
-            if !name.contains('/') || name.starts_with("src/") {
-                build.own(name, bytes, &own)?;
-            }
+        for library in &needed.beside {
+            build.look_in(library.headers.clone());
         }
+        let headers = layout.headers.iter().flat_map(|folder| ["-I", *folder]);
+        let seen_by_own: Vec<&str> = macros.iter().copied().chain(headers).collect();
+        let own = [&seen_by_own[..], &["-Wall", "-Wextra"]].concat();
+        if let Some(joined) = main {
+            build.put(MAIN, "joined.cpp", joined.as_bytes())?;
+            let preprocessed = build.preprocessed("joined.cpp", &seen_by_own)?;
+            let text = preprocess::with_declarations(&joined, preprocessed.as_deref());
+            build.put(MAIN, "main.ino.cpp", text.as_bytes())?;
+            build.object(Path::new(&seen(MAIN, "main.ino.cpp")), &own);
+        }
+        let compile = |build: &mut Build<'_>, name: &str, flags: &[&str]| {
+            build.own(
+                name,
+                source.files.get(name).map_or(&[], Vec::as_slice),
+                flags,
+            )
+        };
+        for name in &layout.own {
+            compile(&mut build, name, &own)?;
+        }
+        // Nobody mends a library's warnings here.
         let quiet = [macros, &["-w"]].concat();
-        for file in libraries.iter().flat_map(|library| &library.files) {
+        for name in needed.beside.iter().flat_map(|library| &library.files) {
+            compile(&mut build, name, &quiet)?;
+        }
+        for file in needed.installed.iter().flat_map(|library| &library.files) {
             if source_ending(file).is_some() {
                 build.object(file, &quiet);
             }
         }
-        build.finish()?;
-        build.link()?;
+        build.finish().map_err(|error| self.with_places(error))?;
+        build.link(&self.core)?;
         build.keep(IMAGE, &image)?;
         Ok(Image {
             path: image,
             fresh: false,
             warnings: build.complaints,
         })
+    }
+
+    fn build<'a>(
+        &'a self,
+        sandbox: &'a Sandbox,
+        folders: Vec<PathBuf>,
+    ) -> Result<Build<'a>, SketchError> {
+        Build::new(self.board, &self.toolchain, sandbox, &self.cache, folders)
+    }
+
+    /// The error, with where a missing header was looked for.
+    fn with_places(&self, error: SketchError) -> SketchError {
+        let SketchError::Rejected(mut errors) = error else {
+            return error;
+        };
+        for error in &mut errors {
+            if error.file.is_some() && error.text.ends_with(": No such file or directory") {
+                error.text += &format!(
+                    "; no library has it: they are looked for in `libraries` in the sketch's folder, {}; install it with the \
+                     Arduino IDE, or name its folder's folder by --libraries",
+                    self.toolchain.libraries_in_words()
+                );
+            }
+        }
+        SketchError::Rejected(errors)
     }
 
     fn build_core(&self) -> Result<PathBuf, SketchError> {
@@ -193,11 +193,8 @@ impl Compiler {
             return Ok(archive);
         }
         // Trusted source: no isolation, and a generous time limit.
-        let trusting = Self {
-            sandbox: Sandbox::trusting(Limits::default()),
-            ..self.clone()
-        };
-        let mut build = Build::new(&trusting, Vec::new())?;
+        let trusting = Sandbox::trusting(Limits::default());
+        let mut build = self.build(&trusting, Vec::new())?;
         for file in files.iter().filter(|file| source_ending(file).is_some()) {
             build.object(file, &["-w"]);
         }
@@ -228,258 +225,86 @@ impl Compiler {
     }
 
     /// The libraries that a sketch includes, and those that they include.
-    fn libraries_of(&self, source: &Source) -> Result<Vec<Library>, SketchError> {
+    fn libraries_of<'a>(
+        &self,
+        source: &Source,
+        layout: &'a Layout<'_>,
+    ) -> Result<Needed<'a>, SketchError> {
         let ours = self.cache.join("libraries");
-        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-        let own = source.files.values().map(|bytes| text(bytes));
-        let mut headers: BTreeSet<String> = BTreeSet::new();
-        for text in own {
-            headers.extend(
-                preprocess::includes(&text)
-                    .filter(|name| !source.files.contains_key(*name))
-                    .map(str::to_owned),
-            );
-            if headers.len() > MOST_HEADERS {
-                return Err(SketchError::Refused(format!(
-                    "the sketch includes more than {MOST_HEADERS} different headers"
-                )));
+        let mut headers = Headers::default();
+        let own = |names: &[&str], headers: &mut Headers| {
+            let files = names.iter().filter_map(|name| source.files.get(*name));
+            files
+                .into_iter()
+                .try_for_each(|bytes| headers.note(bytes, source))
+        };
+        own(&layout.own, &mut headers)?;
+        let (mut beside, mut installed) = (BTreeSet::new(), Vec::<Library>::new());
+        while let Some(header) = headers.next.pop() {
+            if let Some(index) = layout.library(&header) {
+                if beside.insert(index) {
+                    own(&layout.libraries[index].files, &mut headers)?;
+                }
+                continue;
             }
-        }
-        let mut next: Vec<String> = headers.iter().cloned().collect();
-        let mut found: BTreeMap<PathBuf, Library> = BTreeMap::new();
-        while let Some(header) = next.pop() {
-            let Some(folder) = self.toolchain.library(&header, &ours)? else {
+            let Some(library) = self.toolchain.library(&header, &ours)? else {
                 continue;
             };
-            if found.contains_key(&folder) {
+            if installed.contains(&library) {
                 continue;
             }
-            let mut files = files_of(&folder)?;
-            if folder.join("utility").is_dir() {
-                files.extend(files_of(&folder.join("utility"))?);
+            for file in &library.files {
+                headers.note(&read(file)?, source)?;
             }
-            for file in &files {
-                let text = text(&read(file)?);
-                let more =
-                    preprocess::includes(&text).filter(|name| !source.files.contains_key(*name));
-                next.extend(
-                    more.filter(|name| headers.insert((*name).to_owned()))
-                        .map(str::to_owned),
-                );
-            }
-            found.insert(folder.clone(), Library { folder, files });
+            installed.push(library);
         }
-        Ok(found.into_values().collect())
-    }
-}
-
-struct Library {
-    folder: PathBuf,
-    files: Vec<PathBuf>,
-}
-
-/// One compilation, in its own folder: the sketch beside its products.
-struct Build<'a> {
-    compiler: &'a Compiler,
-    folder: tempfile::TempDir,
-    /// Folders of the libraries that the sketch includes.
-    libraries: Vec<PathBuf>,
-    deadline: Instant,
-    /// Their names in the folder of products.
-    objects: Vec<String>,
-    complaints: Vec<Diagnostic>,
-    failed: Option<SketchError>,
-}
-
-impl<'a> Build<'a> {
-    fn new(compiler: &'a Compiler, libraries: Vec<PathBuf>) -> Result<Self, SketchError> {
-        let wrong = |error| SketchError::file(&compiler.cache, error);
-        let folder = tempfile::Builder::new()
-            .prefix("build-")
-            .tempdir_in(&compiler.cache)
-            .map_err(wrong)?;
-        for inner in [SKETCH, MAIN, OUT] {
-            fs::create_dir(folder.path().join(inner)).map_err(wrong)?;
-        }
-        Ok(Self {
-            compiler,
-            folder,
-            libraries,
-            deadline: Instant::now() + compiler.sandbox.limits().time,
-            objects: Vec::new(),
-            complaints: Vec::new(),
-            failed: None,
+        installed.sort_by(|a, b| a.include.cmp(&b.include));
+        Ok(Needed {
+            beside: beside
+                .into_iter()
+                .map(|index| &layout.libraries[index])
+                .collect(),
+            installed,
         })
     }
+}
 
-    fn put(&self, inner: &str, name: &str, bytes: &[u8]) -> Result<(), SketchError> {
-        let path = self.folder.path().join(inner).join(name);
-        let write = || {
-            path.parent().map_or(Ok(()), fs::create_dir_all)?;
-            fs::File::create_new(&path)?.write_all(bytes)
-        };
-        write().map_err(|error| SketchError::file(&path, error))
-    }
+/// The headers that are included somewhere.
+#[derive(Default)]
+struct Headers {
+    all: BTreeSet<String>,
+    /// Those not looked for yet.
+    next: Vec<String>,
+}
 
-    /// Compiles a file of the sketch, if it is one to be compiled, by a name that no file of a sketch may have.
-    fn own(&mut self, name: &str, bytes: &[u8], flags: &[&str]) -> Result<(), SketchError> {
-        let path = Path::new(name);
-        let Some(ending) = source_ending(path) else {
-            return Ok(());
-        };
-        let ours = format!("rumbo~{}.{ending}", self.objects.len());
-        let ours = path.with_file_name(ours).to_string_lossy().into_owned();
-        let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
-        let line = format!("#line 1 \"{name}\"\n");
-        self.put(SKETCH, &ours, &[line.as_bytes(), text].concat())?;
-        self.object(ours.as_ref(), flags);
-        Ok(())
-    }
-
-    /// Compiles one file, of ours or of a library; an error does not keep the others from being compiled, so that all errors are seen.
-    fn object(&mut self, file: &Path, flags: &[&str]) {
-        let object = format!("{}.o", self.objects.len());
-        let language: &[&str] = match ending(file) {
-            Some("c") => &C,
-            Some("S") => &["-x", "assembler-with-cpp"],
-            _ => &CPP,
-        };
-        let core = &self.compiler.toolchain.core;
-        let folders = [
-            core.join("cores/arduino"),
-            core.join("variants").join(self.compiler.board.variant),
-        ];
-        let board = &self.compiler.board.options[..];
-        let mut args: Vec<OsString> = [board, &COMMON, &OBJECT, flags, language]
-            .concat()
-            .into_iter()
-            .map(OsString::from)
-            .collect();
-        for folder in folders.iter().chain(&self.libraries) {
-            args.extend(["-I".into(), OsString::from(folder)]);
+impl Headers {
+    /// Notes those of a file but for the sketch's own.
+    fn note(&mut self, file: &[u8], source: &Source) -> Result<(), SketchError> {
+        let text = String::from_utf8_lossy(file);
+        for name in preprocess::includes(&text) {
+            if !source.files.contains_key(name) && self.all.insert(name.to_owned()) {
+                self.next.push(name.to_owned());
+            }
         }
-        args.extend([OsString::from(file), "-o".into(), seen(OUT, &object)]);
-        if self.failed.is_none()
-            && let Err(error) = self.run(&self.compiler.toolchain.gcc, &args, &object, &[])
-        {
-            self.failed = Some(error);
-        }
-        self.objects.push(object);
-    }
-
-    fn link(&mut self) -> Result<(), SketchError> {
-        let toolchain = &self.compiler.toolchain;
-        let board = &self.compiler.board.options[..];
-        let options = [board, &COMMON, &LINK].concat();
-        let mut args: Vec<OsString> = options.into_iter().map(OsString::from).collect();
-        args.extend(["-o".into(), seen(OUT, IMAGE)]);
-        args.extend(self.objects.iter().map(|object| seen(OUT, object)));
-        let core = &self.compiler.core;
-        args.extend([core.into(), "-lm".into()]);
-        self.run(&toolchain.gcc, &args, IMAGE, &[core])?;
-        self.finish()
-    }
-
-    /// Runs a tool that makes a product, and keeps its diagnostics; it sees the libraries and `more`.
-    fn run(
-        &mut self,
-        program: &Path,
-        args: &[OsString],
-        makes: &str,
-        more: &[&Path],
-    ) -> Result<(), SketchError> {
-        let product = Path::new(OUT).join(makes);
-        let task = Task {
-            build: self.folder.path(),
-            inner: SKETCH,
-            writes: Some(&product),
-            reads: self
-                .libraries
-                .iter()
-                .map(PathBuf::as_path)
-                .chain(more.iter().copied()),
-        };
-        let done = self
-            .compiler
-            .sandbox
-            .run(task, program, args, self.deadline)?;
-        if done.status.success() {
-            // What the next tool reads.
-            self.product(makes)?;
-        }
-        let mut complaints = parse(&done.output);
-        let is_error = |one: &Diagnostic| one.severity == Severity::Error;
-        if !done.status.success() && !complaints.iter().any(is_error) {
-            let last = done.output.lines().rfind(|line| !line.trim().is_empty());
-            complaints.push(Diagnostic {
-                severity: Severity::Error,
-                file: None,
-                line: None,
-                column: None,
-                text: match last {
-                    Some(line) => line.trim().to_owned(),
-                    None => format!("the compiler ended with {}", done.status),
-                },
-                notes: Vec::new(),
-            });
-        }
-        // The cause is reported, not that the tools that called the one which said it have failed too.
-        let is_echo = |one: &Diagnostic| {
-            let ends = [" exit status", "lto-wrapper failed"];
-            one.file.is_none() && ends.iter().any(|end| one.text.ends_with(end))
-        };
-        if complaints.iter().any(|one| is_error(one) && !is_echo(one)) {
-            complaints.retain(|one| !is_echo(one));
-        }
-        let room = MOST_COMPLAINTS.saturating_sub(self.complaints.len());
-        // However many warnings there are, an error is an error.
-        let is_kept = |(number, one): &(usize, Diagnostic)| *number < room || is_error(one);
-        let kept = complaints.into_iter().enumerate().filter(is_kept);
-        self.complaints.extend(kept.map(|(_, one)| one));
-        Ok(())
-    }
-
-    /// Whether there was no error so far.
-    fn finish(&mut self) -> Result<(), SketchError> {
-        if let Some(error) = self.failed.take() {
-            return Err(error);
-        }
-        let errors = self.complaints.iter();
-        let errors: Vec<Diagnostic> = errors
-            .filter(|one| one.severity == Severity::Error)
-            .cloned()
-            .collect();
-        match errors.is_empty() {
-            true => Ok(()),
-            false => Err(SketchError::Rejected(errors)),
-        }
-    }
-
-    fn product(&self, name: &str) -> Result<fs::File, SketchError> {
-        let path = self.folder.path().join(OUT).join(name);
-        product::open(&path, self.compiler.sandbox.limits().file_mb << 20)
-    }
-
-    /// Puts a copy of a product into the cache, whole or not at all.
-    fn keep(&self, name: &str, to: &Path) -> Result<(), SketchError> {
-        let from = self.product(name)?;
-        let copy = |mut from: fs::File| {
-            let folder = to.parent().unwrap_or(&self.compiler.cache);
-            fs::create_dir_all(folder)?;
-            let mut file = tempfile::NamedTempFile::new_in(folder)?;
-            std::io::copy(&mut from, &mut file)?;
-            file.persist(to).map_err(|error| error.error)
-        };
-        match copy(from) {
-            Ok(_) => Ok(()),
-            Err(error) => Err(SketchError::file(to, error)),
+        match self.all.len() > MOST_HEADERS {
+            true => Err(SketchError::Refused(format!(
+                "the sketch includes more than {MOST_HEADERS} different headers"
+            ))),
+            false => Ok(()),
         }
     }
 }
 
-/// A file of a build as the compiler names it.
-fn seen(folder: &str, name: &str) -> OsString {
-    format!("../{folder}/{name}").into()
+/// The libraries that a sketch needs.
+struct Needed<'a> {
+    /// Those beside it.
+    beside: Vec<&'a Beside<'a>>,
+    installed: Vec<Library>,
+}
+
+/// Whether a file is compiled by itself.
+fn is_source(name: &str) -> bool {
+    source_ending(Path::new(name)).is_some()
 }
 
 fn part(key: &mut Sha256, bytes: &[u8]) {
@@ -500,11 +325,6 @@ fn file_name(name: &str) -> String {
     let is_plain = |c: &char| c.is_ascii_alphanumeric() || "-_".contains(*c);
     let plain: String = name.chars().filter(is_plain).take(60).collect();
     format!("{}.elf", if plain.is_empty() { "sketch" } else { &plain })
-}
-
-/// The ending of what is compiled by itself.
-fn source_ending(file: &Path) -> Option<&str> {
-    ending(file).filter(|ending| ["c", "cpp", "cc", "cxx", "S"].contains(ending))
 }
 
 /// The files in a folder, sorted.

@@ -1,8 +1,8 @@
 //! Sketches that come with us: examples by name, and the starter of `rumbo new sketch`.
 
 use crate::board::Board;
+use crate::bundled::files_below;
 use crate::error::SketchError;
-use crate::libraries::files_below;
 use crate::source::Source;
 use include_dir::{Dir, include_dir};
 use std::collections::BTreeSet;

@@ -10,6 +10,8 @@
 //! went into them. The options are those of the core's `platform.txt` and `boards.txt`.
 
 mod board;
+mod build;
+mod bundled;
 mod census;
 mod compiler;
 mod diagnostics;
@@ -17,8 +19,10 @@ mod error;
 #[cfg(all(test, target_os = "linux"))]
 mod escape;
 mod examples;
+mod layout;
 mod libraries;
 pub mod limits;
+mod options;
 mod preprocess;
 mod product;
 pub mod sandbox;

@@ -1,51 +1,165 @@
-//! Libraries that come with us, for sketches whose core lacks them: those in `libraries/`, and `RumboRobot`.
+//! Installed libraries, as the Arduino IDE finds them: by the headers that they have, whatever their folders are called.
+//!
+//! A library with `library.properties` and `src/` has its headers there, and all below `src/` is compiled; any other has
+//! them in its own folder, of which and of `utility/` the files are compiled. Of several with a header the one is taken
+//! whose folder is called like it, else one whose folder begins so, else the first.
 
 use crate::error::SketchError;
-use include_dir::{Dir, File, include_dir};
+use crate::source::ending;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-static LIBRARIES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/libraries");
+/// Most files of a library, and folders below each other.
+const MOST_FILES: usize = 5_000;
+const DEEPEST: usize = 10;
+/// Libraries of other chips say so.
+const ARCHITECTURE: &str = "avr";
 
-/// The library for this robot, as the Arduino IDE installs it.
-static ROBOT: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../examples/arduino/RumboRobot/src");
-
-const RUMBO_ROBOT: &str = "RumboRobot";
-
-/// All files below a folder, each with its path from it.
-pub(crate) fn files_below(folder: &'static Dir<'static>) -> Vec<(String, &'static [u8])> {
-    fn collect(folder: &'static Dir<'static>, found: &mut Vec<&'static File<'static>>) {
-        found.extend(folder.files());
-        folder.dirs().for_each(|inner| collect(inner, found));
-    }
-    let mut found = Vec::new();
-    collect(folder, &mut found);
-    let named = found.into_iter().filter_map(|file| {
-        let path = file.path().strip_prefix(folder.path()).ok()?;
-        Some((path.to_str()?.replace('\\', "/"), file.contents()))
-    });
-    named.collect()
+/// A library that a sketch needs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Library {
+    /// Where its headers are looked for; the first has that which was asked for.
+    pub(crate) include: Vec<PathBuf>,
+    /// What is in them.
+    pub(crate) files: Vec<PathBuf>,
 }
 
-/// The files of a library of ours, by name.
-fn files(name: &str) -> Vec<(String, &'static [u8])> {
-    match name {
-        RUMBO_ROBOT => files_below(&ROBOT),
-        _ => LIBRARIES.get_dir(name).map(files_below).unwrap_or_default(),
+impl Library {
+    /// One whose headers are in a folder, with what is below it if `recursive`, else with its `utility`.
+    pub(crate) fn of(folder: PathBuf, recursive: bool) -> Result<Self, SketchError> {
+        let mut files = Vec::new();
+        let utility = folder.join("utility");
+        collect(&folder, if recursive { DEEPEST } else { 0 }, &mut files)?;
+        let mut include = vec![folder];
+        if !recursive && utility.is_dir() {
+            collect(&utility, 0, &mut files)?;
+            include.push(utility);
+        }
+        files.sort();
+        Ok(Self { include, files })
     }
 }
 
-/// Writes a library of ours below a folder unless it is there; `None` if we have none of this name.
-pub(crate) fn unpack(name: &str, below: &Path) -> Result<Option<PathBuf>, SketchError> {
-    let folder = below.join(name);
-    let files = files(name);
-    for (file, data) in &files {
-        let path = folder.join(file);
-        if fs::read(&path).ok().as_deref() != Some(*data) {
-            fs::create_dir_all(&folder)
-                .and_then(|()| fs::write(&path, data))
-                .map_err(|error| SketchError::file(&path, error))?;
+/// The library in one of these folders that has a header; `None` if there is none.
+pub(crate) fn find(folders: &[PathBuf], header: &str) -> Result<Option<Library>, SketchError> {
+    if !is_header(header) {
+        return Ok(None);
+    }
+    let stem = Path::new(header).file_stem().unwrap_or_default();
+    let stem = stem.to_string_lossy().to_lowercase();
+    let mut found: Vec<(u8, PathBuf, bool)> = Vec::new();
+    for folder in folders {
+        let Ok(entries) = fs::read_dir(folder) else {
+            continue;
+        };
+        let mut inside: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        inside.sort();
+        for library in inside {
+            let (include, recursive) = layout(&library);
+            if !include.join(header).is_file() || !is_for_avr(&library) {
+                continue;
+            }
+            let name = library.file_name().unwrap_or_default();
+            let name = name.to_string_lossy().to_lowercase();
+            let rank = match name == stem {
+                true => 0,
+                false if name.starts_with(&stem) => 1,
+                false => 2,
+            };
+            found.push((rank, include, recursive));
         }
     }
-    Ok((!files.is_empty()).then_some(folder))
+    // The first of the best: folders come in their order.
+    let best = found.into_iter().min_by_key(|(rank, ..)| *rank);
+    best.map(|(_, include, recursive)| Library::of(include, recursive))
+        .transpose()
+}
+
+/// Where a library has its headers, and whether all below is its.
+fn layout(library: &Path) -> (PathBuf, bool) {
+    let src = library.join("src");
+    match library.join("library.properties").is_file() && src.is_dir() {
+        true => (src, true),
+        false => (library.to_owned(), false),
+    }
+}
+
+fn is_for_avr(library: &Path) -> bool {
+    let properties = fs::read_to_string(library.join("library.properties")).unwrap_or_default();
+    let wanted = properties
+        .lines()
+        .find_map(|line| line.trim().strip_prefix("architectures="));
+    wanted.is_none_or(|wanted| {
+        let mut each = wanted.split(',').map(str::trim);
+        each.any(|one| one.is_empty() || one == "*" || one == ARCHITECTURE)
+    })
+}
+
+/// Whether an include may name a library's header: a file below a folder, and nothing that leads elsewhere.
+fn is_header(header: &str) -> bool {
+    let is_part = |part: &str| {
+        !part.is_empty()
+            && !part.starts_with('.')
+            && part
+                .chars()
+                .all(|c| c.is_alphanumeric() || "_-+. ".contains(c))
+    };
+    ending(Path::new(header)).is_some_and(|own| own.starts_with('h'))
+        && header.split('/').all(is_part)
+}
+
+/// The files in a folder, and so many folders deep.
+fn collect(folder: &Path, deep: usize, files: &mut Vec<PathBuf>) -> Result<(), SketchError> {
+    let entries = fs::read_dir(folder).map_err(|error| SketchError::file(folder, error))?;
+    for path in entries.flatten().map(|entry| entry.path()) {
+        if path.is_file() {
+            files.push(path);
+        } else if deep > 0 && path.is_dir() {
+            collect(&path, deep - 1, files)?;
+        }
+        if files.len() > MOST_FILES {
+            return Err(SketchError::Refused(format!(
+                "{}: a library of more than {MOST_FILES} files",
+                folder.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_library_is_found_by_its_header_for_its_chip_by_the_nearest_name() {
+        let root = tempfile::tempdir().unwrap();
+        for (file, text) in [
+            ("Steering/SteerControl.h", ""),
+            ("Steering/SteerControl.cpp", ""),
+            ("Steering/utility/twi.c", ""),
+            ("Steering/library.properties", "architectures=avr, sam\n"),
+            ("Horn/src/Horn.h", ""),
+            ("Horn/src/avr/Horn.cpp", ""),
+            ("Horn/library.properties", "name=Horn\n"),
+            ("AnotherHorn/Horn.h", ""),
+            ("Radio/Radio.h", ""),
+            ("Radio/library.properties", "architectures=esp32\n"),
+        ] {
+            let path = root.path().join(file);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        }
+        let folders = [root.path().to_owned(), root.path().join("none")];
+        let found = |header| find(&folders, header).unwrap();
+        let steering = found("SteerControl.h").unwrap();
+        assert_eq!((steering.include.len(), steering.files.len()), (2, 4));
+        let horn = found("Horn.h").unwrap();
+        assert_eq!(horn.include, [root.path().join("Horn/src")]);
+        assert!(horn.files.iter().any(|file| file.ends_with("avr/Horn.cpp")));
+        assert_eq!(found("Radio.h"), None, "it is for another chip");
+        for strange in ["../Horn/src/Horn.h", "/etc/x.h", "Horn.cpp", "", "Horn/"] {
+            assert_eq!(found(strange), None, "{strange}");
+        }
+    }
 }

@@ -1,20 +1,25 @@
 //! Preprocesses `.ino` files as the Arduino IDE does: joins them, includes `Arduino.h`, declares every function before
 //! the first.
+//!
+//! Functions are those behind the compiler's own preprocessor: what stands in a branch that is not compiled is none, and
+//! its braces do not count. What a macro alone makes is left to the macro. Where the preprocessor fails, the text itself
+//! is looked at, and the compiler says what is wrong.
 
 use crate::source::Source;
 
-/// The C++ file of a sketch: the `.ino` of its name first, the others after it; `None` if there is none.
-pub(crate) fn join(source: &Source) -> Option<String> {
-    let mut parts: Vec<(&String, &Vec<u8>)> = source
-        .files
-        .iter()
-        .filter(|(name, _)| {
-            !name.contains('/') && (name.ends_with(".ino") || name.ends_with(".pde"))
-        })
-        .collect();
-    let main = format!("{}.ino", source.name);
+/// The `.ino` files directly in a folder of a sketch, which ends with `/` or is empty, as one text: that of the sketch's
+/// name first, the others after it; `None` if there is none.
+pub(crate) fn join(source: &Source, folder: &str) -> Option<String> {
+    let inside = |name: &str| {
+        let name = name.strip_prefix(folder)?;
+        (!name.contains('/') && (name.ends_with(".ino") || name.ends_with(".pde"))).then_some(())
+    };
+    let files = source.files.iter();
+    let mut parts: Vec<(&String, &Vec<u8>)> =
+        files.filter(|(name, _)| inside(name).is_some()).collect();
+    let main = format!("{folder}{}.ino", source.name);
     parts.sort_by_key(|(name, _)| **name != main);
-    let mut text = String::new();
+    let mut text = String::from("#include <Arduino.h>\n");
     for (name, bytes) in &parts {
         let bytes = String::from_utf8_lossy(bytes);
         text += &format!(
@@ -22,7 +27,7 @@ pub(crate) fn join(source: &Source) -> Option<String> {
             bytes.trim_start_matches('\u{feff}')
         );
     }
-    (!parts.is_empty()).then(|| with_declarations(&text))
+    (!parts.is_empty()).then_some(text)
 }
 
 /// Headers that a source includes.
@@ -36,22 +41,114 @@ pub(crate) fn includes(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-fn with_declarations(text: &str) -> String {
-    let functions = functions(text);
-    let declarations: String = functions
+/// The joined text with declarations of its functions, by what it is behind the preprocessor, if that is known.
+pub(crate) fn with_declarations(joined: &str, preprocessed: Option<&str>) -> String {
+    let places = Places::of(joined);
+    let found: Vec<(Place<'_>, String)> = match preprocessed {
+        Some(text) => {
+            let (text, lines) = own_lines(text, &places);
+            let head = |(at, head): (usize, String)| {
+                let place = *lines.get(text[..at].matches('\n').count())?;
+                places.has_name(place, &head).then_some((place, head))
+            };
+            functions(&text).into_iter().filter_map(head).collect()
+        }
+        None => functions(joined)
+            .into_iter()
+            .filter_map(|(at, head)| Some((places.of_offset(at)?, head)))
+            .collect(),
+    };
+    let Some(((file, line), _)) = found.first() else {
+        return joined.to_owned();
+    };
+    // What is wrong with a declaration is wrong where its function is.
+    let declarations = found
         .iter()
-        .map(|(_, head)| format!("{head};\n"))
-        .collect();
-    let (before, after) = text.split_at(functions.first().map_or(text.len(), |(at, _)| *at));
-    // The rest continues with its line number.
-    let file = before.rfind("#line 1 ").unwrap_or(0);
-    let name = before[file..]
-        .lines()
-        .next()
-        .and_then(|line| line.strip_prefix("#line 1 "))
-        .unwrap_or("\"sketch\"");
-    let line = before[file..].matches('\n').count();
-    format!("#include <Arduino.h>\n{before}{declarations}#line {line} {name}\n{after}")
+        .map(|((file, line), head)| format!("#line {line} \"{file}\"\n{head};\n"));
+    let (before, after) = joined.split_at(places.offset((file, *line)));
+    format!(
+        "{before}{}#line {line} \"{file}\"\n{after}",
+        declarations.collect::<String>()
+    )
+}
+
+/// A line of a file of the sketch, from 1 on.
+type Place<'a> = (&'a str, usize);
+
+/// Where the files begin in the joined text.
+struct Places<'a> {
+    joined: &'a str,
+    /// Name and offset of the first line of each.
+    files: Vec<(&'a str, usize)>,
+}
+
+impl<'a> Places<'a> {
+    fn of(joined: &'a str) -> Self {
+        let mut at = 0;
+        let mut files = Vec::new();
+        for line in joined.split_inclusive('\n') {
+            at += line.len();
+            let name = line.strip_prefix("#line 1 \"");
+            files.extend(name.and_then(|name| Some((name.strip_suffix("\"\n")?, at))));
+        }
+        Self { joined, files }
+    }
+
+    /// A file's text, to the beginning of the next one's.
+    fn text(&self, file: &str) -> Option<(usize, &'a str)> {
+        let index = self.files.iter().position(|(name, _)| *name == file)?;
+        let begin = self.files[index].1;
+        let end = self.files.get(index + 1).map(|(_, at)| *at);
+        Some((begin, &self.joined[begin..end.unwrap_or(self.joined.len())]))
+    }
+
+    fn of_offset(&self, at: usize) -> Option<Place<'a>> {
+        let (name, begin) = self.files.iter().rfind(|(_, begin)| *begin <= at)?;
+        Some((name, self.joined[*begin..at].matches('\n').count() + 1))
+    }
+
+    fn offset(&self, (file, line): Place<'_>) -> usize {
+        let (begin, text) = self.text(file).unwrap_or_default();
+        let lines = text.split_inclusive('\n').take(line - 1);
+        begin + lines.map(str::len).sum::<usize>()
+    }
+
+    /// Whether a function's name stands where its head begins, and is not made by a macro there.
+    fn has_name(&self, (file, line): Place<'_>, head: &str) -> bool {
+        let name = head.split('(').next().unwrap_or_default().trim_end();
+        let name = name
+            .rsplit(|c: char| !c.is_alphanumeric() && c != '_')
+            .next();
+        let text = self.text(file).map_or("", |(_, text)| text);
+        let lines = text.lines().skip(line - 1).take(HEAD_LINES);
+        let mut words =
+            lines.flat_map(|line| line.split(|c: char| !c.is_alphanumeric() && c != '_'));
+        name.is_some_and(|name| words.any(|word| word == name))
+    }
+}
+
+/// A head has its name within so many lines.
+const HEAD_LINES: usize = 10;
+
+/// The lines of the sketch's own files in a preprocessed text, and where each is from.
+fn own_lines<'a>(preprocessed: &str, places: &Places<'a>) -> (String, Vec<Place<'a>>) {
+    let (mut text, mut lines) = (String::new(), Vec::new());
+    let mut at: Option<Place<'a>> = None;
+    for line in preprocessed.split_inclusive('\n') {
+        if let Some(mark) = line.strip_prefix("# ") {
+            let parsed = mark.split_once(" \"").and_then(|(number, rest)| {
+                let name = rest.split('"').next()?;
+                let file = places.files.iter().find(|(file, _)| *file == name)?.0;
+                Some((file, number.parse().ok()?))
+            });
+            at = parsed;
+        } else if let Some((file, number)) = &mut at {
+            text += line;
+            lines.push((*file, *number));
+            *number += 1;
+        }
+    }
+    (text, lines)
 }
 
 /// Where each function at the outermost level starts, and its head up to the parenthesis that closes.
@@ -68,8 +165,8 @@ fn functions(text: &str) -> Vec<(usize, String)> {
                 } else {
                     ""
                 };
-                if is_function(head.trim_end()) {
-                    let begin = at - head.len();
+                let begin = at - head.len();
+                if is_function(head.trim_end()) && !text[begin..at].contains("extern \"") {
                     let words: Vec<&str> = head.split_whitespace().collect();
                     found.push((begin, words.join(" ")));
                 }
@@ -86,10 +183,13 @@ fn functions(text: &str) -> Vec<(usize, String)> {
     found
 }
 
-/// `type name(arguments)`, and neither a class, an interrupt routine, an initialiser nor a member.
+/// `type name(arguments)`, and neither a class, an interrupt routine, an initialiser, a member nor a type.
 fn is_function(head: &str) -> bool {
     let name = head.split('(').next().unwrap_or_default();
     head.ends_with(')')
+        && !head.starts_with("typedef")
+        && !name.ends_with("__attribute__")
+        && !name.ends_with("__attribute__ ")
         && name.split_whitespace().count() >= 2
         && !head.contains('=')
         && !name.contains("::")
@@ -151,8 +251,11 @@ mod tests {
     fn a_macro_of_several_lines_is_no_function() {
         let text =
             "#line 1 \"a.ino\"\n#define BOTH(a) \\\n  void a() { \\\n    b(); }\nint f() { }\n";
-        let made = with_declarations(text);
-        assert!(made.contains("b(); }\nint f();\n#line 4"), "{made}");
+        let made = with_declarations(text, None);
+        assert!(
+            made.contains("b(); }\n#line 4 \"a.ino\"\nint f();\n#line 4"),
+            "{made}"
+        );
     }
 
     #[test]
@@ -160,12 +263,32 @@ mod tests {
         let text = "#line 1 \"a.ino\"\n#include <Servo.h>\nint x = f('{');\n\
                     // void no() {\nvoid setup() {\n  g(1);\n}\nISR(INT0_vect) { }\n\
                     struct S { void m() { } };\nstatic long g(int a,\n  S *b) { return 1; }\n";
-        let made = with_declarations(text);
-        let expected = "// void no() {\nvoid setup();\nstatic long g(int a, S *b);\n\
-                        #line 4 \"a.ino\"\nvoid setup() {";
-        assert!(made.starts_with("#include <Arduino.h>\n#line 1"), "{made}");
+        let made = with_declarations(text, None);
+        let expected = "// void no() {\n#line 4 \"a.ino\"\nvoid setup();\n#line 9 \"a.ino\"\n\
+                        static long g(int a, S *b);\n#line 4 \"a.ino\"\nvoid setup() {";
         assert!(made.contains(expected), "{made}");
         assert!(!made.contains("m();") && !made.contains("vect);"), "{made}");
+    }
+
+    #[test]
+    fn functions_are_those_behind_the_preprocessor() {
+        let text = "#include <Arduino.h>\n#line 1 \"a.ino\"\n#if ESP\nvoid IRAM tick() {\n#else\nvoid tick() {\n#endif\n}\n\
+                    ISR(TIMER) { }\nextern \"C\" void c() { }\ntypedef struct __attribute__((packed)) { int x; } T;\n\
+                    template <class N> N twice(N n) { return 2 * n; }\nvoid loop() { later(); }\nvoid later() { }\n";
+        let preprocessed = "# 1 \"main.ino.cpp\"\n# 1 \"Arduino.h\" 1\nvoid init();\nint of_core() { return 1; }\n\
+                            # 1 \"a.ino\"\n\n\n\nvoid tick() {\n# 6 \"a.ino\"\n}\n\
+                            extern \"C\" void __vector_9 (void) ; void __vector_9 (void) { }\nextern \"C\" void c() { }\n\
+                            typedef struct __attribute__((packed)) { int x; } T;\n\
+                            template <class N> N twice(N n) { return 2 * n; }\nvoid loop() { later(); }\nvoid later() { }\n";
+        let made = with_declarations(text, Some(preprocessed));
+        let expected = "#else\n#line 4 \"a.ino\"\nvoid tick();\n#line 10 \"a.ino\"\n\
+                        template <class N> N twice(N n);\n#line 11 \"a.ino\"\nvoid loop();\n#line 12 \"a.ino\"\n\
+                        void later();\n#line 4 \"a.ino\"\nvoid tick() {";
+        assert!(made.contains(expected), "{made}");
+        assert!(
+            !made.contains("vector") && !made.contains("c();\n"),
+            "{made}"
+        );
     }
 
     #[test]

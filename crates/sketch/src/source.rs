@@ -147,12 +147,20 @@ fn beginnings(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), SketchError
 
 fn holds_any(folder: &Path) -> Result<bool, SketchError> {
     let (sketches, images) = beginnings(folder)?;
-    Ok(!sketches.is_empty() || images.len() == 1)
+    Ok(!sketches.is_empty() || is_platformio(folder) || images.len() == 1)
+}
+
+/// A project of PlatformIO: its sketch is in `src`.
+fn is_platformio(folder: &Path) -> bool {
+    let is = |name: &str, what: fn(&fs::Metadata) -> bool| {
+        fs::symlink_metadata(folder.join(name)).is_ok_and(|about| what(&about))
+    };
+    is("platformio.ini", fs::Metadata::is_file) && is("src", fs::Metadata::is_dir)
 }
 
 fn directly_in(folder: &Path) -> Result<Option<Given>, SketchError> {
     let (sketches, mut images) = beginnings(folder)?;
-    if sketches.is_empty() {
+    if sketches.is_empty() && !is_platformio(folder) {
         return Ok(match images.len() {
             1 => images.pop().map(Given::Image),
             _ => None,
@@ -292,6 +300,17 @@ mod tests {
         let ino = inner.join("wall.ino");
         assert_eq!(names(&given(&ino, true).unwrap()), expected);
         assert_eq!(names(&given(&ino, false).unwrap()), ["wall.ino"]);
+    }
+
+    #[test]
+    fn a_project_of_platformio_is_a_sketch() {
+        let folder = folder(&[
+            ("platformio.ini", ""),
+            ("src/main.cpp", "x"),
+            ("lib/A/A.h", ""),
+        ]);
+        let expected = ["lib/A/A.h", "src/main.cpp"];
+        assert_eq!(names(&given(folder.path(), true).unwrap()), expected);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! The compiler and the Arduino core: those that arduino-cli has installed, else the system's.
 
+use crate::bundled;
 use crate::error::SketchError;
-use crate::libraries;
+use crate::libraries::{self, Library};
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,10 +34,26 @@ impl Toolchain {
     /// # Errors
     /// There is none.
     pub fn find() -> Result<Self, SketchError> {
-        arduino_cli()
-            .and_then(|folders| Self::of_arduino_cli(&folders))
-            .or_else(|| Self::of_system(Path::new(SYSTEM_CORE)))
+        let installed = [arduino_cli(), arduino_ide()].into_iter().flatten();
+        installed
+            .clone()
+            .find_map(|folders| Self::of_arduino(&folders))
+            .or_else(|| {
+                let mut system = Self::of_system(Path::new(SYSTEM_CORE))?;
+                let mut users: Vec<PathBuf> =
+                    installed.flat_map(|folders| folders.libraries()).collect();
+                users.append(&mut system.libraries);
+                system.libraries = users;
+                Some(system)
+            })
             .ok_or(SketchError::NoCompiler)
+    }
+
+    /// With folders of libraries that come before all others.
+    #[must_use]
+    pub fn with_libraries(mut self, folders: &[PathBuf]) -> Self {
+        self.libraries.splice(0..0, folders.iter().cloned());
+        self
     }
 
     /// Compiler and core in words: `avr-gcc 5.4.0, Arduino AVR core 1.8.7`.
@@ -67,15 +84,14 @@ impl Toolchain {
         Self::new(gcc, core.to_owned(), Vec::new(), visible)
     }
 
-    /// The newest core and compiler below arduino-cli's folder of data; libraries that its user has installed come
-    /// first.
-    fn of_arduino_cli(folders: &Folders) -> Option<Self> {
+    /// The newest core and compiler below the folder of data of arduino-cli or the IDE; libraries that its user has
+    /// installed come first.
+    fn of_arduino(folders: &Folders) -> Option<Self> {
         let packages = folders.data.join("packages/arduino");
         let core = newest(&packages.join("hardware/avr"))?;
         let tools = newest(&packages.join("tools/avr-gcc"))?;
         let gcc = tools.join("bin/avr-gcc");
-        let user = folders.user.iter().map(|user| user.join("libraries"));
-        Self::new(gcc, core, user.collect(), vec![tools])
+        Self::new(gcc, core, folders.libraries(), vec![tools])
     }
 
     fn new(
@@ -108,34 +124,49 @@ impl Toolchain {
         self.gcc.with_file_name("avr-gcc-ar")
     }
 
-    /// Folder of the library that has a header: one that is installed, else one of ours, put below `ours`.
+    /// The library that has a header: one that is installed, else one of ours, put below `ours`.
     pub(crate) fn library(
         &self,
         header: &str,
         ours: &Path,
-    ) -> Result<Option<PathBuf>, SketchError> {
-        let Some(name) = header.strip_suffix(".h").filter(|name| {
-            name.chars()
-                .all(|c| c.is_alphanumeric() || "_-+ ".contains(c))
-        }) else {
-            return Ok(None);
-        };
-        let found = self
-            .libraries
-            .iter()
-            .flat_map(|folder| [folder.join(name).join("src"), folder.join(name)])
-            .find(|folder| folder.join(header).is_file());
-        match found {
-            Some(folder) => Ok(Some(folder)),
-            None => libraries::unpack(name, ours),
+    ) -> Result<Option<Library>, SketchError> {
+        if let Some(found) = libraries::find(&self.libraries, header)? {
+            return Ok(Some(found));
         }
+        let is_plain = |c: char| c.is_alphanumeric() || "_-+ ".contains(c);
+        let name = header.strip_suffix(".h");
+        let ours = match name.filter(|name| !name.is_empty() && name.chars().all(is_plain)) {
+            Some(name) => bundled::unpack(name, ours)?,
+            None => None,
+        };
+        ours.map(|folder| Library::of(folder, false)).transpose()
+    }
+
+    /// Where libraries are looked for, in words, a person's own folder as `~`.
+    pub(crate) fn libraries_in_words(&self) -> String {
+        let home = std::env::home_dir();
+        let short = |folder: &PathBuf| match home.as_ref().map(|home| folder.strip_prefix(home)) {
+            Some(Ok(below)) => Path::new("~").join(below).display().to_string(),
+            _ => folder.display().to_string(),
+        };
+        let folders: Vec<String> = self.libraries.iter().map(short).collect();
+        folders.join(", ")
     }
 }
 
-/// Where arduino-cli keeps what it has installed.
+/// Where arduino-cli or the IDE keeps what it has installed.
+#[derive(Clone, Debug)]
 struct Folders {
     data: PathBuf,
     user: Option<PathBuf>,
+}
+
+impl Folders {
+    /// Of the user's libraries, then of those that came with the IDE.
+    fn libraries(&self) -> Vec<PathBuf> {
+        let user = self.user.iter().chain([&self.data]);
+        user.map(|folder| folder.join("libraries")).collect()
+    }
 }
 
 fn arduino_cli() -> Option<Folders> {
@@ -144,6 +175,20 @@ fn arduino_cli() -> Option<Folders> {
     Some(Folders {
         data: folder("directories.data")?,
         user: folder("directories.user"),
+    })
+}
+
+/// The IDE's folders where nobody has chosen others.
+fn arduino_ide() -> Option<Folders> {
+    let home = std::env::home_dir()?;
+    let (data, user) = match std::env::consts::OS {
+        "windows" => ("AppData/Local/Arduino15", "Documents/Arduino"),
+        "macos" => ("Library/Arduino15", "Documents/Arduino"),
+        _ => (".arduino15", "Arduino"),
+    };
+    Some(Folders {
+        data: home.join(data),
+        user: Some(home.join(user)),
     })
 }
 
@@ -209,7 +254,7 @@ mod tests {
             data: data.path().to_owned(),
             user: Some("ana/Arduino".into()),
         };
-        let found = Toolchain::of_arduino_cli(&folders).unwrap();
+        let found = Toolchain::of_arduino(&folders).unwrap();
         assert_eq!(found.core_version, "1.8.10");
         assert_eq!(found.compiler, system.compiler);
         assert!(found.libraries[0].ends_with("Arduino/libraries"));

@@ -84,6 +84,9 @@ pub(crate) struct ImageArgs {
     /// Arduino sketch, compiled and then run as firmware: its folder or .ino, or example:NAME (`rumbo list sketches`)
     #[arg(long, value_name = "FOLDER", group = "image")]
     pub(crate) sketch: Option<String>,
+    /// Folder of Arduino libraries, which come before those of the Arduino IDE; may be repeated
+    #[arg(long, value_name = "DIR", requires = "sketch")]
+    pub(crate) libraries: Vec<PathBuf>,
     /// Wiring of that board, of the robot file [default: the report's for the experiment; `final` for our own firmware]
     #[arg(long, value_name = "NAME", requires = "image")]
     pub(crate) wiring: Option<String>,
@@ -101,6 +104,7 @@ impl ImageArgs {
         scenario: Option<&str>,
     ) -> Result<(), Failure> {
         if let Some(given) = &self.sketch {
+            sketch::take_libraries(&self.libraries)?;
             self.firmware = Some(sketch::image(given, board(robot, scenario)?)?);
         }
         Ok(())

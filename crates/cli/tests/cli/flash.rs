@@ -174,7 +174,7 @@ fn a_board_that_falls_silent_is_reported_with_what_is_left_on_it() {
     let said = complaint(&flash(&folder, &[&board.port, "--image", "image.hex"]));
     assert!(said.contains(&board.port), "{said}");
     assert!(said.contains("the boot loader answers no more"), "{said}");
-    assert!(said.contains("stands still until one is written"), "{said}");
+    assert!(said.contains("does nothing until one is written"), "{said}");
     assert_eq!(board.flash()[..4], [0xFF, 0xCF, 0xFF, 0xCF]);
 }
 

@@ -164,7 +164,7 @@ fn robots_that_cannot_be_together_are_refused_by_name() {
     assert!(
         text.unwrap_err()
             .to_string()
-            .contains("a fleet has no room in world random")
+            .contains("a fleet cannot use world random")
     );
     let many = (0..33)
         .map(|number| format!("[[fleet]]\nname = \"r{number}\"\nstart = {{ x_m = {number} }}\n"));

@@ -235,3 +235,110 @@ fn sources_of_every_kind_and_folder_are_compiled_under_their_own_names() {
         sketch.files.insert(name.into(), before.unwrap());
     }
 }
+
+#[test]
+fn functions_are_declared_as_the_ide_declares_them() {
+    let Some((compiler, _cache)) = compiler() else {
+        return;
+    };
+    // Used before they are defined: behind a branch that is not compiled, behind braces that balance in neither text,
+    // with C linkage, made by a macro, as a template, in another file, and beside what is no function.
+    let main = "typedef struct __attribute__((packed)) { byte a; } Packet;\n\
+        #if defined(ESP32)\nvoid IRAM_ATTR tick() {}\n#else\nvoid tick() {}\n#endif\n\
+        #define FAST 1\n#define HANDLER(name) void name##_now() { PORTB ^= 1; }\n\
+        extern \"C\" void bare() { PORTB ^= 128; }\n\
+        HANDLER(tock)\n\
+        void setup() {\n#if FAST\n  if (millis() > 5) {\n#else\n  if (millis() > 50) {\n#endif\n    later();\n  }\n}\n\
+        void loop() { tick(); bare(); tock_now(); far(twice(1)); Packet p; take(p); }\n\
+        ISR(TIMER1_OVF_vect) { later(); }\n\
+        void later() { wait_a_while(); }\n\
+        template <class N> N twice(N n) { return 2 * n; }\n\
+        void take(Packet &p) { p.a = 1; }\n\
+        void wait_a_while(int ms);\nvoid wait_a_while(int ms = 3) { delay(ms); }\n";
+    let main = main.replace("wait_a_while(); }", "tick(); }");
+    let other = "void far(int n) { delay(n); }\n";
+    let sketch = source("odd", &[("odd.ino", &main), ("z.ino", other)]);
+    let image = compiler.compile(&sketch, &[]).unwrap();
+    assert_eq!(image.warnings, []);
+    // An error has its own line, also where nothing can be preprocessed.
+    let wrong = source(
+        "w",
+        &[(
+            "w.ino",
+            "#if 0\nvoid no() {\n#endif\nvoid setup() { oops(); }\nvoid loop() {}\n",
+        )],
+    );
+    let said = refused(&compiler, &wrong);
+    assert!(said.starts_with("w.ino:4:21: error: 'oops'"), "{said}");
+    let missing = source(
+        "m",
+        &[(
+            "m.ino",
+            "#include <Nowhere.h>\nvoid setup() {}\nvoid loop() {}\n",
+        )],
+    );
+    let said = refused(&compiler, &missing);
+    assert!(
+        said.contains("m.ino:1:") && said.contains("by --libraries"),
+        "{said}"
+    );
+}
+
+#[test]
+fn libraries_are_taken_by_their_headers_from_beside_the_sketch_and_from_folders() {
+    let Ok(toolchain) = Toolchain::find() else {
+        return;
+    };
+    let folders = tempfile::tempdir().unwrap();
+    for (file, text) in [
+        ("Steering/SteerControl.h", "int steer(int x);\n"),
+        (
+            "Steering/SteerControl.cpp",
+            "#include \"SteerControl.h\"\nint steer(int x) { int unused; return x; }\n",
+        ),
+        ("Horn/library.properties", "name=Horn\narchitectures=avr\n"),
+        ("Horn/src/Horn.h", "struct Horn { void blow(int); };\n"),
+        (
+            "Horn/src/avr/Horn.cpp",
+            "#include \"../Horn.h\"\n#include <Arduino.h>\nvoid Horn::blow(int n) { delay(n); }\n",
+        ),
+    ] {
+        let path = folders.path().join(file);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    let main = "#include <Horn.h>\n#include <SteerControl.h>\n#include <Lamp.hpp>\nHorn horn;\n\
+                void setup() { horn.blow(steer(lamp())); }\nvoid loop() {}\n";
+    let lamp = [
+        ("libraries/Lamp/src/Lamp.hpp", "int lamp();\n"),
+        (
+            "libraries/Lamp/src/deep/lamp.cpp",
+            "#include \"../Lamp.hpp\"\nint lamp() { int unused; return 2; }\n",
+        ),
+    ];
+    let cache = tempfile::tempdir().unwrap();
+    let sandbox = Sandbox::trusting(Limits::default());
+    let toolchain = toolchain.with_libraries(&[folders.path().to_owned()]);
+    let compiler = Compiler::new(BOARDS[0], toolchain, sandbox, cache.path().to_owned()).unwrap();
+    let files = [&[("honk.ino", main)][..], &lamp].concat();
+    // A library's warnings are nobody's here.
+    assert_eq!(
+        compiler
+            .compile(&source("honk", &files), &[])
+            .unwrap()
+            .warnings,
+        []
+    );
+    // The same as PlatformIO has it.
+    let platformio = format!("#include <Arduino.h>\n#include \"pins.h\"\n{main}");
+    let files = [
+        ("src/main.cpp", platformio.as_str()),
+        ("include/pins.h", "#define LED 13\n"),
+        ("lib/Lamp/Lamp.hpp", "int lamp();\n"),
+        (
+            "lib/Lamp/lamp.cpp",
+            "#include \"Lamp.hpp\"\nint lamp() { return 2; }\n",
+        ),
+    ];
+    compiler.compile(&source("honk", &files), &[]).unwrap();
+}
