@@ -1,7 +1,7 @@
 //! What is wrong with a file: one line per problem, each naming the file, the line, the key, the value and the remedy.
 
 use rumbo_sim::SimError;
-use std::fmt;
+use std::{fmt, io};
 
 /// One problem in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,11 +41,27 @@ pub enum FileError {
         path: String,
         /// The system's message.
         reason: String,
+        /// The system's number of it.
+        code: Option<i32>,
+        /// What to give in its place.
+        wanted: &'static str,
     },
     /// The file was read and is wrong; at least one problem, in the order of lines.
     Invalid(Vec<Problem>),
     /// A value given from outside the file, such as `--param`, is wrong.
     Setting(String),
+}
+
+impl FileError {
+    /// That of a file which the system does not give.
+    pub(crate) fn unreadable(path: String, error: &io::Error, wanted: &'static str) -> Self {
+        Self::Unreadable {
+            path,
+            reason: error.to_string(),
+            code: error.raw_os_error(),
+            wanted,
+        }
+    }
 }
 
 impl fmt::Display for FileError {
@@ -58,11 +74,13 @@ impl fmt::Display for FileError {
                     super::near::did_you_mean(near)
                 )
             }
-            Self::Unreadable { path, reason } => {
-                write!(
-                    f,
-                    "{path}: cannot be read ({reason}); give the path of an existing file"
-                )
+            Self::Unreadable {
+                path,
+                reason,
+                wanted,
+                ..
+            } => {
+                write!(f, "{path}: cannot be read ({reason}); give {wanted}")
             }
             Self::Invalid(problems) => {
                 for (index, problem) in problems.iter().enumerate() {

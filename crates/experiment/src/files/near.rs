@@ -91,7 +91,7 @@ pub(crate) fn near_or_all<'a>(
 pub(crate) fn did_you_mean(names: &[String]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.split_last() {
-        None => "none is like it; see `rumbo list`".into(),
+        None => "there is none to choose from".into(),
         Some((only, [])) => format!("did you mean {only}?"),
         Some((last, others)) if names.len() <= 3 => {
             format!("did you mean {} or {last}?", others.join(", "))
