@@ -234,6 +234,7 @@ print(f"{WORLDS} unseen worlds: {arrived:.1%} arrive in time, {failed:.1%} meet 
 
 # %%
 network = {
+    "activation": "clip",
     "inputs": [{"of": name, "centre": centre, "scale": scale} for name, centre, scale in INPUTS],
     "layers": [
         {"weights": np.asarray(layer["weights"]).T.tolist(), "biases": np.asarray(layer["biases"]).tolist()}

@@ -23,7 +23,7 @@ GAINS, ROBOTS = (6, 4) if "RUMBO_SHORT" in os.environ else (20, 50)
 sweep = rumbo.sweep(
     "mode1",
     {"front_kp": f"0.5:20:{GAINS}:log", "battery.open_circuit_v": [6.8, 7.4, 8.2]},
-    runs=ROBOTS,
+    seeds=range(1, ROBOTS + 1),
     progress=True,
 )
 print(sweep)

@@ -50,7 +50,7 @@ def main() -> None:
     with rumbo.ray.Cluster("local", workers=WORKERS) as cluster:
         up_s = time.perf_counter() - began_s
         # Both processes are there.
-        rumbo.sweep("mode1", axes, runs=1, cluster=cluster)
+        rumbo.sweep("mode1", axes, seeds=1, cluster=cluster)
         for _ in range(PASSES):
             if command[0]:
                 with tempfile.TemporaryDirectory() as folder:
@@ -58,8 +58,10 @@ def main() -> None:
                     times["rumbo sweep"].append(
                         timed(functools.partial(subprocess.run, words, check=True, capture_output=True))
                     )
-            times["threads"].append(timed(lambda: rumbo.sweep("mode1", axes, runs=each, threads=WORKERS)))
-            times["Ray"].append(timed(lambda: rumbo.sweep("mode1", axes, runs=each, cluster=cluster)))
+            times["threads"].append(
+                timed(lambda: rumbo.sweep("mode1", axes, seeds=range(1, each + 1), threads=WORKERS))
+            )
+            times["Ray"].append(timed(lambda: rumbo.sweep("mode1", axes, seeds=range(1, each + 1), cluster=cluster)))
         cluster.submit(nothing, []).result()
         began_s = time.perf_counter()
         for future in [cluster.submit(nothing, []) for _ in range(EMPTY)]:

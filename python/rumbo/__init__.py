@@ -13,10 +13,10 @@ import json
 from typing import Any, Literal
 
 from . import _rumbo
-from ._fleet import Fleet
+from ._fleet import Fleet, FleetSnapshot
 from ._identify import Identification, Identified, identify
 from ._log import Log, read_log
-from ._policy import Policy
+from ._policy import Policy, export_policy
 from ._rumbo import Snapshot
 from ._run import Run, Runs, run
 from ._setup import Source
@@ -42,6 +42,7 @@ __all__ = [
     "Comparison",
     "Difference",
     "Fleet",
+    "FleetSnapshot",
     "Identification",
     "Identified",
     "Interrupted",
@@ -56,6 +57,7 @@ __all__ = [
     "Tuning",
     "__version__",
     "compare",
+    "export_policy",
     "identify",
     "load",
     "names",
@@ -76,7 +78,7 @@ def load(kind: Literal["robot", "world", "scenario", "policy"], name_or_path: st
 
     Raises:
         ValueError: An unknown name, with the near ones, or whatever is wrong with the file.
-        OSError: A file that cannot be read.
+        FileNotFoundError, OSError: A file that is not there, or cannot be read.
     """
     content: dict[str, Any] = json.loads(_rumbo.load(kind, name_or_path))
     return content

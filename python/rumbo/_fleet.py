@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import copy
+import copyreg
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _rumbo
-from ._setup import Source, make_seeds, make_setup, to_ticks
+from ._setup import MADE_BY, Parameters, Source, check_version, make_seeds, make_setup, to_ticks
 from ._sim import OBSERVED, TRUE
+
+
+@dataclass(frozen=True)
+class FleetSnapshot:
+    """The robots of a fleet as they were at one moment."""
+
+    _fleet: _rumbo.Fleet = field(repr=False)
+    _seed: int
 
 
 class Fleet:
@@ -41,7 +53,7 @@ class Fleet:
         callers: Sequence[str] = (),
         robot: Source | None = None,
         world: Source | None = None,
-        parameters: Mapping[str, float] | None = None,
+        parameters: Parameters | None = None,
         randomize: bool | None = None,
     ) -> None:
         setup = make_setup(scenario, robot=robot, world=world, parameters=parameters, randomize=randomize)
@@ -54,6 +66,12 @@ class Fleet:
         #: The robots' names: they are the rows of all arrays, in this order.
         self.names: tuple[str, ...] = tuple(setup.robots)
 
+    def __repr__(self) -> str:
+        return f"<{len(self)} robots of {self._setup.name} in one world, seed {self.seed}>"
+
+    def __copy__(self) -> Fleet:
+        return copy.deepcopy(self)
+
     def __len__(self) -> int:
         return len(self.names)
 
@@ -62,6 +80,21 @@ class Fleet:
         number = make_seeds(seed)[0]
         self._fleet = _rumbo.Fleet(self._setup, number, callers=self._callers)
         self.seed = number
+
+    def snapshot(self) -> FleetSnapshot:
+        """The robots as they are now: `restore` puts them back, any number of times, and it can be pickled."""
+        return FleetSnapshot(copy.deepcopy(self._fleet), self.seed)
+
+    def restore(self, snapshot: FleetSnapshot) -> None:
+        """Puts the robots back to a snapshot; from there on they are bit for bit the same.
+
+        Raises:
+            ValueError: The snapshot is of other robots.
+        """
+        names = snapshot._fleet.parts()[0].robots
+        if tuple(names) != self.names:
+            raise ValueError(f"a snapshot of {', '.join(names)} does not fit {', '.join(self.names)}")
+        self._fleet, self.seed = copy.deepcopy(snapshot._fleet), snapshot._seed
 
     def step(self, duration_s: float = 0.01) -> None:
         """Advances all robots by `duration_s` [s], a multiple of the control tick of 0.01 s."""
@@ -124,3 +157,11 @@ class Fleet:
         if name not in self.names:
             raise ValueError(f"no robot {name!r}: there are {', '.join(self.names)}")
         return self._fleet.fault(self.names.index(name))
+
+
+def _again(made_by: tuple[str, int], setup: _rumbo.Setup, seed: int, callers: list[str], history: bytes) -> Any:
+    check_version("robots", made_by)
+    return _rumbo.Fleet(setup, seed, callers=callers, history=history)
+
+
+copyreg.pickle(_rumbo.Fleet, lambda fleet: (_again, (MADE_BY, *fleet.parts())))

@@ -71,12 +71,16 @@ def identify(
         progress: ``True`` shows the share that is done on stderr; a function is called with it, 0 to 1.
 
     Raises:
-        ValueError: A file that cannot be read or shows nothing, with the remedy; runs that no common robot explains.
+        FileNotFoundError, OSError: A file that cannot be read.
+        ValueError: A file that shows nothing, with the remedy; runs that no common robot explains.
         KeyboardInterrupt: Ctrl-C, within about a second.
     """
     paths = [logs] if isinstance(logs, (str, os.PathLike)) else list(logs)
     if not paths:
         raise ValueError("logs is empty: give at least one")
+    for path in paths:
+        # The system's own error for one that is not there.
+        open(path, "rb").close()
     name, held = hold("robot", robot)
     with shown(progress) as show:
         found = json.loads(

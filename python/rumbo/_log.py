@@ -10,7 +10,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from . import _rumbo
+from . import _display, _rumbo
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,17 @@ class Log:
     #: What its reader should know.
     notes: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        count = len(next(iter(self.signals.values()))) if self.signals else 0
+        what = (self.manifest or {}).get("scenario") or "no scenario"
+        last_s = float(self.signals["t_s"][-1]) if count else 0.0
+        return (
+            f"<log of {what}: {count} rows of {len(self.signals)} signals, {last_s:.1f} s, {len(self.events)} events>"
+        )
+
+    def _repr_html_(self) -> str:
+        return _display.log(self)
+
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """The signals as `pandas.DataFrame` and `pyarrow.table` take them."""
         return dict(self.signals)
@@ -46,7 +57,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     """Reads a log (``.mcap``) of a session or a run, whole or cut off.
 
     Raises:
-        OSError: The file cannot be read.
+        FileNotFoundError, OSError: The file is not there, or cannot be read.
         ValueError: It is no log.
     """
     parts = _rumbo.read_log(os.fspath(path))

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import os
-import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _rumbo
-from ._setup import Program, Source, make_seeds, make_setup
+from . import _display, _rumbo
+from ._progress import counted
+from ._setup import Parameters, Program, Source, make_seeds, make_setup
 
 
 @dataclass(frozen=True)
@@ -33,12 +33,20 @@ class Run:
     notes: tuple[str, ...]
     #: Ground truth every 10 ms, an array for each signal; ``None`` unless `run` was called with ``trace=True``.
     #: ``t_s`` [s], ``x_m``, ``y_m`` [m], ``heading_rad`` [rad, turns add up], ``left_rad_s``, ``right_rad_s`` [rad/s],
-    #: ``range_left_m``, ``range_right_m``, ``range_front_m`` [m, inf where nothing is within reach], ``servo_rad``
+    #: ``range_left_m``, ``range_right_m``, ``range_front_m`` [m, inf where nothing is within reach, NaN without such a
+    #: sonar], ``servo_rad``
     #: [rad], ``battery_v`` [V], ``left_duty``, ``right_duty`` [PWM, -255 to 255], ``touching``.
     #: Of several robots each has its own.
     trace: dict[str, NDArray[Any]] | None = None
     #: The runs of the robots, if there are several, each by its name and without limits.
     robots: tuple[Run, ...] = ()
+
+    def __repr__(self) -> str:
+        verdict = "passed" if self.passed else f"not passed: {'; '.join(self.failures)}"
+        return f"<run of {self.scenario}, seed {self.seed}: {verdict}>"
+
+    def _repr_html_(self) -> str:
+        return _display.run(self)
 
 
 class Runs(Sequence[Run]):
@@ -67,6 +75,9 @@ class Runs(Sequence[Run]):
         names = ", ".join(sorted({run.scenario for run in self}))
         return f"<{len(self)} runs of {names}: {passed} passed>"
 
+    def _repr_html_(self) -> str:
+        return _display.columns(repr(self), self.to_dict())
+
     @property
     def seeds(self) -> NDArray[np.uint64]:
         """The seeds, shape (runs,)."""
@@ -92,7 +103,7 @@ def run(
     scenario: Source,
     *,
     seeds: int | Iterable[int] = 1,
-    parameters: Mapping[str, float] | None = None,
+    parameters: Parameters | None = None,
     robot: Source | None = None,
     world: Source | None = None,
     policy: Source | None = None,
@@ -111,7 +122,8 @@ def run(
             ``robot``, ``world`` and ``policy`` may be dictionaries.
         seeds: One seed, or any number of them: ``range(1, 101)``. 0 to 2**64 - 1.
         parameters: By name (`rumbo.names("parameter")`): those of the control core, such as ``front_kp``, and of the
-            plant, such as ``battery.open_circuit_v``, which then holds for every robot drawn.
+            plant, such as ``battery.open_circuit_v``, which then holds for every robot drawn. Switches and choices by
+            the names of their values: ``{"rig": "front_pair"}``.
         robot, world, policy: In place of the scenario's: names, paths or dictionaries.
         rig: Another sensor layout of the robot.
         program: ``"rumbo"``, or ``"baseline"`` for the report's program.
@@ -119,12 +131,13 @@ def run(
         randomize: Whether each seed draws its own robot; as the scenario says by default.
         threads: At most this many; one on each core by default. It does not change the numbers.
         trace: Keep the ground truth of each run, about 10 KB for each second of simulated time; see `Run.trace`.
-        progress: ``True`` counts the runs on stderr; a function is called with the numbers of finished and of all runs.
+        progress: ``True`` counts the runs on stderr, with their rate and the time left; a function is called with the
+            numbers of finished and of all runs.
 
     Raises:
         ValueError: An unknown name, with the near ones; a value out of range; whatever is wrong with a file, each
             problem on a line of its own. Nothing has run then.
-        OSError: A file that cannot be read.
+        FileNotFoundError, OSError: A file that is not there, or cannot be read.
         KeyboardInterrupt: Ctrl-C, as soon as the runs under way are over.
     """
     setup = make_setup(
@@ -139,8 +152,8 @@ def run(
         randomize=randomize,
     )
     numbers = make_seeds(seeds)
-    show = make_progress(progress, len(numbers))
-    results = _rumbo.run(setup, numbers, threads=threads, trace=trace, progress=show)
+    with counted(progress, len(numbers)) as show:
+        results = _rumbo.run(setup, numbers, threads=threads, trace=trace, progress=show)
     return Runs(_run_of(result) for result in results)
 
 
@@ -155,19 +168,3 @@ def _run_of(result: dict[str, Any]) -> Run:
         trace=result.get("trace"),
         robots=tuple(_run_of(robot) for robot in result["robots"]),
     )
-
-
-def make_progress(progress: bool | Callable[[int, int], object], total: int | None) -> Callable[[int], object] | None:
-    """What is called with the number of finished runs; the number of all may be unknown."""
-    if callable(progress):
-        report = progress
-        return lambda done: report(done, done if total is None else total)
-    if not progress:
-        return None
-    return lambda done: _count(done, total)
-
-
-def _count(done: int, total: int | None) -> None:
-    end = "\n" if done == total else ""
-    of = "" if total is None else f" of {total}"
-    print(f"\r{done}{of} runs", end=end, file=sys.stderr, flush=True)

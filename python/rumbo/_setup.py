@@ -21,6 +21,9 @@ Source: TypeAlias = "str | os.PathLike[str] | Mapping[str, Any]"
 
 Program: TypeAlias = Literal["rumbo", "baseline"]
 
+#: Values of parameters by name; those of a switch or a choice by theirs: ``{"front_kp": 5, "rig": "front_pair"}``.
+Parameters: TypeAlias = "Mapping[str, float | str]"
+
 
 def to_toml(content: Mapping[str, Any], what: str) -> str:
     """A dictionary as TOML, a line for each of its keys: the line numbers of messages count them from 1."""
@@ -86,7 +89,7 @@ def make_setup(
     world: Source | None = None,
     policy: Source | None = None,
     rig: str | None = None,
-    parameters: Mapping[str, float] | None = None,
+    parameters: Parameters | None = None,
     program: Program = "rumbo",
     firmware: str | os.PathLike[str] | None = None,
     randomize: bool | None = None,
@@ -133,28 +136,60 @@ def _unpack_setup(arguments: dict[str, Any], image: bytes | None) -> _rumbo.Setu
 copyreg.pickle(_rumbo.Setup, lambda setup: (_unpack_setup, pack_setup(setup)))
 
 
-def _number(name: str, value: object) -> float:
+def _number(name: str, value: object) -> float | str:
+    if isinstance(value, str):
+        return value
     try:
         return float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
-        raise ValueError(f"parameter {name} = {value!r}: must be a number") from None
+        raise ValueError(f"parameter {name} = {value!r}: must be a number, or the name of a choice") from None
+
+
+#: What is pickled is read again by the same package and model only.
+MADE_BY: tuple[str, int] = (_rumbo.VERSION, _rumbo.MODEL)
+
+
+def check_version(what: str, made_by: tuple[str, int]) -> None:
+    """Refuses what another package or model has pickled: robots would not be the same."""
+    if tuple(made_by) != MADE_BY:
+        raise ValueError(
+            f"{what}: was pickled by Rumbo {made_by[0]}, model {made_by[1]}, and this is Rumbo {MADE_BY[0]}, model "
+            f"{MADE_BY[1]}: make it again, or install that one"
+        )
 
 
 def make_seeds(seeds: int | Iterable[int]) -> list[int]:
     """The seeds as a list; a single number is one seed."""
     try:
-        numbers: Iterable[int] = [operator.index(seeds)]  # type: ignore[arg-type]
+        numbers: list[Any] = [operator.index(seeds)]  # type: ignore[arg-type]
     except TypeError:
-        numbers = seeds  # type: ignore[assignment]
+        try:
+            numbers = list(seeds)  # type: ignore[arg-type]
+        except TypeError:
+            raise TypeError(f"seeds = {seeds!r}: must be a whole number, or several such as range(1, 11)") from None
     checked = []
     for index, seed in enumerate(numbers):
-        number = operator.index(seed)
+        try:
+            number = operator.index(seed)
+        except TypeError:
+            raise TypeError(f"seeds[{index}] = {seed!r}: must be a whole number") from None
         if not 0 <= number < 2**64:
             raise ValueError(f"seeds[{index}] = {number}: must be 0 or more and below 2**64")
         checked.append(number)
     if not checked:
         raise ValueError("seeds is empty: give at least one")
     return checked
+
+
+def make_index(index: int, count: int) -> int:
+    """The number of one of so many robots."""
+    try:
+        number = operator.index(index)
+    except TypeError:
+        raise TypeError(f"robot {index!r}: must be a whole number") from None
+    if not 0 <= number < count:
+        raise IndexError(f"robot {number}: there are {count}, numbered from 0")
+    return number
 
 
 def to_ticks(duration_s: float) -> int:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
+import copyreg
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -11,7 +13,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _rumbo
 from ._log import write_file
-from ._setup import Program, Source, make_seeds, make_setup, to_ticks, to_toml
+from ._progress import shown
+from ._setup import (
+    MADE_BY,
+    Parameters,
+    Program,
+    Source,
+    check_version,
+    make_index,
+    make_seeds,
+    make_setup,
+    to_ticks,
+    to_toml,
+)
 
 #: Names of what a robot's program knows, in the order of the columns of `Batch.observe_rows`.
 OBSERVED: tuple[str, ...] = tuple(_rumbo.OBSERVED)
@@ -35,14 +49,26 @@ class Batch:
     files (a scenario's calibration is left out), gets commands at once, and never misses its heartbeat. A robot is the
     same in every batch and on any number of threads.
 
+    Where the scenario has the robots calibrate themselves (all that drive by odometry do, such as ``mode8-random``),
+    each is calibrated as it is made: some 30 ms of one core for each robot, a hundred times what it takes without, or
+    with ``driver="caller"``. Ctrl-C ends it at once.
+
+    Batches can be pickled and copied. A copy goes on by itself. A pickle holds the setup with its files, the seeds and
+    what was done to each robot, which is done again where it is loaded: that takes what it took, some 0.1 ms of one
+    core for each second of a robot's time, and its making. It is read by the same version and model only.
+
     Args:
         scenario, robot, world, policy, rig, parameters, program, firmware, randomize: As for `rumbo.run`.
         seeds: A robot for each.
         driver: Who commands the robots.
         threads: One on each core by default.
+        progress: ``True`` shows the share of the robots that are made on stderr, and the time left; a function is
+            called with it, 0 to 1.
 
     Raises:
         ValueError, OSError: As `rumbo.run`.
+        IndexError: From any method, for the number of a robot that is not there; they begin at 0.
+        KeyboardInterrupt: Ctrl-C, at once, also from `step`, `drive` and `renew`.
         RuntimeError: From any method, in a process that was forked after threads were used (begin workers by
             ``multiprocessing.get_context("spawn")``), or while another thread is stepping the same robots.
     """
@@ -57,11 +83,12 @@ class Batch:
         world: Source | None = None,
         policy: Source | None = None,
         rig: str | None = None,
-        parameters: Mapping[str, float] | None = None,
+        parameters: Parameters | None = None,
         program: Program = "rumbo",
         firmware: str | os.PathLike[str] | None = None,
         randomize: bool | None = None,
         threads: int | None = None,
+        progress: bool | Callable[[float], object] = False,
     ) -> None:
         caller = _is_caller(driver)
         setup = make_setup(
@@ -77,9 +104,19 @@ class Batch:
         )
         #: How long the scenario lasts [s]; the robots can be stepped beyond.
         self.duration_s: float = setup.duration_s
-        self._batch = _rumbo.Batch(setup, make_seeds(seeds), caller=caller, threads=threads)
+        numbers = make_seeds(seeds)
+        with shown(progress, " of the robots") as show:
+            self._batch = _rumbo.Batch(setup, numbers, caller=caller, threads=threads, progress=show)
         self._caller = caller
         self._is_known = program == "rumbo" and firmware is None
+        self._name = setup.name
+
+    def __repr__(self) -> str:
+        driver = "the caller" if self._caller else "the scenario"
+        return f"<{len(self)} robots of {self._name}, driven by {driver}>"
+
+    def __copy__(self) -> Batch:
+        return copy.deepcopy(self)
 
     def __len__(self) -> int:
         return len(self._batch)
@@ -92,12 +129,12 @@ class Batch:
     def step(self, duration_s: float = 0.01) -> None:
         """Advances every robot by `duration_s` [s], a multiple of the control tick of 0.01 s.
 
-        Ctrl-C ends it after a second of simulated time, with every robot at the same time.
+        Ctrl-C ends it at once, with every robot at the same time.
         """
         self._batch.advance(to_ticks(duration_s))
 
     def drive(
-        self, actions: ArrayLike, duration_s: float = 0.1, *, active: ArrayLike | None = None
+        self, actions: ArrayLike, duration_s: float = 0.1, *, active: ArrayLike | None = None, pwm: bool = False
     ) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
         """Sets wheel speeds and servo of every robot, advances them, and gives what `rows` does.
 
@@ -108,6 +145,8 @@ class Batch:
                 positive].
             duration_s: A multiple of 0.01 s.
             active: Shape (robots,); robots of which it is false stand still in time.
+            pwm: The first two columns are shares of the full PWM, -1 to 1, which the motors get as they are, in place
+                of the robot's own control of the wheel speeds.
 
         Raises:
             ValueError: A wrong shape, or a value that is out of range or not a number, with its index.
@@ -121,7 +160,7 @@ class Batch:
         if chosen.shape != (len(self),):
             raise ValueError(f"active has the shape {chosen.shape}: must be ({len(self)},)")
         known, truth = self._empty()
-        self._batch.drive(rows, chosen, to_ticks(duration_s), known, truth)
+        self._batch.drive(rows, chosen, to_ticks(duration_s), known, truth, pwm=pwm)
         return known, truth
 
     def begin_wheel_speed(self, indices: Sequence[int] | None = None, duration_s: float = 0.5) -> None:
@@ -131,21 +170,22 @@ class Batch:
         """
         if not self._caller:
             raise ValueError('the scenario commands these robots; make the batch with driver="caller"')
-        chosen = range(len(self)) if indices is None else indices
-        self._batch.begin([int(index) for index in chosen], to_ticks(duration_s))
+        self._batch.begin(self._numbers(indices), to_ticks(duration_s))
 
     def renew(self, indices: Sequence[int], seeds: Iterable[int]) -> None:
-        """Puts new robots of these seeds, at their start, in place of those of these numbers."""
-        numbers = [int(index) for index in indices]
+        """Puts new robots of these seeds, at their start, in place of those of these numbers.
+
+        Each takes the memory of the one before. Ctrl-C or an error leaves some of them new and others as they were.
+        """
+        numbers = self._numbers(indices)
         of_them = make_seeds(seeds) if numbers else []
         if len(of_them) != len(numbers):
             raise ValueError(f"{len(numbers)} robots need as many seeds, not {len(of_them)}")
-        if any(index < 0 for index in numbers):
-            raise IndexError(f"robot {min(numbers)}: numbers begin at 0")
         self._batch.renew(numbers, of_them)
 
     def command(self, index: int, **keys: Any) -> None:
         """Applies a command to one robot, in the words of a scenario's ``[[command]]``: see `Sim.command`."""
+        index = make_index(index, len(self))
         servo = "servo_rad" in keys
         if servo:
             angle = keys.pop("servo_rad")
@@ -172,9 +212,9 @@ class Batch:
         """Ground truth now, shape (robots, 20), in the order of `rumbo.TRUE`.
 
         Time [s]; pose [m, rad]; wheel speeds [rad/s]; body velocities [m/s, rad/s]; ranges [m, inf where nothing is
-        within reach]; servo [rad]; battery [V]; whether the body touches something, the number of contacts and the
-        fastest of them [m/s]; whether the robot is armed and the number of its latched fault, 0 for none; the goal of
-        a random world [m], else NaN.
+        within reach, NaN without such a sonar]; servo [rad]; battery [V]; whether the body touches something, the
+        number of contacts and the fastest of them [m/s]; whether the robot is armed and the number of its latched
+        fault, 0 for none; the goal of a random world [m], else NaN.
         """
         return self.rows()[1]
 
@@ -194,8 +234,8 @@ class Batch:
         They go on bit for bit as without. A recorded one takes 16 KB for each second of its time, and is advanced tick
         by tick. `renew` ends it for the robots that it replaces; snapshots have it with them.
         """
-        for index in range(len(self)) if indices is None else indices:
-            self._batch.record(int(index))
+        for index in self._numbers(indices):
+            self._batch.record(index)
 
     def write_log(self, index: int, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Writes what was recorded of one robot since `record` as a log, an ``.mcap``.
@@ -209,18 +249,21 @@ class Batch:
             FileExistsError: There is a file at `path`, which stays as it is without `overwrite`.
             OSError: It cannot be written there.
         """
-        write_file(path, self._batch.log(index), overwrite=overwrite)
+        write_file(path, self._batch.log(make_index(index, len(self))), overwrite=overwrite)
 
     def obstacles(self, index: int) -> list[NDArray[np.float64]]:
         """The corners of each wall and box in the world of one robot, shape (corners, 2) each [m]."""
-        return [np.array(corners) for corners in self._batch.obstacles(index)]
+        return [np.array(corners) for corners in self._batch.obstacles(make_index(index, len(self)))]
 
     def fault(self, index: int) -> str | None:
         """The fault that one robot has latched, in words."""
-        return self._batch.fault(index)
+        return self._batch.fault(make_index(index, len(self)))
 
     def snapshot(self) -> _rumbo.Snapshot:
-        """The robots as they are now: `restore` puts them back, any number of times."""
+        """The robots as they are now: `restore` puts them back, any number of times.
+
+        It can be pickled, and so kept in a file, as a batch can.
+        """
         return self._batch.snapshot()
 
     def restore(self, snapshot: _rumbo.Snapshot) -> None:
@@ -236,6 +279,10 @@ class Batch:
         known, truth = self._empty()
         self._batch.observe(known, truth)
         return known, truth
+
+    def _numbers(self, indices: Iterable[int] | None) -> list[int]:
+        count = len(self)
+        return [make_index(index, count) for index in (range(count) if indices is None else indices)]
 
     def _empty(self) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
         return np.empty((len(self), len(OBSERVED)), np.float32), np.empty((len(self), len(TRUE)), np.float64)
@@ -262,7 +309,7 @@ class Sim:
         world: Source | None = None,
         policy: Source | None = None,
         rig: str | None = None,
-        parameters: Mapping[str, float] | None = None,
+        parameters: Parameters | None = None,
         program: Program = "rumbo",
         firmware: str | os.PathLike[str] | None = None,
         randomize: bool | None = None,
@@ -281,6 +328,13 @@ class Sim:
             randomize=randomize,
             threads=1,
         )
+
+    def __repr__(self) -> str:
+        driver = "you" if self._batch._caller else "the scenario"
+        return f"<robot of {self._batch._name}, seed {self.seed}, driven by {driver}: {self.t_s:.2f} s>"
+
+    def __copy__(self) -> Sim:
+        return copy.deepcopy(self)
 
     @property
     def seed(self) -> int:
@@ -343,3 +397,29 @@ class Sim:
     def restore(self, snapshot: _rumbo.Snapshot) -> None:
         """Puts the robot back to a snapshot: see `Batch.restore`."""
         self._batch.restore(snapshot)
+
+
+_Made = tuple[str, int]
+
+
+def _pickled(batch: _rumbo.Batch) -> tuple[Any, ...]:
+    setup, caller, seeds, histories = batch.snapshot().parts()
+    return _batch, (MADE_BY, setup, caller, seeds, histories, batch.threads)
+
+
+def _batch(
+    made_by: _Made, setup: _rumbo.Setup, caller: bool, seeds: list[int], histories: list[bytes], threads: int | None
+) -> _rumbo.Batch:
+    check_version("robots", made_by)
+    return _rumbo.Batch(setup, seeds, caller=caller, threads=threads, histories=histories)
+
+
+def _snapshot(
+    made_by: _Made, setup: _rumbo.Setup, caller: bool, seeds: list[int], histories: list[bytes]
+) -> _rumbo.Snapshot:
+    check_version("a snapshot", made_by)
+    return _rumbo.Batch(setup, seeds, caller=caller, threads=None, histories=histories).snapshot()
+
+
+copyreg.pickle(_rumbo.Batch, _pickled)
+copyreg.pickle(_rumbo.Snapshot, lambda snapshot: (_snapshot, (MADE_BY, *snapshot.parts())))

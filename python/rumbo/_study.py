@@ -11,22 +11,24 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _rumbo
+from . import _display, _rumbo
 from ._cluster import Cluster, Row, connected, run_on
-from ._run import Runs, make_progress, run
-from ._setup import Program, Source, make_setup, pack_setup
+from ._progress import counted
+from ._run import Runs, run
+from ._setup import Parameters, Program, Source, make_seeds, make_setup, pack_setup
 
 #: Values of a parameter: each of them, ``"FROM:TO:COUNT"``, ``"FROM:TO:COUNT:log"``, or where points are drawn
-#: ``"FROM:TO"`` and ``"FROM:TO:log"``; names of a choice, ``"straight,pure_pursuit"``.
-Values: TypeAlias = "str | Sequence[float] | NDArray[Any]"
+#: ``"FROM:TO"`` and ``"FROM:TO:log"``; of a switch or a choice names, ``["straight", "pure_pursuit"]``.
+Values: TypeAlias = "str | Sequence[float | str] | NDArray[Any]"
 
 
 @dataclass(frozen=True)
 class Sweep:
     """The runs of a sweep as columns, in the order of the points and, within a point, of the seeds."""
 
-    #: The values at each point, an array of shape (points,) for each parameter.
-    points: dict[str, NDArray[np.float64]]
+    #: The values at each point, an array of shape (points,) for each parameter: numbers, or the names of a switch's or
+    #: a choice's values.
+    points: dict[str, NDArray[Any]]
     #: Number of each run's point, shape (runs,).
     point: NDArray[np.int64]
     #: Seed of each run, shape (runs,).
@@ -44,6 +46,9 @@ class Sweep:
     def __repr__(self) -> str:
         names = ", ".join(self.points)
         return f"<{len(self)} runs over {names}: {int(self.passed.sum())} passed>"
+
+    def _repr_html_(self) -> str:
+        return _display.columns(repr(self), self.to_dict())
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """Columns as `pandas.DataFrame` and `pyarrow.table` take them: ``point``, ``seed``, each parameter, ``passed``,
@@ -67,9 +72,8 @@ def sweep(
     *,
     design: Literal["grid", "random", "sobol"] = "grid",
     points: int | None = None,
-    runs: int = 10,
-    seed: int = 1,
-    parameters: Mapping[str, float] | None = None,
+    seeds: int | Iterable[int] = range(1, 11),
+    parameters: Parameters | None = None,
     robot: Source | None = None,
     world: Source | None = None,
     rig: str | None = None,
@@ -88,15 +92,15 @@ def sweep(
         axes: Parameters (`rumbo.names("parameter")`) and their values.
         design: Every combination, or as many points as asked for: drawn independently, or of a Sobol sequence.
         points: How many are drawn; for a grid none.
-        runs: Of each point, 1 or more.
-        seed: The first one; run i of every point has ``seed + i``. It draws the points, too.
+        seeds: As for `run`, the same at each point. The first one draws the points, too.
         cluster: Where it runs in place of the threads of this process: ``"local"`` for worker processes on this machine
             (``threads=`` of them), the address of a Ray cluster, or a `rumbo.ray.Cluster`. It needs the extra ``ray``,
             and does not change the numbers.
         resume: What is done of the same sweep (`Interrupted.done`): the other runs are added.
 
     Raises:
-        ValueError: An unknown parameter, with the near ones; values without sense or out of range. Nothing has run.
+        ValueError: An unknown parameter, with the near ones; none at all; values without sense or out of range. Nothing
+            has run then.
         Interrupted: Ctrl-C, as soon as the runs under way are over; a ``KeyboardInterrupt`` that has what is done.
         ModuleNotFoundError: A cluster, and Ray is not installed.
     """
@@ -104,8 +108,12 @@ def sweep(
         raise ValueError(
             f"points = {points}: a number of points is for drawn ones, and needed for them; design = {design!r}"
         )
-    if runs < 1 or (points is not None and points < 1):
-        raise ValueError(f"runs = {runs}, points = {points}: must be at least 1")
+    if points is not None and points < 1:
+        raise ValueError(f"points = {points}: must be at least 1")
+    if not axes:
+        raise ValueError("axes is empty: give at least one parameter and its values")
+    numbers = make_seeds(seeds)
+    runs = len(numbers)
     setup = make_setup(
         scenario,
         robot=robot,
@@ -117,29 +125,29 @@ def sweep(
         randomize=randomize,
     )
     names = list(axes)
-    words = [f"{name}={_text(values)}" for name, values in axes.items()]
-    places = _rumbo.plan(setup, words, design=design, count=points or 0, seed=seed, runs=runs)
-    table = _Table(names, np.array(places, dtype=np.float64).reshape(len(places), len(names)), seed, runs, setup)
+    words = [f"{name}={_text(name, values)}" for name, values in axes.items()]
+    places = _rumbo.plan(setup, words, design=design, count=points or 0, seed=numbers[0], runs=runs)
+    table = _Table(names, np.array(places, dtype=np.float64).reshape(len(places), len(names)), numbers, setup)
     if resume is not None:
         table.add(resume)
     missing = [index for index in range(len(places) * runs) if index not in table.rows]
-    jobs = [(places[index // runs], table.seed_of(index)) for index in missing]
-    show = make_progress(progress, len(places) * runs)
-
-    def keep(number: int, row: Row) -> None:
-        table.rows[missing[number]] = row
-        if show is not None:
-            show(len(table.rows))
-
+    jobs = [(places[index // runs], numbers[index % runs]) for index in missing]
     try:
-        if cluster is None:
-            numbers = iter(range(len(jobs)))
-            _rumbo.run_jobs(
-                setup, names, jobs, threads=threads, handle=lambda passed, found: keep(next(numbers), (passed, found))
-            )
-        else:
-            with connected(cluster, threads) as workers:
-                run_on(workers, setup, names, jobs, keep)
+        with counted(progress, len(places) * runs, len(table.rows)) as show:
+
+            def keep(number: int, row: Row) -> None:
+                table.rows[missing[number]] = row
+                if show is not None:
+                    show(len(table.rows))
+
+            if cluster is None:
+                order = iter(range(len(jobs)))
+                _rumbo.run_jobs(
+                    setup, names, jobs, threads=threads, handle=lambda passed, found: keep(next(order), (passed, found))
+                )
+            else:
+                with connected(cluster, threads) as workers:
+                    run_on(workers, setup, names, jobs, keep)
     except KeyboardInterrupt:
         raise Interrupted(table.sweep()) from None
     return table.sweep()
@@ -152,45 +160,51 @@ class _Table:
     names: list[str]
     #: Shape (points, axes).
     values: NDArray[np.float64]
-    seed: int
-    runs: int
+    #: Of the runs of each point.
+    seeds: list[int]
     setup: _rumbo.Setup
     rows: dict[int, Row] = field(default_factory=dict)
 
-    def seed_of(self, index: int) -> int:
-        return (self.seed + index % self.runs) % 2**64
-
     def fingerprint(self) -> str:
         model = (_rumbo.VERSION, _rumbo.MODEL)
-        what = (model, pack_setup(self.setup), self.names, self.values.tolist(), self.seed, self.runs)
+        what = (model, pack_setup(self.setup), self.names, self.values.tolist(), self.seeds)
         return hashlib.sha256(repr(what).encode()).hexdigest()
 
     def add(self, done: Sweep) -> None:
         if done.fingerprint != self.fingerprint():
             raise ValueError("resume: is of another sweep; give the same arguments, or leave it out")
-        indices = done.point * self.runs + (done.seeds - np.uint64(self.seed)).astype(np.int64)
-        for row, index in enumerate(indices.tolist()):
+        places = {seed: place for place, seed in enumerate(self.seeds)}
+        for row, (point, seed) in enumerate(zip(done.point.tolist(), done.seeds.tolist())):
             metrics = {name: float(column[row]) for name, column in done.metrics.items()}
-            self.rows[index] = (bool(done.passed[row]), metrics)
+            self.rows[point * len(self.seeds) + places[seed]] = (bool(done.passed[row]), metrics)
 
     def sweep(self) -> Sweep:
         indices = sorted(self.rows)
         rows = [self.rows[index] for index in indices]
         metrics = sorted({name for _, found in rows for name in found})
         return Sweep(
-            points={name: self.values[:, axis].copy() for axis, name in enumerate(self.names)},
-            point=np.array([index // self.runs for index in indices], dtype=np.int64),
-            seeds=np.array([self.seed_of(index) for index in indices], dtype=np.uint64),
+            points={name: _named(name, self.values[:, axis]) for axis, name in enumerate(self.names)},
+            point=np.array([index // len(self.seeds) for index in indices], dtype=np.int64),
+            seeds=np.array([self.seeds[index % len(self.seeds)] for index in indices], dtype=np.uint64),
             passed=np.array([passed for passed, _ in rows], dtype=np.bool_),
             metrics={name: np.array([found.get(name, np.nan) for _, found in rows]) for name in metrics},
             fingerprint=self.fingerprint(),
         )
 
 
-def _text(values: Values) -> str:
+def _text(name: str, values: Values) -> str:
     if isinstance(values, str):
         return values
-    return ",".join(repr(float(value)) for value in values)
+    try:
+        return ",".join(value if isinstance(value, str) else repr(float(value)) for value in values)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {values!r}: must be numbers, names of a choice, or text") from None
+
+
+def _named(name: str, values: NDArray[np.float64]) -> NDArray[Any]:
+    """The values of a parameter, a switch's or a choice's by name."""
+    names = _rumbo.value_names(name)
+    return np.array(names)[np.rint(values).astype(np.int64)] if names else values.copy()
 
 
 @dataclass(frozen=True)
@@ -225,6 +239,14 @@ class Comparison:
     #: Each later variant against the first, by metric.
     differences: dict[str, dict[str, Difference]]
 
+    def __repr__(self) -> str:
+        passed = ", ".join(f"{name} {int(runs.passed.sum())}" for name, runs in self.runs.items())
+        runs = len(next(iter(self.runs.values())))
+        return f"<{len(self.runs)} variants, {runs} runs of each: passed {passed}>"
+
+    def _repr_html_(self) -> str:
+        return _display.comparison(self)
+
 
 def compare(
     scenario: Source,
@@ -241,18 +263,25 @@ def compare(
         scenario: As for `run`.
         variants: Two or more: by name, arguments of `run` such as ``{"parameters": {"front_kp": 5}}``,
             ``{"program": "baseline"}`` or ``{}``.
-        seeds: Two or more.
+        seeds: As for `run`, two or more.
+        progress: As for `run`, of the runs of all variants.
 
     Raises:
         ValueError: As for `run`; fewer than two variants or seeds.
     """
-    numbers = [seeds] if isinstance(seeds, int) else list(seeds)
+    numbers = make_seeds(seeds)
     if len(variants) < 2 or len(numbers) < 2:
         raise ValueError(f"{len(variants)} variants, {len(numbers)} seeds: a comparison needs two of each")
-    done = {
-        name: run(scenario, seeds=numbers, threads=threads, progress=progress, **settings)
-        for name, settings in variants.items()
-    }
+    done: dict[str, Runs] = {}
+    with counted(progress, len(variants) * len(numbers)) as show:
+        for name, settings in variants.items():
+            before = len(done) * len(numbers)
+
+            def of_all(finished: int, _: int, before: int = before) -> None:
+                if show is not None:
+                    show(before + finished)
+
+            done[name] = run(scenario, seeds=numbers, threads=threads, progress=of_all, **settings)
     first, *others = done
     metrics = {name: [one.metrics for one in runs] for name, runs in done.items()}
     found = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import _rumbo
 from ._progress import shown
-from ._setup import Source, make_setup
+from ._setup import Parameters, Source, make_seeds, make_setup
 from ._study import Difference
 
 
@@ -24,7 +24,7 @@ class Tuning:
     now: dict[str, float]
     #: Runs of the search.
     runs: int
-    #: Seeds of the robots that the search has not seen, shape (held_out,).
+    #: Seeds of the robots that the search has not seen, shape (robots,).
     seeds: NDArray[np.uint64]
     #: How many of them pass and keep the limits of the aims, with the values of the start and with those found.
     passed_now: int
@@ -43,9 +43,8 @@ def tune(
     aims: str | None = None,
     *,
     runs: int | None = None,
-    held_out: int = 100,
-    seed: int = 1,
-    parameters: Mapping[str, float] | None = None,
+    seeds: int | Iterable[int] = range(1_000_001, 1_000_101),
+    parameters: Parameters | None = None,
     robot: Source | None = None,
     world: Source | None = None,
     rig: str | None = None,
@@ -61,27 +60,28 @@ def tune(
         aims: Metrics that become small (large, where more is better), and limits besides the scenario's own:
             ``"settling_s, overshoot_m < 0.01"``. Without it all limits are kept with as much room as possible.
         runs: Most runs of the search, 2,000 or more; 500,000 s of driving by default.
-        held_out: Robots that the search has not seen, and that are driven with the values of the start and those found,
-            2 or more.
-        seed: The first one. The result depends on the arguments alone, not on threads or time.
-        progress: ``True`` shows the share of the runs that are used on stderr; a function is called with it, 0 to 1.
+        seeds: As for `run`: two or more robots that are driven with the values of the start and with those found. The
+            search drives others, of the million seeds before the first of these. The result depends on the arguments
+            alone, not on threads or time.
+        progress: ``True`` shows the share of the runs that are used on stderr, and the time left; a function is called
+            with it, 0 to 1.
 
     Raises:
         ValueError: A parameter or metric that does not exist, with the near ones; a range out of its parameter's
-            limits; a parameter that the scenario sets itself. Nothing has been searched then.
+            limits; a parameter that the scenario sets itself; seeds that the search drives. Nothing has been searched.
         KeyboardInterrupt: Ctrl-C, as soon as the runs under way are over.
     """
-    if held_out < 2:
-        raise ValueError(f"held_out = {held_out}: must be at least 2")
+    numbers = make_seeds(seeds)
+    if len(numbers) < 2:
+        raise ValueError(f"{len(numbers)} seeds: a check needs two or more")
     setup = make_setup(scenario, robot=robot, world=world, rig=rig, parameters=parameters)
     with shown(progress, " of the runs, at most") as show:
         found = _rumbo.tune(
             setup,
             over.split(",") if isinstance(over, str) else list(over),
             aims=aims,
-            seed=seed,
             runs=runs,
-            held_out=held_out,
+            held_out=numbers,
             threads=threads,
             progress=show,
         )

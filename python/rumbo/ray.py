@@ -3,6 +3,8 @@
 No usage statistics leave a cluster that is started here.
 """
 
+# The packages are looked for before they are imported.
+# ruff: noqa: E402
 from __future__ import annotations
 
 import os
@@ -15,11 +17,12 @@ from typing import Any
 # Before anything of Ray: its processes inherit it.
 os.environ["RAY_USAGE_STATS_ENABLED"] = "0"
 
-try:
-    import ray
-    from ray._private import ray_constants
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError("cluster= needs Ray: pip install 'rumbo[ray]'", name=error.name) from error
+from ._extras import need
+
+need("cluster=", "ray", "ray", (2, 60))
+
+import ray
+from ray._private import ray_constants
 
 __all__ = ["Cluster"]
 

@@ -1,6 +1,6 @@
 //! Robots stepped from Python: one for `rumbo.Sim`, many for `rumbo.Batch` and the environments.
 
-use crate::guard::{detached, exception, pool, threads};
+use crate::guard::{detached, exception, making, pool, threads};
 use crate::setup::Setup;
 use numpy::{
     PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods,
@@ -8,6 +8,7 @@ use numpy::{
 };
 use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyBytes;
 use rumbo_control::mode::{MAX_WHEEL_RAD_S, ModeId};
 use rumbo_control::{ServoAngle, Wheels};
@@ -22,8 +23,12 @@ use std::f32::consts::FRAC_PI_2;
 use std::io::Cursor;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-/// Between two looks for Ctrl-C [ticks]: a second of simulated time.
-const STRIDE_TICKS: u32 = 100;
+/// Between two looks for Ctrl-C: at most a second of simulated time, and no more ticks of all robots together than a core
+/// simulates in some 0.1 s.
+const STRIDE_TICKS: usize = 100;
+const STRIDE_OF_ALL: usize = 100_000;
+/// How many of our native robots an emulated one weighs.
+const EMULATED: usize = 50;
 /// An action: wheel speeds, left and right [rad/s], and where the servo points [rad].
 pub(crate) const ACTION: usize = 3;
 
@@ -32,6 +37,7 @@ pub(crate) const ACTION: usize = 3;
 pub(crate) struct Batch {
     setup: Py<Setup>,
     robots: Mutex<Robots>,
+    caller: bool,
     count: usize,
     threads: usize,
 }
@@ -39,36 +45,106 @@ pub(crate) struct Batch {
 /// Robots as they were at one moment.
 #[pyclass(frozen, module = "rumbo._rumbo")]
 pub(crate) struct Snapshot {
+    setup: Py<Setup>,
+    caller: bool,
     robots: Robots,
+}
+
+/// What defines a snapshot: its setup, whether the caller drives, seeds, and what was done to each robot.
+type Parts<'py> = (Py<Setup>, bool, Vec<u64>, Vec<Bound<'py, PyBytes>>);
+
+#[pymethods]
+impl Snapshot {
+    fn __len__(&self) -> usize {
+        self.robots.robots().len()
+    }
+
+    /// What makes it again, anywhere, by [`Batch::new`].
+    fn parts<'py>(&self, py: Python<'py>) -> Parts<'py> {
+        let lives = self.robots.lives().into_iter();
+        let (seeds, histories) = lives
+            .map(|(seed, history)| (seed, PyBytes::new(py, &history)))
+            .unzip();
+        (self.setup.clone_ref(py), self.caller, seeds, histories)
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
 }
 
 #[pymethods]
 impl Batch {
-    /// A robot for each seed, driven by its scenario or by the caller.
+    /// A robot for each seed, driven by its scenario or by the caller: at its start, or after the acts of its history.
+    /// `progress` is called with the share that is made.
     #[new]
-    #[pyo3(signature = (setup, seeds, *, caller, threads))]
+    #[pyo3(signature = (setup, seeds, *, caller, threads, histories=None, progress=None))]
     fn new(
         py: Python<'_>,
         setup: Py<Setup>,
         seeds: Vec<u64>,
         caller: bool,
         threads: Option<i64>,
+        histories: Option<Vec<PyBackedBytes>>,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let threads = self::threads(threads)?;
+        let histories = histories.unwrap_or_default();
+        let histories = histories.iter().map(|history| history.to_vec());
+        let histories = histories.chain(std::iter::repeat(Vec::new()));
+        let lives: Vec<_> = seeds.into_iter().zip(histories).collect();
         let driver = match caller {
             true => Driver::Caller,
             false => Driver::Scenario,
         };
         let files = setup.get().files.clone();
-        let robots = on_threads(py, seeds.len(), threads, || {
-            Robots::new(files, driver, &seeds)
-        })?;
+        let robots = making(
+            py,
+            || pool(threads),
+            lives.len(),
+            progress.as_ref(),
+            |made| Robots::of_lives(files, driver, &lives, made),
+        )?;
         Ok(Self {
             setup,
-            robots: Mutex::new(robots.map_err(|error| exception(&error))?),
-            count: seeds.len(),
+            robots: Mutex::new(robots),
+            caller,
+            count: lives.len(),
             threads,
         })
+    }
+
+    /// One that goes on by itself from here.
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self {
+            setup: self.setup.clone_ref(py),
+            robots: Mutex::new(self.lock()?.clone()),
+            caller: self.caller,
+            count: self.count,
+            threads: self.threads,
+        })
+    }
+
+    /// Its number of threads.
+    #[getter]
+    fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// Who commands the robots.
+    #[getter]
+    fn caller(&self) -> bool {
+        self.caller
+    }
+
+    /// What is simulated.
+    #[getter]
+    fn setup(&self, py: Python<'_>) -> Py<Setup> {
+        self.setup.clone_ref(py)
     }
 
     fn __len__(&self) -> usize {
@@ -85,7 +161,7 @@ impl Batch {
     fn advance(&self, py: Python<'_>, ticks: u32) -> PyResult<()> {
         let mut held = self.lock()?;
         let robots = &mut *held;
-        in_strides(py, ticks, |now| {
+        in_strides(py, ticks, self.stride(), |now| {
             on_threads(py, self.count, self.threads, || robots.advance(now))
         })
     }
@@ -97,11 +173,13 @@ impl Batch {
         known: PyReadwriteArray2<'_, f32>,
         truth: PyReadwriteArray2<'_, f64>,
     ) -> PyResult<()> {
-        self.step(py, known, truth, 0, |_, _| false)
+        self.step(py, known, truth, 0, |_, _, _| false)
     }
 
-    /// Gives each robot its row of `actions`, advances it by this many control ticks and writes its rows. Robots of which
-    /// `active` is false stand still in time.
+    /// Gives each robot its row of `actions`, of wheel speeds or of shares of the full PWM, advances it by this many control
+    /// ticks and writes its rows. Robots of which `active` is false stand still in time.
+    #[pyo3(signature = (actions, active, ticks, known, truth, *, pwm=false))]
+    #[allow(clippy::too_many_arguments, reason = "keywords of one Python call")]
     fn drive(
         &self,
         py: Python<'_>,
@@ -110,17 +188,24 @@ impl Batch {
         ticks: u32,
         known: PyReadwriteArray2<'_, f32>,
         truth: PyReadwriteArray2<'_, f64>,
+        pwm: bool,
     ) -> PyResult<()> {
-        let (actions, active) = checked(&actions, &active, self.count)?;
-        self.step(py, known, truth, ticks, |index, robot| {
+        let most = match pwm {
+            true => MOST_DUTY,
+            false => MOST_SPEED,
+        };
+        let (actions, active) = checked(&actions, &active, self.count, most)?;
+        self.step(py, known, truth, ticks, |index, robot, begins| {
             if active.get(index) != Some(&true) {
                 return false;
             }
-            if let Some([left, right, servo_rad]) = actions.get(index) {
+            if let (true, Some([left, right, servo_rad])) = (begins, actions.get(index)) {
                 let (left, right) = (*left, *right);
-                // In range: only a robot of another mode refuses it, and that one drives by its mode.
-                let _ = robot.command(&Command::WheelReference(Wheels { left, right }));
-                robot.aim(Some(ServoAngle(*servo_rad)));
+                let (wheels, servo) = (Wheels { left, right }, ServoAngle(*servo_rad));
+                match pwm {
+                    true => robot.drive_duty(wheels, servo),
+                    false => robot.drive(wheels, servo),
+                }
             }
             true
         })
@@ -135,16 +220,24 @@ impl Batch {
             let chosen = chosen.get_mut(index);
             *chosen.ok_or_else(|| beyond(index, self.count))? = true;
         }
-        on_threads(py, self.count, self.threads, || {
-            robots.for_each(|index, robot| {
-                if chosen.get(index) == Some(&true) {
-                    for command in [Command::Mode(ModeId::WheelSpeed), Command::Arm] {
-                        // A robot at its start obeys.
-                        let _ = robot.command(&command);
+        let mut begins = true;
+        in_strides(py, ticks, self.stride(), |now| {
+            on_threads(py, self.count, self.threads, || {
+                robots.for_each(|index, robot| {
+                    if chosen.get(index) != Some(&true) {
+                        return;
                     }
-                    robot.advance(ticks);
-                }
-            });
+                    if begins {
+                        for command in [Command::Mode(ModeId::WheelSpeed), Command::Arm] {
+                            // A robot at its start obeys.
+                            let _ = robot.command(&command);
+                        }
+                    }
+                    robot.advance(now);
+                });
+            })?;
+            begins = false;
+            Ok(())
         })
     }
 
@@ -156,8 +249,10 @@ impl Batch {
         let mut held = self.lock()?;
         let robots = &mut *held;
         let pairs: Vec<_> = indices.into_iter().zip(seeds).collect();
-        on_threads(py, pairs.len(), self.threads, || robots.renew(&pairs))?
-            .map_err(|error| exception(&error))
+        let pool = || pool(self.threads);
+        making(py, pool, pairs.len(), None, |made| {
+            robots.renew(&pairs, made)
+        })
     }
 
     /// Applies a command in the words of a scenario to one robot.
@@ -169,7 +264,7 @@ impl Batch {
     /// Points the servo of one robot; `None` leaves it to the mode.
     fn aim(&self, index: usize, servo_rad: Option<f32>) -> PyResult<()> {
         if let Some(servo_rad) = servo_rad {
-            check_actions(&[[0.0, 0.0, servo_rad]])?;
+            check_actions(&[[0.0, 0.0, servo_rad]], MOST_SPEED)?;
         }
         self.with(index, |robot| robot.aim(servo_rad.map(ServoAngle)))
     }
@@ -223,9 +318,12 @@ impl Batch {
     }
 
     /// The robots as they are now.
-    fn snapshot(&self) -> PyResult<Snapshot> {
-        let robots = self.lock()?.clone();
-        Ok(Snapshot { robots })
+    fn snapshot(&self, py: Python<'_>) -> PyResult<Snapshot> {
+        Ok(Snapshot {
+            setup: self.setup.clone_ref(py),
+            caller: self.caller,
+            robots: self.lock()?.clone(),
+        })
     }
 
     /// Puts the robots back to a snapshot of a batch of the same size.
@@ -259,16 +357,39 @@ impl Batch {
         mut known: PyReadwriteArray2<'_, f32>,
         mut truth: PyReadwriteArray2<'_, f64>,
         ticks: u32,
-        act: impl Fn(usize, &mut Robot) -> bool + Sync + Send,
+        act: impl Fn(usize, &mut Robot, bool) -> bool + Sync + Send,
     ) -> PyResult<()> {
         let mut held = self.lock()?;
         let robots = &mut *held;
         let known = rows("known", &mut known, self.count, OBSERVED.len())?;
         let truth = rows("truth", &mut truth, self.count, TRUE.len())?;
-        on_threads(py, self.count, self.threads, || {
-            robots.step(known, truth, ticks, act);
-        })
+        let mut begins = true;
+        let mut advance = |now| {
+            on_threads(py, self.count, self.threads, || {
+                robots.step(known, truth, now, |index, robot| act(index, robot, begins));
+            })?;
+            begins = false;
+            Ok(())
+        };
+        match ticks {
+            0 => advance(0),
+            _ => in_strides(py, ticks, self.stride(), advance),
+        }
     }
+
+    /// Between two looks for Ctrl-C [ticks].
+    fn stride(&self) -> u32 {
+        let weight = match self.setup.get().overrides.firmware {
+            Some(_) => EMULATED,
+            None => 1,
+        };
+        stride(weight * self.count)
+    }
+}
+
+/// Between two looks for Ctrl-C [ticks], with so many robots of ours.
+pub(crate) fn stride(robots: usize) -> u32 {
+    (STRIDE_OF_ALL / robots.max(1)).clamp(1, STRIDE_TICKS) as u32
 }
 
 /// Robots that only one thread steps at a time.
@@ -291,11 +412,12 @@ pub(crate) fn beyond(index: usize, count: usize) -> PyErr {
 pub(crate) fn in_strides(
     py: Python<'_>,
     ticks: u32,
+    stride: u32,
     mut advance: impl FnMut(u32) -> PyResult<()>,
 ) -> PyResult<()> {
     let mut left = ticks;
     while left > 0 {
-        let now = left.min(STRIDE_TICKS);
+        let now = left.min(stride);
         left -= now;
         advance(now)?;
         py.check_signals()?;
@@ -308,6 +430,7 @@ pub(crate) fn checked<'a>(
     actions: &'a PyReadonlyArray2<'_, f32>,
     active: &'a PyReadonlyArray1<'_, bool>,
     count: usize,
+    most: (&str, f32, &str),
 ) -> PyResult<(&'a [[f32; ACTION]], &'a [bool])> {
     has_rows("actions", actions.shape(), count, ACTION)?;
     if !actions.is_c_contiguous() || active.len() != count {
@@ -316,7 +439,7 @@ pub(crate) fn checked<'a>(
         ));
     }
     let actions = actions.as_slice()?.as_chunks().0;
-    check_actions(actions)?;
+    check_actions(actions, most)?;
     Ok((actions, active.as_slice()?))
 }
 
@@ -368,18 +491,20 @@ pub(crate) fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize)
     )))
 }
 
+/// What wheels are given: what it is, the most of it either way, and its unit.
+pub(crate) const MOST_SPEED: (&str, f32, &str) = ("wheel speed", MAX_WHEEL_RAD_S, "rad/s");
+const MOST_DUTY: (&str, f32, &str) = ("wheel's share of the PWM", 1.0, "of the full one");
+
 /// Every number is one that the robot takes.
-fn check_actions(actions: &[[f32; ACTION]]) -> PyResult<()> {
-    const LIMITS: [(&str, f32, &str); ACTION] = [
-        ("left wheel speed", MAX_WHEEL_RAD_S, "rad/s"),
-        ("right wheel speed", MAX_WHEEL_RAD_S, "rad/s"),
-        ("servo angle", FRAC_PI_2, "rad"),
-    ];
+fn check_actions(actions: &[[f32; ACTION]], of_wheel: (&str, f32, &str)) -> PyResult<()> {
+    let limits = [of_wheel, of_wheel, ("servo angle", FRAC_PI_2, "rad")];
+    let sides = ["left ", "right ", ""];
     for (index, action) in actions.iter().enumerate() {
-        for (column, (value, (what, most, unit))) in action.iter().zip(LIMITS).enumerate() {
+        let columns = action.iter().zip(limits).zip(sides);
+        for (column, ((value, (what, most, unit)), side)) in columns.enumerate() {
             if value.is_nan() || value.abs() > most {
                 return Err(PyValueError::new_err(format!(
-                    "action[{index}, {column}] = {value}: {what} must be within {most:.4} {unit} of zero"
+                    "action[{index}, {column}] = {value}: {side}{what} must be within {most:.4} {unit} of zero"
                 )));
             }
         }

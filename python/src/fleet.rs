@@ -1,35 +1,51 @@
 //! The robots of a scenario with several, in one world, stepped from Python: for `rumbo.Fleet` and the parallel environments.
 
-use crate::batch::{beyond, checked, corners, hold, in_strides, rows};
+use crate::batch::{MOST_SPEED, beyond, checked, corners, hold, in_strides, rows, stride};
 use crate::guard::{detached, exception};
 use crate::setup::Setup;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
+use pyo3::types::PyBytes;
 use rumbo_control::mode::ModeId;
 use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Driver, OBSERVED, TRUE, Team};
+use rumbo_experiment::files::FileError;
 use rumbo_wire::Command;
 use std::sync::{Mutex, MutexGuard};
 
 /// Robots in one world.
 #[pyclass(frozen, module = "rumbo._rumbo")]
 pub(crate) struct Fleet {
+    setup: Py<Setup>,
     team: Mutex<Team>,
     names: Vec<String>,
+    callers: Vec<String>,
 }
+
+/// What defines robots in one world: their setup, their seed, who is driven by the caller, and what was done to them.
+type Parts<'py> = (Py<Setup>, u64, Vec<String>, Bound<'py, PyBytes>);
 
 #[pymethods]
 impl Fleet {
-    /// The robots of a seed; those of `callers`, by their names, are driven by the caller, the others by the scenario.
+    /// The robots of a seed; those of `callers`, by their names, are driven by the caller, the others by the scenario. They
+    /// are at their start, or after the acts of their history.
     #[new]
-    #[pyo3(signature = (setup, seed, *, callers))]
-    fn new(py: Python<'_>, setup: &Setup, seed: u64, callers: Vec<String>) -> PyResult<Self> {
-        let robots = &setup.files.fleet;
+    #[pyo3(signature = (setup, seed, *, callers, history=None))]
+    fn new(
+        py: Python<'_>,
+        setup: Py<Setup>,
+        seed: u64,
+        callers: Vec<String>,
+        history: Option<PyBackedBytes>,
+    ) -> PyResult<Self> {
+        let files = &setup.get().files;
+        let robots = &files.fleet;
         if robots.is_empty() {
             return Err(PyValueError::new_err(format!(
                 "scenario {}: has one robot; give a scenario with [[fleet]], or take rumbo.Sim",
-                setup.files.scenario.name
+                files.scenario.name
             )));
         }
         let names: Vec<String> = robots
@@ -47,10 +63,37 @@ impl Fleet {
             true => Driver::Caller,
             false => Driver::Scenario,
         };
-        let team = detached(py, || Team::new(&setup.files, driver, seed))?;
+        let team = detached(py, || {
+            let mut team = Team::new(files, driver, seed)?;
+            team.relive(history.as_deref().unwrap_or_default())?;
+            Ok(team)
+        })?;
         Ok(Self {
-            team: Mutex::new(team.map_err(|error| exception(&error))?),
+            team: Mutex::new(team.map_err(|error: FileError| exception(&error))?),
+            setup,
             names,
+            callers,
+        })
+    }
+
+    /// What makes them again, anywhere, by [`Fleet::new`].
+    fn parts<'py>(&self, py: Python<'py>) -> PyResult<Parts<'py>> {
+        let team = self.lock()?;
+        Ok((
+            self.setup.clone_ref(py),
+            team.seed(),
+            self.callers.clone(),
+            PyBytes::new(py, &team.history()),
+        ))
+    }
+
+    /// Others that go on by themselves from here.
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self {
+            setup: self.setup.clone_ref(py),
+            team: Mutex::new(self.lock()?.clone()),
+            names: self.names.clone(),
+            callers: self.callers.clone(),
         })
     }
 
@@ -58,7 +101,8 @@ impl Fleet {
     fn advance(&self, py: Python<'_>, ticks: u32) -> PyResult<()> {
         let mut held = self.lock()?;
         let team = &mut *held;
-        in_strides(py, ticks, |now| detached(py, || team.advance(now)))
+        let stride = stride(self.names.len());
+        in_strides(py, ticks, stride, |now| detached(py, || team.advance(now)))
     }
 
     /// Writes what each robot's program knows, and ground truth: a row for each robot.
@@ -82,19 +126,19 @@ impl Fleet {
         active: PyReadonlyArray1<'_, bool>,
         ticks: u32,
     ) -> PyResult<()> {
-        let (actions, active) = checked(&actions, &active, self.names.len())?;
+        let (actions, active) = checked(&actions, &active, self.names.len(), MOST_SPEED)?;
         {
             let mut team = self.lock()?;
             let rows = actions.iter().zip(active);
             for (index, ([left, right, servo_rad], active)) in rows.enumerate() {
                 let (left, right) = (*left, *right);
-                let command = match active {
-                    true => Command::WheelReference(Wheels { left, right }),
-                    false => Command::Disarm,
-                };
-                // In range: only a robot of another mode refuses it, and that one drives by its mode.
-                let _ = team.command(index, &command);
-                team.aim(index, active.then_some(ServoAngle(*servo_rad)));
+                if *active {
+                    team.drive(index, Wheels { left, right }, ServoAngle(*servo_rad));
+                } else {
+                    // One that is disarmed stays so.
+                    let _ = team.command(index, &Command::Disarm);
+                    team.aim(index, None);
+                }
             }
         }
         self.advance(py, ticks)

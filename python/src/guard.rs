@@ -3,10 +3,11 @@
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use rayon::ThreadPool;
+use rumbo_experiment::batch::Made;
 use rumbo_experiment::files::FileError;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -20,10 +21,27 @@ static POOLS: Mutex<(u32, BTreeMap<usize, Arc<ThreadPool>>)> = Mutex::new((0, BT
 /// The Python exception of an error in a file or a setting.
 pub(crate) fn exception(error: &FileError) -> PyErr {
     match error {
-        FileError::Unreadable { .. } => PyOSError::new_err(error.to_string()),
+        FileError::Unreadable {
+            path,
+            reason,
+            code,
+            wanted,
+        } => unreadable(
+            *code,
+            format!("cannot be read ({reason}); give {wanted}"),
+            path,
+        ),
         FileError::Unknown { .. } | FileError::Invalid(_) | FileError::Setting(_) => {
             PyValueError::new_err(error.to_string())
         }
+    }
+}
+
+/// That of a file which the system does not give: `FileNotFoundError`, `PermissionError` and so on by the system's number.
+pub(crate) fn unreadable(code: Option<i32>, what: String, path: &str) -> PyErr {
+    match code {
+        Some(code) => PyOSError::new_err((code, what, path.to_owned())),
+        None => PyOSError::new_err(format!("{path}: {what}")),
     }
 }
 
@@ -69,6 +87,35 @@ pub(crate) fn pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
 
 /// How often Ctrl-C is looked for.
 const LOOK: Duration = Duration::from_millis(100);
+
+/// Makes robots on the threads of `pool`, of which `count` are to be made, and looks for Ctrl-C meanwhile; a single one is
+/// made here, without threads, which a fork of this process would lose. `progress` is called with the share that is made.
+pub(crate) fn making<T: Send>(
+    py: Python<'_>,
+    pool: impl FnOnce() -> PyResult<Arc<ThreadPool>>,
+    count: usize,
+    progress: Option<&Py<PyAny>>,
+    make: impl FnOnce(Made<'_>) -> Result<T, FileError> + Send,
+) -> PyResult<T> {
+    let ended = match count {
+        0 | 1 => detached(py, || make(&|| Ok(())))?,
+        _ => watched(py, &*pool()?, progress, |shares, stop| {
+            let made = AtomicUsize::new(0);
+            make(&|| {
+                let made = made.fetch_add(1, Ordering::Relaxed) + 1;
+                if made.is_multiple_of(count.div_ceil(100)) {
+                    // An error: nobody listens any more, and `stop` is set.
+                    let _ = shares.send(made as f64 / count as f64);
+                }
+                match stop.load(Ordering::Relaxed) {
+                    true => Err(FileError::Setting("interrupted".to_owned())),
+                    false => Ok(()),
+                }
+            })
+        })?,
+    };
+    ended.map_err(|error| exception(&error))
+}
 
 /// Does work that takes long on the threads of `pool`, and looks for Ctrl-C meanwhile, which only Python's main thread
 /// sees. The work sends the share of it that is done, which `progress` is called with, and ends soon after the flag is

@@ -26,11 +26,11 @@ mod _rumbo {
     #[pymodule_export]
     use super::log::read_log;
     #[pymodule_export]
-    use super::policy::Policy;
+    use super::policy::{Policy, quantise};
     #[pymodule_export]
     use super::run::run;
     #[pymodule_export]
-    use super::setup::{Setup, load, names};
+    use super::setup::{Setup, load, names, value_names};
     #[pymodule_export]
     use super::study::{differences, plan, run_jobs};
     #[pymodule_export]

@@ -1,8 +1,8 @@
 //! Logs as columns.
 
-use crate::guard::detached;
+use crate::guard::{detached, unreadable};
 use numpy::IntoPyArray;
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rumbo_log::{Log, Source};
@@ -22,9 +22,8 @@ struct Readings {
 pub(crate) fn read_log(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
     let shown = path.display().to_string();
     let file = File::open(&path).map_err(|error| {
-        PyOSError::new_err(format!(
-            "{shown}: cannot be read ({error}); give the path of an existing log"
-        ))
+        let what = format!("cannot be read ({error}); give the path of an existing log");
+        unreadable(error.raw_os_error(), what, &shown)
     })?;
     let log = detached(py, || Log::read_signals(file))?
         .map_err(|error| PyValueError::new_err(format!("{shown}: {error}")))?;

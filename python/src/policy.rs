@@ -3,16 +3,25 @@
 use crate::batch::{has_rows, rows};
 use crate::guard::exception;
 use crate::setup::library;
+use crate::study::refuse;
 use numpy::{PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rumbo_control::policy::{OBSERVED, OUTPUTS, decide};
-use rumbo_experiment::files::PolicyFile;
+use rumbo_experiment::files::{Kind, PolicyFile};
+use rumbo_experiment::quantise::{Floats, quantise as to_integers};
 
 /// A policy in integers.
 #[pyclass(frozen, module = "rumbo._rumbo")]
 pub(crate) struct Policy {
     file: PolicyFile,
+}
+
+/// A network in floats, as JSON, made into a policy file of this title: its text.
+#[pyfunction]
+pub(crate) fn quantise(network: &str, title: &str) -> PyResult<String> {
+    let floats: Floats = serde_json::from_str(network).map_err(refuse)?;
+    Ok(to_integers(&floats, title).map_err(refuse)?.text)
 }
 
 #[pymethods]
@@ -30,6 +39,18 @@ impl Policy {
     #[getter]
     fn title(&self) -> &str {
         &self.file.title
+    }
+
+    /// The arguments that make it anywhere.
+    fn arguments(&self) -> (&str, Vec<(&str, &str, &str)>) {
+        let PolicyFile { name, text, .. } = &self.file;
+        (name, vec![(Kind::Policy.word(), name, text)])
+    }
+
+    /// Its layers, in words.
+    #[getter]
+    fn shape(&self) -> String {
+        self.file.shape.to_string()
     }
 
     /// Writes the outputs for each row of observations.

@@ -5,6 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rumbo_control::params::ParamId;
+use rumbo_experiment::files::parameters;
 use rumbo_experiment::files::{
     Kind, Library, NativeProgram, Overrides, ScenarioFile, Setup as Files, Spread,
 };
@@ -23,6 +24,24 @@ pub(crate) struct Setup {
     randomize: Option<bool>,
 }
 
+/// The value of a parameter, a switch's or a choice's by its name.
+#[derive(FromPyObject)]
+enum Value {
+    Number(f64),
+    Name(String),
+}
+
+impl Value {
+    fn of(self, parameter: &str) -> PyResult<f64> {
+        match self {
+            Self::Number(value) => Ok(value),
+            Self::Name(name) => parameters::parse(parameter, &name).map_err(|error| {
+                PyValueError::new_err(format!("parameter {parameter} = {name:?}: {error}"))
+            }),
+        }
+    }
+}
+
 #[pymethods]
 impl Setup {
     /// `held` are files given as text, as for [`library`].
@@ -36,7 +55,7 @@ impl Setup {
         world: Option<String>,
         policy: Option<String>,
         rig: Option<String>,
-        parameters: Vec<(String, f64)>,
+        parameters: Vec<(String, Value)>,
         program: &str,
         firmware: Option<PathBuf>,
         randomize: Option<bool>,
@@ -51,6 +70,10 @@ impl Setup {
                 )));
             }
         };
+        let parameters = parameters
+            .into_iter()
+            .map(|(name, value)| value.of(&name).map(|value| (name, value)))
+            .collect::<PyResult<_>>()?;
         let overrides = Overrides {
             robot,
             rig,
@@ -120,6 +143,11 @@ impl Setup {
         Ok(arguments)
     }
 
+    /// Nothing of it changes.
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
     /// The scenario's name.
     #[getter]
     fn name(&self) -> &str {
@@ -166,6 +194,13 @@ pub(crate) fn names(kind: &str) -> PyResult<Vec<String>> {
         return Ok(of_control.chain(of_plant).collect());
     }
     Ok(Library::new().list(find_kind(kind)?))
+}
+
+/// The names of the values 0, 1 and so on of a parameter; a number has none.
+#[pyfunction]
+pub(crate) fn value_names(parameter: &str) -> Vec<&'static str> {
+    let id = ParamId::from_name(parameter);
+    id.map(|id| id.kind().names().to_vec()).unwrap_or_default()
 }
 
 /// The content of a file as JSON, if nothing is wrong with it.

@@ -5,22 +5,21 @@ use crate::setup::Setup;
 use crate::study::refuse;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rumbo_experiment::tune::{Objective, Over, Plan, Request};
+use rumbo_experiment::tune::{Objective, Over, Plan, Request, Search};
 use std::sync::atomic::Ordering;
 
 /// Searches, and drives the robots that the search has not seen with the present values and the found ones: a
 /// dictionary. `progress` is called with the share of all runs that is done.
 #[pyfunction]
-#[pyo3(signature = (setup, over, *, aims, seed, runs, held_out, threads, progress))]
+#[pyo3(signature = (setup, over, *, aims, runs, held_out, threads, progress))]
 #[allow(clippy::too_many_arguments, reason = "keywords of one Python call")]
 pub(crate) fn tune<'py>(
     py: Python<'py>,
     setup: &Setup,
     over: Vec<String>,
     aims: Option<&str>,
-    seed: u64,
     runs: Option<u32>,
-    held_out: u32,
+    held_out: Vec<u64>,
     threads: Option<i64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -34,10 +33,12 @@ pub(crate) fn tune<'py>(
         Some(aims) => aims.parse().map_err(refuse)?,
         None => Objective::default(),
     };
+    // So a search from seed 1 is checked as that of the command is.
+    let first = held_out.first().copied().unwrap_or_default();
     let request = Request {
         over,
         objective,
-        seed,
+        seed: first.wrapping_sub(Search::SEEDS),
         runs,
         held_out,
     };

@@ -19,6 +19,8 @@ import rumbo
 from rumbo import _cluster, _rumbo, _setup
 
 AXES = {"front_kp": "2:10:5", "battery.open_circuit_v": [7.0, 8.0]}
+#: Seeds beyond the largest begin again.
+WRAPPING = [(2**64 - 3 + number) % 2**64 for number in range(20)]
 
 
 class Processes:
@@ -60,10 +62,8 @@ def assert_same(one: rumbo.Sweep, other: rumbo.Sweep) -> None:
 def test_a_sweep_in_pieces_has_the_bytes_of_one_in_a_piece(processes: Processes) -> None:
     processes.sizes.clear()
     counts: list[tuple[int, int]] = []
-    here = rumbo.sweep("mode1", AXES, runs=20, seed=2**64 - 3)
-    there = rumbo.sweep(
-        "mode1", AXES, runs=20, seed=2**64 - 3, cluster=processes, progress=lambda *count: counts.append(count)
-    )
+    here = rumbo.sweep("mode1", AXES, seeds=WRAPPING)
+    there = rumbo.sweep("mode1", AXES, seeds=WRAPPING, cluster=processes, progress=lambda *count: counts.append(count))
     assert_same(here, there)
     assert counts == [(done, 200) for done in range(1, 201)]
     assert len(processes.sizes) > 6 and max(processes.sizes) > 1 and sum(processes.sizes) == 200
@@ -100,18 +100,18 @@ def test_what_is_done_at_ctrl_c_is_kept_and_the_rest_added(where: str, processes
     processes.cancelled = 0
     cluster = processes if where == "processes" else None
     with pytest.raises(rumbo.Interrupted, match="50 runs are done") as stopped:
-        rumbo.sweep("mode1", AXES, runs=20, cluster=cluster, progress=stop)
+        rumbo.sweep("mode1", AXES, seeds=range(1, 21), cluster=cluster, progress=stop)
     assert (processes.cancelled > 0) == (where == "processes")
     done = pickle.loads(pickle.dumps(stopped.value.done))
     assert len(done) == 50 and len(done.points["front_kp"]) == 10
     counts: list[int] = []
-    whole = rumbo.sweep("mode1", AXES, runs=20, resume=done, progress=lambda count, _: counts.append(count))
+    whole = rumbo.sweep("mode1", AXES, seeds=range(1, 21), resume=done, progress=lambda count, _: counts.append(count))
     assert counts == list(range(51, 201))
-    assert_same(whole, rumbo.sweep("mode1", AXES, runs=20))
+    assert_same(whole, rumbo.sweep("mode1", AXES, seeds=range(1, 21)))
     with pytest.raises(ValueError, match="is of another sweep"):
-        rumbo.sweep("mode1", AXES, runs=19, resume=done)
+        rumbo.sweep("mode1", AXES, seeds=range(1, 20), resume=done)
     with pytest.raises(ValueError, match="is of another sweep"):
-        rumbo.sweep("mode1", AXES, runs=20, resume=done, parameters={"front_brake_m_s2": 0.3})
+        rumbo.sweep("mode1", AXES, seeds=range(1, 21), resume=done, parameters={"front_brake_m_s2": 0.3})
 
 
 class Inline:
@@ -164,7 +164,7 @@ def test_pieces_last_about_two_seconds_and_the_last_ones_end_together() -> None:
         sizes.append(len(done[0]))
         return done[0], 0.1 * len(done[0])
 
-    rumbo.sweep("mode1", {"front_kp": [5.0]}, runs=200, cluster=Inline(slowly))
+    rumbo.sweep("mode1", {"front_kp": [5.0]}, seeds=range(200), cluster=Inline(slowly))
     assert max(sizes) == 20 and sizes[-1] == 1
     assert np.sum(sizes) == 200
 

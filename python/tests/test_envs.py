@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+import copy
+import importlib.util
 import os
+import pathlib
+import pickle
+import subprocess
+import sys
 import warnings
 from typing import Any
 
@@ -13,8 +19,9 @@ from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
 import rumbo.envs
+from rumbo.envs import _tasks
 
-NAMES = ["WheelSpeed", "StopAtWall", "FollowWall", "Goal"]
+NAMES = ["WheelSpeed", "WheelPwm", "DriveSquare", "StopAtWall", "FollowWall", "Goal"]
 
 
 def make(name: str, **settings: Any) -> gymnasium.Env[Any, Any]:
@@ -46,7 +53,7 @@ def test_an_episode_is_the_same_alone_and_in_a_vector(name: str, threads: int) -
     rows = [(seen, np.zeros(count), np.zeros(count, bool), np.zeros(count, bool), infos)]
     rows += [vector.step(given[step]) for step in range(steps)]
     for index in range(count):
-        alone = make(name).unwrapped
+        alone = getattr(rumbo.envs, f"{name}Env")()
         begun: Any = alone.reset(seed=40 + index)
         row: tuple[Any, ...] = (begun[0], 0.0, False, False, begun[1])
         for step in range(steps + 1):
@@ -281,3 +288,125 @@ def test_single_environments_work_in_a_fork() -> None:
             os._exit(0)
         os._exit(1)
     assert os.waitpid(child, 0)[1] == 0
+
+
+def actions_taken(env: Any) -> int:
+    """How many actions an episode has that nothing else ends."""
+    env.reset(seed=3)
+    still = np.zeros(env.action_space.shape, np.float32)
+    for step in range(1, 2_000):
+        _, _, terminated, truncated, _ = env.step(still)
+        assert not np.any(terminated)
+        if np.all(truncated):
+            return step
+    return 0
+
+
+def test_the_number_of_actions_can_be_chosen_and_is_known() -> None:
+    for name in NAMES:
+        spec = gymnasium.spec(f"rumbo/{name}-v0")
+        assert spec.max_episode_steps == _tasks.ALL[name].steps
+    for given, taken in [({}, 50), ({"max_episode_steps": 10}, 10), ({"max_episode_steps": 70}, 70)]:
+        assert actions_taken(make("WheelSpeed", **given)) == taken
+        assert actions_taken(make_vec("WheelSpeed", 2, **given)) == taken
+        assert actions_taken(rumbo.envs.WheelSpeedEnv(**given)) == taken
+    assert actions_taken(make_vec("WheelSpeed", 2, max_episode_steps=-1)) == 0
+    with pytest.raises(ValueError, match="max_episode_steps = 0: must be at least 1"):
+        rumbo.envs.WheelSpeedEnv(max_episode_steps=0)
+    timed = gymnasium.wrappers.TimeAwareObservation(make("WheelSpeed"))
+    timed.reset(seed=1)
+    assert timed.step(np.zeros(3, np.float32))[0][-1] == 1
+
+
+def follow(env: Any, given: Any) -> list[Any]:
+    """All that the same actions lead to."""
+    return [env.step(one) for one in given]
+
+
+def alike(one: Any, other: Any) -> bool:
+    return bool(gymnasium.utils.env_checker.data_equivalence(one, other, exact=True))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_environments_are_pickled_copied_and_put_back_in_the_middle_of_an_episode(name: str) -> None:
+    for env, given in [(make(name), actions(4, 12, 1)[:, 0]), (make_vec(name, 3), actions(4, 12, 3))]:
+        env.reset(seed=6)
+        follow(env, given[:6])
+        snapshot = pickle.loads(pickle.dumps(env.unwrapped.snapshot()))
+        others = [pickle.loads(pickle.dumps(env)), copy.deepcopy(env)]
+        expected = follow(env, given[6:])
+        for other in others:
+            assert alike(follow(other, given[6:]), expected)
+        kind: Any = type(env.unwrapped)
+        again = kind(3) if "Vector" in kind.__name__ else kind()
+        again.restore(snapshot)
+        assert alike(follow(again, given[6:]), expected)
+        # And once more, in the one that it is of; a wrapper around it that counts would go on counting.
+        env.unwrapped.restore(snapshot)
+        assert alike(follow(env.unwrapped, given[6:]), expected)
+
+
+def test_a_snapshot_of_another_task_or_number_is_refused() -> None:
+    one, two = rumbo.envs.WheelSpeedEnv(), rumbo.envs.WheelSpeedVectorEnv(2)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        one.snapshot()
+    one.reset(seed=1)
+    for other in (two, rumbo.envs.GoalEnv()):
+        with pytest.raises(ValueError, match="a snapshot of 1 robots of mode5 does not fit"):
+            other.restore(one.snapshot())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_controller_of_a_few_lines_earns_more_than_chance_and_standing_still(name: str) -> None:
+    path = pathlib.Path(__file__).parents[1] / "benches/baselines.py"
+    spec: Any = importlib.util.spec_from_file_location("baselines", path)
+    baselines: Any = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(baselines)
+    best = rumbo.Policy("goal") if name == "Goal" else baselines.controller(name)
+    earned = [baselines.returns(name, choose, 10)[0] for choose in (best, baselines.still, baselines.chance())]
+    assert earned[0] > 5 + max(earned[1:]), earned
+
+
+def test_the_last_two_numbers_have_the_names_of_their_task() -> None:
+    assert make("Goal").unwrapped.observation_names == rumbo.OBSERVED
+    names = make_vec("StopAtWall", 2).unwrapped.observation_names
+    assert names == (*rumbo.OBSERVED[:12], "target_range_m", "nothing")
+    env = make("DriveSquare").unwrapped
+    seen, info = env.reset(seed=2)
+    assert env.observation_names[12:] == ("corner_ahead_m", "corner_left_m")
+    # The first corner is ahead, and where the world has no goal infos have none.
+    assert np.allclose(seen[12:], [1, 0], atol=0.01) and "goal_x_m" not in info
+
+
+def test_without_gymnasium_or_with_an_old_one_the_remedy_is_named() -> None:
+    code = """
+import importlib, sys, types
+for package, version, module in [
+    ("gymnasium", None, "rumbo.envs"), ("gymnasium", "1.0.0", "rumbo.envs"), ("gymnasium", "0.29.1", "rumbo.envs"),
+    ("ray", None, "rumbo.ray"), ("ray", "2.9.3", "rumbo.ray"),
+]:
+    sys.modules[package] = version and types.SimpleNamespace(__version__=version)
+    try:
+        importlib.import_module(module)
+    except ImportError as error:
+        print(type(error).__name__, error)
+del sys.modules["gymnasium"]
+import rumbo.envs
+for version in [None, "1.24.3"]:
+    sys.modules["pettingzoo"] = version and types.SimpleNamespace(__version__=version)
+    try:
+        importlib.import_module("rumbo.envs.fleet")
+    except ImportError as error:
+        print(type(error).__name__, error)
+"""
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.splitlines()
+    assert said == [
+        "ModuleNotFoundError rumbo.envs needs gymnasium 1.1 or newer: pip install 'rumbo[gym]'",
+        "ImportError rumbo.envs needs gymnasium 1.1 or newer, and 1.0.0 is installed: pip install 'rumbo[gym]'",
+        "ImportError rumbo.envs needs gymnasium 1.1 or newer, and 0.29.1 is installed: pip install 'rumbo[gym]'",
+        "ModuleNotFoundError cluster= needs ray 2.60 or newer: pip install 'rumbo[ray]'",
+        "ImportError cluster= needs ray 2.60 or newer, and 2.9.3 is installed: pip install 'rumbo[ray]'",
+        "ModuleNotFoundError rumbo.envs.fleet needs pettingzoo 1.25 or newer: pip install 'rumbo[pettingzoo]'",
+        "ImportError rumbo.envs.fleet needs pettingzoo 1.25 or newer, and 1.24.3 is installed: "
+        "pip install 'rumbo[pettingzoo]'",
+    ]

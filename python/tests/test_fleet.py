@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import pathlib
+import pickle
 import warnings
 from typing import Any
 
@@ -10,6 +12,7 @@ import gymnasium
 import numpy as np
 import pytest
 from pettingzoo.test import parallel_api_test, parallel_seed_test
+from pettingzoo.utils import parallel_to_aec
 
 import rumbo
 from rumbo.envs.fleet import FleetGoalEnv, across
@@ -60,6 +63,10 @@ def test_pettingzoo_s_own_tests_pass() -> None:
         warnings.simplefilter("error")
         parallel_api_test(FleetGoalEnv(robots=3), num_cycles=200)
         parallel_api_test(FleetGoalEnv(CORNERS), num_cycles=100)
+        # A wrapper around it, as SuperSuit has them.
+        aec = parallel_to_aec(FleetGoalEnv(robots=2))
+        aec.reset(seed=1)
+        aec.step(aec.action_space(aec.agent_selection).sample())
         parallel_seed_test(lambda: FleetGoalEnv(robots=3), num_cycles=40)
 
 
@@ -110,6 +117,37 @@ def test_one_that_arrives_is_done_and_stays_and_the_others_go_on() -> None:
         seen, rewards, terminations, _, _ = env.step(to_the_goals(env, seen))
         assert set(rewards) == {"robot_0"}
     assert terminations["robot_0"] and rewards["robot_0"] > 9
+
+
+def test_robots_in_one_world_are_pickled_copied_and_put_back() -> None:
+    env = FleetGoalEnv(CORNERS, agents=["north_east", "south_west"])
+    seen, _ = env.reset(seed=4)
+    for _ in range(20):
+        seen, *_ = env.step(to_the_goals(env, seen))
+    snapshot = pickle.loads(pickle.dumps(env.snapshot()))
+    others = [pickle.loads(pickle.dumps(env)), copy.deepcopy(env), FleetGoalEnv(CORNERS, agents=env.possible_agents)]
+    others[2].restore(snapshot)
+
+    def go_on(env: FleetGoalEnv) -> list[Any]:
+        rows: list[Any] = [(seen,)]
+        for _ in range(15):
+            rows.append(env.step(to_the_goals(env, rows[-1][0])))
+        return rows
+
+    expected = go_on(env)
+    for other in others:
+        assert alike(go_on(other), expected)
+    env.restore(snapshot)
+    assert alike(go_on(env), expected)
+    with pytest.raises(ValueError, match="a snapshot of south_west, .* does not fit robot_0, robot_1"):
+        FleetGoalEnv(robots=2).restore(snapshot)
+    # By the scenario alone.
+    fleet = rumbo.Fleet(CORNERS, seed=5)
+    fleet.step(3)
+    again = pickle.loads(pickle.dumps(fleet))
+    for one in (fleet, again):
+        one.step(1)
+    assert alike(fleet.truth(), again.truth())
 
 
 def test_the_end_of_the_time_truncates_and_a_step_after_it_is_empty() -> None:

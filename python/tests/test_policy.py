@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import pathlib
+import pickle
 import subprocess
 
 import numpy as np
@@ -88,6 +90,7 @@ def test_an_exported_network_is_refused_or_becomes_a_policy(tmp_path: pathlib.Pa
     network = {
         "inputs": [{"of": "goal_left_m", "centre": 0, "scale": 1}],
         "layers": [{"weights": [[-0.5], [0.5], [0]], "biases": [0, 0, 0]}],
+        "activation": "clip",
     }
     given, made = tmp_path / "network.json", tmp_path / "policy.toml"
 
@@ -105,3 +108,42 @@ def test_an_exported_network_is_refused_or_becomes_a_policy(tmp_path: pathlib.Pa
         assert refused.returncode == 2 and "is no network" in refused.stderr, wrong
     refused = export(json.dumps(network).replace("-0.5", "1e300"))
     assert refused.returncode == 2 and "neuron 1 of layer 1" in refused.stderr
+    # From Python the same, bit for bit, also of arrays.
+    layer = {"weights": np.array([[-0.5], [0.5], [0]], np.float32), "biases": np.zeros(3)}
+    python = tmp_path / "python.toml"
+    policy = rumbo.export_policy(network | {"layers": [layer]}, python)
+    assert python.read_bytes() == made.read_bytes()
+    with pytest.raises(FileExistsError):
+        rumbo.export_policy(network, python)
+    given.write_text(json.dumps(network))
+    for one in (policy, rumbo.export_policy(given), pickle.loads(pickle.dumps(policy)), copy.deepcopy(policy)):
+        assert one.decide(np.ones((1, 14), np.float32)).tolist() == [[-63, 64, 0]]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"activation": "tanh"}, 'activation = "tanh": the robot\'s neurons are clipped'),
+        ({"activation": None}, "invalid type: null"),
+        ({"layers": [{"weights": [[0.0]] * 64, "biases": [0.0] * 64}]}, "neurons of layer 1: there are 64, must be 3"),
+        ({"inputs": [{"of": "goal_left_m", "centre": 0, "scale": 0}]}, "scale of goal_left_m = 0: must be .* above 0"),
+        ({"inputs": [{"of": "target_range_m", "centre": 0, "scale": 1}]}, "mode 9 has no source for it: .* a goal"),
+    ],
+)
+def test_what_the_robot_cannot_evaluate_is_refused_with_its_place(change: dict[str, object], words: str) -> None:
+    network = {
+        "activation": "clip",
+        "inputs": [{"of": "goal_left_m", "centre": 0, "scale": 1}],
+        "layers": [{"weights": [[-0.5], [0.5], [0]], "biases": [0, 0, 0]}],
+    }
+    with pytest.raises(ValueError, match=words):
+        rumbo.export_policy(network | change)
+
+
+def test_every_setpoint_that_the_robot_has_no_source_for_is_refused() -> None:
+    for task in rumbo.envs._tasks.ALL.values():
+        for name in {*task.names} - {"goal_ahead_m", "goal_left_m", "nothing"}:
+            layer = {"weights": [[0.0]] * 3, "biases": [0.0] * 3}
+            network = {"activation": "clip", "inputs": [{"of": name, "centre": 0, "scale": 1}], "layers": [layer]}
+            with pytest.raises(ValueError, match=f"network: input `{name}`: mode 9 has no source for it"):
+                rumbo.export_policy(network)

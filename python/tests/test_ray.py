@@ -49,7 +49,9 @@ def written(sweep: rumbo.Sweep, path: pathlib.Path) -> bytes:
 @pytest.fixture(scope="module")
 def table(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     """That of the sweep on threads of this process."""
-    content = written(rumbo.sweep("mode1", AXES, runs=RUNS), tmp_path_factory.mktemp("table") / "here.csv")
+    content = written(
+        rumbo.sweep("mode1", AXES, seeds=range(1, RUNS + 1)), tmp_path_factory.mktemp("table") / "here.csv"
+    )
     assert content.count(b"\n") == TOTAL + 1
     return content
 
@@ -133,7 +135,7 @@ def test_a_worker_killed_in_the_middle_costs_its_piece_a_repetition(tmp_path: pa
         with rumbo.ray.Cluster("local") as again:
             assert again.workers == 2
         noted = Noted(cluster, tmp_path / "notes")
-        sweep = rumbo.sweep("mode1", AXES, runs=RUNS, cluster=noted, progress=kill_once)
+        sweep = rumbo.sweep("mode1", AXES, seeds=range(1, RUNS + 1), cluster=noted, progress=kill_once)
     assert not ray.is_initialized()
     assert written(sweep, tmp_path / "there.csv") == table
     begun = collections.Counter(job for _, job in noted.lines("begin"))
@@ -157,7 +159,7 @@ def test_a_node_lost_in_the_middle_of_a_running_cluster_loses_nothing(tmp_path: 
         with rumbo.ray.Cluster(running.address) as cluster:
             assert cluster.workers == 2
             noted = Noted(cluster, tmp_path / "notes")
-            sweep = rumbo.sweep("mode1", AXES, runs=RUNS, cluster=noted, progress=kill_once)
+            sweep = rumbo.sweep("mode1", AXES, seeds=range(1, RUNS + 1), cluster=noted, progress=kill_once)
         assert len(nodes) == 1
     finally:
         ray.shutdown()
@@ -174,7 +176,7 @@ def count(done, of):
         print("go", flush=True)
 
 try:
-    rumbo.sweep("mode1", {axes!r}, runs=20_000, cluster="local", threads=2, progress=count)
+    rumbo.sweep("mode1", {axes!r}, seeds=range(20_000), cluster="local", threads=2, progress=count)
 except rumbo.Interrupted as stopped:
     pickle.dump(stopped.done, open(sys.argv[1], "wb"))
     print("kept", len(stopped.done), flush=True)

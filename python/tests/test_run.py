@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import csv
+import errno
 import json
 import math
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -17,6 +20,7 @@ import numpy as np
 import pytest
 
 import rumbo
+from rumbo._progress import Bar
 
 
 def json_of(command: str, *words: str) -> list[dict[str, Any]]:
@@ -54,7 +58,7 @@ def test_the_numbers_are_those_of_the_command_bit_for_bit(
     for run, expected in zip(runs, printed):
         assert (run.seed, run.passed, list(run.failures)) == (
             expected["seed"],
-            expected["pass"],
+            expected["passed"],
             expected.get("failures", []),
         )
         assert run.metrics.keys() == expected["metrics"].keys()
@@ -157,7 +161,9 @@ def test_control_c_ends_what_takes_long(act: str) -> None:
         ({"parameters": {"battery.open_circuit_w": 1}}, ["battery.open_circuit_v"]),
         ({"parameters": {"front_kp": -1}}, ["front_kp = -1"]),
         ({"parameters": {"front_kp": math.nan}}, ["front_kp"]),
-        ({"parameters": {"front_kp": "much"}}, ["front_kp", "must be a number"]),
+        ({"parameters": {"front_kp": "much"}}, ["front_kp", "`much` is not a number"]),
+        ({"parameters": {"front_kp": []}}, ["front_kp", "must be a number, or the name of a choice"]),
+        ({"parameters": {"rig": "front"}}, ["rig", "`front_pair`", "not `front`"]),
         ({"world": "rom"}, ["unknown world `rom`", "room"]),
         ({"world": {"arena": {"from_m": [0, 0]}}}, ["given world"]),
         ({"world": {"title": math.inf}}, ["world.title", "finite"]),
@@ -181,10 +187,104 @@ def test_what_is_wrong_is_said_before_anything_runs(settings: dict[str, Any], wo
 def test_an_unknown_scenario_names_the_near_ones() -> None:
     with pytest.raises(ValueError, match="unknown scenario `mode11`.*mode1"):
         rumbo.run("mode11")
-    with pytest.raises(OSError, match="nowhere.toml"):
-        rumbo.run(pathlib.Path("nowhere.toml"))
     with pytest.raises(TypeError, match="scenario = 3"):
         rumbo.run(3)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"seeds = 1\.5: must be a whole number, or several such as range\(1, 11\)"):
+        rumbo.run("mode1", seeds=1.5)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"seeds\[1\] = 2\.5: must be a whole number"):
+        rumbo.run("mode1", seeds=[1, 2.5])  # type: ignore[list-item]
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda path: rumbo.run(path),
+        lambda path: rumbo.load("robot", path),
+        lambda path: rumbo.Sim("mode1", world=path),
+        lambda path: rumbo.Policy(path),
+        lambda path: rumbo.run("mode1", firmware=path),
+        lambda path: rumbo.read_log(path),
+        lambda path: rumbo.identify(path),
+        lambda path: rumbo.export_policy(path),
+    ],
+)
+def test_a_file_that_is_not_there_is_the_system_s_error(use: Any) -> None:
+    with pytest.raises(FileNotFoundError) as error:
+        use("nowhere.toml")
+    assert error.value.errno == errno.ENOENT and "nowhere.toml" in str(error.value.filename)
+
+
+@pytest.mark.parametrize(
+    ("use", "words"),
+    [
+        (lambda: rumbo.sweep("mode1", {"front_kp": "1:20"}), "a grid needs a count"),
+        (lambda: rumbo.sweep("mode1", {"front_kp": "1:20:9999", "kv": "0:1:9999"}), "fewer values or fewer runs"),
+        (lambda: rumbo.sweep("mode1", {"front_kp": "1:2"}, design="sobol", points=99999), "have them drawn at random"),
+        (lambda: rumbo.run("mode1", robot="uno"), "run a sketch or an image of your own"),
+        (lambda: rumbo.run("mode2-final", program="baseline"), "leave out the program baseline"),
+    ],
+)
+def test_errors_speak_of_no_command_line(use: Any, words: str) -> None:
+    with pytest.raises(ValueError, match=words) as error:
+        use()
+    assert not re.search(r"--\w|`rumbo ", str(error.value)), error.value
+
+
+def test_choices_are_made_by_name() -> None:
+    by_name = rumbo.run("mode1", parameters={"rig": "front_pair", "mission_reset_origin": "yes"})[0]
+    by_number = rumbo.run("mode1", parameters={"rig": 1, "mission_reset_origin": True})[0]
+    assert by_name == by_number and by_name.metrics != rumbo.run("mode1", parameters={"rig": "front_single"})[0].metrics
+
+
+def test_a_clear_range_is_infinite_and_one_of_no_sonar_unknown(rumbo_command: str, tmp_path: pathlib.Path) -> None:
+    words = ["run", "mode8-goals", "mode1", "--out", str(tmp_path)]
+    subprocess.run([rumbo_command, *words], capture_output=True)
+    for scenario in ("mode8-goals", "mode1"):
+        trace = rumbo.run(scenario, trace=True)[0].trace
+        with open(tmp_path / f"{scenario}-1.truth.csv", newline="") as table:
+            rows = list(csv.DictReader(table))
+        log = rumbo.read_log(tmp_path / f"{scenario}-1.mcap").signals
+        assert trace is not None and len(rows) == len(trace["t_s"])
+        for name in ("range_left_m", "range_front_m"):
+            told = np.array([float(row[name] or "nan") for row in rows])
+            assert np.allclose(told, trace[name], atol=1e-5, equal_nan=True), (scenario, name)
+        missing = np.isnan(trace["range_left_m"]).all()
+        assert missing == (scenario == "mode1") == ("true_range_left_m" not in log)
+        if not missing:
+            assert np.isinf(trace["range_front_m"]).any() and np.isinf(log["true_range_front_m"]).any()
+
+
+def test_a_notebook_shows_runs_as_tables_and_plots() -> None:
+    runs = rumbo.run("mode1", seeds=range(1, 15), trace=True)
+    assert repr(runs[0]) == "<run of mode1, seed 1: passed>"
+    one, table = runs[0]._repr_html_(), runs._repr_html_()
+    # A way, two wheels, and the ranges that are within reach.
+    assert one.count("<svg") == 3 and one.count("<polyline") >= 4 and "step1.settling_s" in one
+    assert table.count("<tr>") == 11 and "4 more rows" in table and len(table) < 10_000
+    assert "NaN" not in one and "inf" not in one.split("</table>")[1]
+
+
+def test_progress_has_a_rate_and_the_time_left(capsys: pytest.CaptureFixture[str]) -> None:
+    bar = Bar(total=100, first=20)
+    bar._began_s -= 4
+    for done in (30, 40, 100):
+        bar._shown_s -= 1
+        bar.show(done)
+    bar.end()
+    lines = [line.strip() for line in capsys.readouterr().err.split("\r")]
+    assert lines == [
+        "",
+        "30 of 100 runs, 2.5 a second, 28 s left",
+        "40 of 100 runs, 5 a second, 12 s left",
+        "100 of 100 runs, 20 a second, 4 s",
+    ]
+    rumbo.run("mode1", seeds=range(3), progress=True)
+    assert re.search(r"3 of 3 runs, .* a second, 0 s\s*\n$", capsys.readouterr().err)
+
+
+def test_as_a_program_it_says_where_the_command_is() -> None:
+    done = subprocess.run([sys.executable, "-m", "rumbo", "replay", "one.mcap"], capture_output=True, text=True)
+    assert done.returncode == 2 and "rumbo replay" in done.stderr and "rumbo.read_log" in done.stderr
 
 
 def test_names_and_content_of_files() -> None:
@@ -212,8 +312,9 @@ def test_a_log_is_read_as_arrays(rumbo_command: str, tmp_path: pathlib.Path) -> 
     assert log.cut is None and log.parameters["front_kp"] > 0
     with pytest.raises(ValueError, match="mode1-7.json"):
         rumbo.read_log(tmp_path / "mode1-7.json")
-    with pytest.raises(OSError, match="missing"):
-        rumbo.read_log(tmp_path / "missing.mcap")
+    assert repr(log).startswith(f"<log of mode1: {len(log.signals['t_s'])} rows of ") and len(repr(log)) < 100
+    shown = log._repr_html_()
+    assert "<td>mode1</td>" in shown and shown.count("<polyline") >= 2 and len(shown) < 20_000
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no forks here")

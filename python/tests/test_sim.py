@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import _thread
+import copy
 import math
 import os
+import pathlib
+import pickle
 import threading
 from typing import Any
 
@@ -206,3 +210,125 @@ def test_a_fork_says_so_in_place_of_hanging() -> None:
             os._exit(0 if "spawn" in str(error) else 1)
         os._exit(2)
     assert os.waitpid(child, 0)[1] == 0
+
+
+def same(one: Any, other: Any) -> bool:
+    return np.array_equal([*one.truth().values()], [*other.truth().values()], equal_nan=True)
+
+
+def test_robots_are_pickled_and_copied_and_go_on_bit_for_bit_the_same(tmp_path: pathlib.Path) -> None:
+    world = rumbo.load("world", "room")
+    caller = rumbo.Sim("mode1", seed=7, driver="caller", world=world)
+    caller.step(0.5)
+    caller.command(reference_m=0.4)
+    caller.command(parameter="front_kp", value=4)
+    caller.command(arm=True)
+    with pytest.raises(ValueError):
+        caller.command(mode="mission")
+    caller.command(servo_rad=0.1)
+    caller.record()
+    for sim in (caller, rumbo.Sim("mode8-random", seed=3), rumbo.Sim("mode2", program="baseline")):
+        sim.step(1.5)
+        path = tmp_path / "snapshot"
+        path.write_bytes(pickle.dumps(sim.snapshot()))
+        others = [pickle.loads(pickle.dumps(sim)), copy.deepcopy(sim), copy.copy(sim)]
+        sim.step(2)
+        for other in others:
+            other.step(2)
+            assert same(other, sim) and other.seed == sim.seed
+        other.restore(pickle.loads(path.read_bytes()))
+        other.step(2)
+        assert same(other, sim)
+    caller.write_log(tmp_path / "one.mcap")
+    others[0] = pickle.loads(pickle.dumps(caller))
+    others[0].write_log(tmp_path / "other.mcap")
+    one, other = (rumbo.read_log(tmp_path / f"{name}.mcap").signals for name in ("one", "other"))
+    assert all(np.array_equal(one[name], other[name], equal_nan=True) for name in one)
+
+
+def test_a_batch_in_a_pickle_has_its_renewed_and_its_waiting_robots() -> None:
+    batch = rumbo.Batch("mode5", seeds=range(5), driver="caller", threads=2)
+    batch.begin_wheel_speed()
+    batch.drive(np.full((5, 3), [4.0, 4.0, 0.2]), active=[True, False, True, True, True])
+    batch.renew([3], [99])
+    batch.drive(np.full((5, 3), 0.3), pwm=True)
+    again = pickle.loads(pickle.dumps(batch))
+    assert again.seeds.tolist() == [0, 1, 2, 99, 4] and repr(again) == repr(batch)
+    for one in (batch, again):
+        rows = one.drive(np.full((5, 3), [6.0, 5.0, 0.3]), 1.0)
+    assert same(batch, again) and len(set(rows[1][:, 0].tolist())) == 3
+
+
+def test_a_pickle_of_another_version_is_refused() -> None:
+    from rumbo._sim import _snapshot
+
+    parts = rumbo.Sim("mode1").snapshot().parts()
+    with pytest.raises(ValueError, match=r"a snapshot: was pickled by Rumbo 0\.1\.0, model 3, and this is Rumbo"):
+        _snapshot(("0.1.0", 3), *parts)
+    with pytest.raises(ValueError, match="it is damaged, make it again"):
+        _snapshot((rumbo.__version__, rumbo.MODEL), *parts[:3], [b"\x63"])
+
+
+def interrupted(act: Any) -> None:
+    """Control-C while something is done."""
+    timer = threading.Timer(0.3, _thread.interrupt_main)
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        act()
+    timer.join()
+
+
+def test_control_c_ends_the_driving_of_robots_with_all_at_one_time() -> None:
+    batch = rumbo.Batch("mode5", seeds=range(100), driver="caller")
+    interrupted(lambda: batch.begin_wheel_speed(duration_s=36_000))
+    interrupted(lambda: batch.drive(np.zeros((100, 3)), 36_000))
+    interrupted(lambda: batch.step(36_000))
+    times = batch.truth()["t_s"]
+    assert times.max() < 36_000 and len(set(times.tolist())) == 1
+
+
+def test_control_c_ends_the_making_of_robots() -> None:
+    shares: list[float] = []
+    interrupted(lambda: rumbo.Batch("mode8-random", seeds=range(100_000), progress=shares.append))
+    assert not shares or shares[-1] < 0.5
+    batch = rumbo.Batch("mode8-random", seeds=range(20), progress=shares.append)
+    assert shares[-1] == 1.0
+    made = rumbo.Batch("mode5", seeds=range(20_000))
+    interrupted(lambda: [made.renew(range(20_000), range(20_000, 40_000)) for _ in range(100)])
+    assert len(batch) == 20 and len(made) == 20_000
+
+
+@pytest.mark.parametrize("index", [-1, 2, 2**70])
+def test_the_number_of_a_robot_that_is_not_there_is_named(index: int) -> None:
+    batch = rumbo.Batch("mode5", seeds=[1, 2], driver="caller")
+    for act in (
+        batch.fault,
+        batch.obstacles,
+        lambda index: batch.command(index, arm=True),
+        lambda index: batch.record([index]),
+        lambda index: batch.write_log(index, "none.mcap"),
+        lambda index: batch.renew([index], [1]),
+        lambda index: batch.begin_wheel_speed([index]),
+    ):
+        with pytest.raises(IndexError, match=f"robot {index}: there are 2, numbered from 0"):
+            act(index)
+    with pytest.raises(TypeError, match="robot 1.5: must be a whole number"):
+        batch.fault(1.5)  # type: ignore[arg-type]
+
+
+def test_shares_of_the_pwm_drive_the_wheels_and_are_checked() -> None:
+    batch = rumbo.Batch("mode5", seeds=[1, 2], driver="caller")
+    batch.begin_wheel_speed()
+    _, truth = batch.drive([[0.5, 0.5, 0], [-0.5, -0.5, 0]], 1.0, pwm=True)
+    speeds = truth[:, rumbo.TRUE.index("left_rad_s")]
+    assert speeds[0] > 5 and speeds[1] < -5
+    with pytest.raises(ValueError, match=r"action\[0, 1\] = 1.5: right wheel's share of the PWM must be within 1"):
+        batch.drive([[0, 1.5, 0], [0, 0, 0]], pwm=True)
+
+
+def test_what_a_prompt_shows_is_short_and_tells_what_it_is() -> None:
+    sim = rumbo.Sim("mode1", seed=7)
+    sim.step(0.5)
+    assert repr(sim) == "<robot of mode1, seed 7, driven by the scenario: 0.50 s>"
+    assert repr(rumbo.Batch("mode5", seeds=range(3), driver="caller")) == "<3 robots of mode5, driven by the caller>"
+    assert repr(rumbo.Policy("goal")).endswith("16 inputs, 32, 32, 3 neurons>")

@@ -24,13 +24,13 @@ def test_a_tuning_is_that_of_the_command(rumbo_command: str) -> None:
     printed = json.loads(done.stdout)
     shares: list[float] = []
     over = ["front_kp", "front_brake_m_s2=0.1:0.6"]
-    settings: dict[str, Any] = {"runs": 2000, "held_out": 10, "seed": 3, "parameters": {"front_kp": 1.5}}
+    settings: dict[str, Any] = {"runs": 2000, "seeds": range(1_000_003, 1_000_013), "parameters": {"front_kp": 1.5}}
     tuning = rumbo.tune("mode1", over, AIMS, progress=shares.append, **settings)
     assert tuning.values == {one["name"]: one["tuned"] for one in printed["parameters"]}
     assert tuning.now == {one["name"]: one["now"] for one in printed["parameters"]}
     assert tuning.runs == printed["runs"]
     assert tuning.seeds.tolist() == printed["held_out"]["seeds"]
-    assert [tuning.passed_now, tuning.passed] == [printed["held_out"][key] for key in ("pass_now", "pass_tuned")]
+    assert [tuning.passed_now, tuning.passed] == [printed["held_out"][key] for key in ("passed_now", "passed_tuned")]
     for expected in printed["differences"]:
         assert tuning.differences[expected["metric"]].mean == pytest.approx(expected["mean"], rel=0, abs=0, nan_ok=True)
     assert shares == sorted(shares) and shares[0] > 0 and shares[-1] <= 1
@@ -51,7 +51,7 @@ def test_a_tuning_is_that_of_the_command(rumbo_command: str) -> None:
         ("front_kp", {"aims": "settling"}, "settling_s"),
         ("front_kp", {"aims": "settling_s <"}, "is not a number"),
         ("front_kp", {"runs": 100}, "at least 2000"),
-        ("front_kp", {"held_out": 1}, "must be at least 2"),
+        ("front_kp", {"seeds": 1}, "1 seeds: a check needs two or more"),
         ("front_kp", {"threads": 0}, "must be 1 to"),
     ],
 )

@@ -247,13 +247,13 @@ export class TuneDialog {
   /** @param {Found} found */
   #offer(found) {
     this.#found = found;
-    const { robot_file, held_out: { seeds, pass_now, pass_tuned } } = found;
+    const { robot_file, held_out: { seeds, passed_now, passed_tuned } } = found;
     const save = create('button', { type: 'button', id: 'tune-save', textContent: t('Save as robot file') });
     save.addEventListener('click', () => saveFile(`${this.#scene?.robot ?? 'robot'}-tuned.toml`, new Blob([robot_file ?? ''], { type: 'application/toml' })));
     const none = create('span', { className: 'hint', textContent: t('no robot file: more of the unseen robots fail than before') });
     this.#allow();
     this.#result.replaceChildren(
-      create('p', { className: pass_tuned === seeds.length ? 'passed' : 'failed', textContent: t('on {} robots that the search has not seen: {} passed, {} pass', seeds.length, pass_now, pass_tuned) }),
+      create('p', { className: passed_tuned === seeds.length ? 'passed' : 'failed', textContent: t('on {} robots that the search has not seen: {} passed, {} pass', seeds.length, passed_now, passed_tuned) }),
       ...resultTables(found, (name) => unitWords(this.#table.get(name)?.unit ?? '')),
       create('div', { className: 'row' }, this.#set, robot_file === null ? none : save),
       create('p', { className: 'hint', textContent: t('{} runs of the search. Lines whose interval excludes zero are certain; the others may be chance.', found.runs) }));

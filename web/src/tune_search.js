@@ -21,7 +21,7 @@ import { askForKey } from './key.js';
  * @property {string} scenario
  * @property {number} runs
  * @property {{name: string, now: number, tuned: number}[]} parameters
- * @property {{seeds: number[], pass_now: number, pass_tuned: number}} held_out
+ * @property {{seeds: number[], passed_now: number, passed_tuned: number}} held_out
  * @property {Difference[]} differences
  * @property {string | null} robot_file
  */

@@ -80,7 +80,7 @@ fn compare_logs(args: &CompareArgs) -> Result<(), Failure> {
     }
     if args.json {
         let runs = names.iter().zip(&metrics).zip(&passes);
-        let runs: Vec<Value> = runs.map(|((name, metrics), pass)| json!({ "log": name, "pass": pass, "metrics": numbers(metrics) })).collect();
+        let runs: Vec<Value> = runs.map(|((name, metrics), pass)| json!({ "log": name, "passed": pass, "metrics": numbers(metrics) })).collect();
         output::json(&json!({ "runs": runs, "parameters": parameters, "exceeded": complaints }))?;
     } else {
         print(&names, &metrics, &passes)?;

@@ -121,7 +121,7 @@ fn mark(scenario: &ScenarioFile, seed: u64) -> Result<Mark, Failure> {
     let text = |value: &String| serde_json::to_string(value).map_err(Failure::input);
     let next = match &scenario.path {
         Some(path) => format!("\"path\":{},", text(path)?),
-        None => "\"pass\":".into(),
+        None => "\"passed\":".into(),
     };
     let name = text(&scenario.name)?;
     Ok(Mark::Text(format!(

@@ -257,11 +257,15 @@ impl Writer<'_> {
 /// The best points, and where the page is.
 fn report(args: &SweepArgs, sweep: &Sweep, by: &str) -> Result<(), Failure> {
     let axes = sweep.plan.axes.iter().map(|axis| axis.name.clone());
-    let more = ["pass".to_owned(), format!("{by}, median")];
+    let more = ["passed".to_owned(), format!("{by}, median")];
     let mut rows: Vec<Vec<String>> = vec![axes.chain(more).collect()];
     for point in sweep.ranked(by).into_iter().take(SHOWN) {
-        let values = sweep.plan.points[point].iter();
-        let mut row: Vec<String> = values.map(|value| figure(*value)).collect();
+        let values = sweep.plan.axes.iter().zip(&sweep.plan.points[point]);
+        let values = values.map(|(axis, value)| match axis.name_of(*value) {
+            Some(name) => name.to_owned(),
+            None => figure(*value),
+        });
+        let mut row: Vec<String> = values.collect();
         row.push(format!("{:.0} %", 100.0 * sweep.pass_share(point)));
         let median = sweep.spread(point, by).map(|spread| spread.median);
         row.push(match median {

@@ -41,7 +41,7 @@ pub(crate) fn tune(args: &TuneArgs) -> Result<(), Failure> {
         objective: args.aims.clone().unwrap_or_default(),
         seed: args.seed.seed,
         runs: args.runs,
-        held_out: args.held_out,
+        held_out: Search::held_out(args.seed.seed, args.held_out),
     };
     let plan = Plan::new(setup, &library.scenario(&args.scenario)?, request)?;
     set_threads(args.threads)?;
@@ -123,8 +123,8 @@ fn as_json(plan: &Plan, outcome: &Outcome, on_image: Option<(usize, usize)>) -> 
         "scenario": plan.setup().scenario.name,
         "runs": outcome.found.runs,
         "parameters": values.collect::<Vec<_>>(),
-        "held_out": { "seeds": plan.seeds(), "pass_now": now, "pass_tuned": tuned },
-        "image": on_image.map(|(pass, of)| json!({ "pass": pass, "of": of })),
+        "held_out": { "seeds": plan.seeds(), "passed_now": now, "passed_tuned": tuned },
+        "image": on_image.map(|(pass, of)| json!({ "passed": pass, "of": of })),
         "differences": differences_as_json(&outcome.runs[0], &outcome.runs[1]),
     })
 }

@@ -5,19 +5,35 @@
 
 use crate::files::policy::{BIAS_LIMIT, Input, Network, Neuron};
 use crate::files::{FileError, PolicyFile, near_or_all};
-use rumbo_control::policy::{MOST_SHIFT, OBSERVED, ONE};
+use rumbo_control::policy::{MOST_LAYERS, MOST_SHIFT, MOST_VALUES, OBSERVED, ONE, OUTPUTS};
 use serde::Deserialize;
 use std::fmt;
+use std::ops::RangeInclusive;
 
 /// A network in floats: `x = clip((column - centre) / scale, -1, 1)`, then `clip(weights x + biases, -1, 1)` for each layer.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Floats {
+    /// What a neuron does with its sum: [`CLIP`], which is all that the robot does. Written down, so that no network of
+    /// another kind is taken for one of these.
+    pub activation: String,
     /// Its inputs.
     pub inputs: Vec<FloatInput>,
     /// Its layers, the outputs last: left wheel, right wheel, servo.
     pub layers: Vec<FloatLayer>,
 }
+
+/// Clipped to -1..1: `jnp.clip(x, -1, 1)`, `torch.nn.Hardtanh()`.
+pub const CLIP: &str = "clip";
+
+/// Columns that the environments of other tasks have in place of the goal's, each with what it is.
+const SETPOINTS: [(&str, &str); 5] = [
+    ("target_left_rad_s", "a wheel speed"),
+    ("target_right_rad_s", "a wheel speed"),
+    ("target_range_m", "a distance to a wall"),
+    ("corner_ahead_m", "a corner of a course"),
+    ("corner_left_m", "a corner of a course"),
+];
 
 /// An input.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
@@ -44,19 +60,37 @@ pub struct FloatLayer {
 /// Why a network cannot be quantised.
 #[derive(Clone, Debug, PartialEq)]
 pub enum QuantiseError {
+    /// Its neurons do something else than the robot's.
+    Activation(String),
     /// An input is no column of the observation.
     Column(String),
+    /// An input is the setpoint of a task, for which mode 9 has no source; what it is.
+    Setpoint(String, &'static str),
     /// A layer has not as many weights or biases as it must: which, and what is wrong.
     Count(String, usize, usize),
-    /// A number is not finite, or too large.
+    /// A weight or bias is not finite, or too large.
     Number(String, f64),
-    /// The robot cannot evaluate a network of this shape.
-    Shape(FileError),
+    /// The centre or scale of an input makes no sense, and what it must be.
+    Input(String, f64, &'static str),
+    /// There are too many or too few of something; the robot's limits.
+    Shape(String, usize, RangeInclusive<usize>),
+    /// The file that was made is not read.
+    File(FileError),
 }
 
 impl fmt::Display for QuantiseError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Activation(name) => write!(
+                f,
+                "activation = {name:?}: the robot's neurons are clipped to -1..1, so that they need no table; train with \
+                 torch.nn.Hardtanh or jnp.clip, and say \"clip\""
+            ),
+            Self::Setpoint(name, what) => write!(
+                f,
+                "input `{name}`: mode 9 has no source for it: on the robot it is given a goal, never {what}; only policies \
+                 of the goal task can be exported"
+            ),
             Self::Column(name) => {
                 let near = near_or_all(name, OBSERVED).join(", ");
                 write!(
@@ -71,7 +105,17 @@ impl fmt::Display for QuantiseError {
                 f,
                 "{what} = {value}: must be a finite number that 8 bits can hold, less than 127; train with smaller weights"
             ),
-            Self::Shape(error) => error.fmt(f),
+            Self::Input(what, value, must) => write!(f, "{what} = {value}: must be {must}"),
+            Self::Shape(what, count, limits) if limits.start() == limits.end() => {
+                write!(f, "{what}: there are {count}, must be {}", limits.end())
+            }
+            Self::Shape(what, count, limits) => write!(
+                f,
+                "{what}: there are {count}, must be {} to {}",
+                limits.start(),
+                limits.end()
+            ),
+            Self::File(error) => error.fmt(f),
         }
     }
 }
@@ -83,6 +127,10 @@ impl std::error::Error for QuantiseError {}
 /// # Errors
 /// Why there is none.
 pub fn quantise(floats: &Floats, title: &str) -> Result<PolicyFile, QuantiseError> {
+    if floats.activation != CLIP {
+        return Err(QuantiseError::Activation(floats.activation.clone()));
+    }
+    check_shape(floats)?;
     let inputs = floats.inputs.iter().map(input);
     let mut network = Network {
         inputs: inputs.collect::<Result<_, _>>()?,
@@ -112,18 +160,46 @@ pub fn quantise(floats: &Floats, title: &str) -> Result<PolicyFile, QuantiseErro
         values = layer.weights.len();
     }
     let text = network.text(title);
-    PolicyFile::parse("policy", "policy", &text).map_err(QuantiseError::Shape)
+    PolicyFile::parse("policy", "policy", &text).map_err(QuantiseError::File)
+}
+
+/// The robot has room and time for a network of this shape.
+fn check_shape(floats: &Floats) -> Result<(), QuantiseError> {
+    let within =
+        |what: &str, count: usize, limits: RangeInclusive<usize>| match limits.contains(&count) {
+            true => Ok(()),
+            false => Err(QuantiseError::Shape(what.to_owned(), count, limits)),
+        };
+    within("inputs", floats.inputs.len(), 1..=MOST_VALUES)?;
+    within("layers", floats.layers.len(), 1..=MOST_LAYERS)?;
+    for (number, layer) in (1..).zip(&floats.layers) {
+        let limits = match number == floats.layers.len() {
+            true => OUTPUTS..=OUTPUTS,
+            false => 1..=MOST_VALUES,
+        };
+        within(
+            &format!("neurons of layer {number}"),
+            layer.weights.len(),
+            limits,
+        )?;
+    }
+    Ok(())
 }
 
 fn input(input: &FloatInput) -> Result<Input, QuantiseError> {
     let FloatInput { of, centre, scale } = input;
     let column = OBSERVED.iter().position(|name| name == of);
-    for (what, value, is_fine) in [
-        ("centre", centre, centre.is_finite()),
-        ("scale", scale, scale.is_finite() && *scale > 0.0),
+    if let Some((name, what)) = SETPOINTS.iter().find(|(name, _)| name == of) {
+        return Err(QuantiseError::Setpoint((*name).to_owned(), what));
+    }
+    let has_scale = scale.is_finite() && *scale > 0.0;
+    for (what, value, is_fine, must) in [
+        ("centre", centre, centre.is_finite(), "a finite number"),
+        ("scale", scale, has_scale, "a finite number above 0"),
     ] {
         if !is_fine {
-            return Err(QuantiseError::Number(format!("{what} of {of}"), *value));
+            let what = format!("{what} of {of}");
+            return Err(QuantiseError::Input(what, *value, must));
         }
     }
     Ok(Input {

@@ -37,6 +37,7 @@ pub struct RunResult {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
     /// No limit is missed, and the robot refused nothing and reported no fault.
+    #[serde(rename = "passed")]
     pub pass: bool,
     /// All metrics; units in the names.
     pub metrics: Metrics,

@@ -253,7 +253,7 @@ fn truth(sample: &Sample) -> (u64, Truth) {
         wheel_rad_s: Wheels { left, right },
         range_m: sample
             .range_m
-            .map(|range_m| range_m.is_finite().then_some(range_m)),
+            .map(|range_m| (!range_m.is_nan()).then_some(range_m)),
         servo_rad: sample.servo_rad,
         contact: sample.touching,
         battery_v: sample.battery_v,

@@ -161,7 +161,7 @@ impl Outcome {
     pub(crate) fn to_metadata(&self) -> BTreeMap<String, String> {
         let metric = |(name, value): (&String, &f64)| (format!("metric.{name}"), value.to_string());
         let mut metadata: BTreeMap<String, String> = self.metrics.iter().map(metric).collect();
-        metadata.insert("pass".into(), self.pass.to_string());
+        metadata.insert("passed".into(), self.pass.to_string());
         metadata.insert("failures".into(), self.failures.join("\n"));
         metadata
     }
@@ -172,7 +172,7 @@ impl Outcome {
             .map(String::as_str)
             .unwrap_or_default();
         Self {
-            pass: metadata.get("pass").is_some_and(|pass| pass == "true"),
+            pass: metadata.get("passed").is_some_and(|pass| pass == "true"),
             metrics: metadata
                 .iter()
                 .filter_map(|(name, value)| {

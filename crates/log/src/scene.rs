@@ -34,8 +34,8 @@ pub struct Truth {
     pub pose: MapPose,
     /// Speeds of the wheels, forward positive [rad/s].
     pub wheel_rad_s: Wheels<f64>,
-    /// Distance to the nearest thing in each sonar's cone, by `SonarId` number \[m\]; `None` when nothing is within
-    /// reach or the rig has no such sonar.
+    /// Distance to the nearest thing in each sonar's cone, by `SonarId` number \[m\]; infinite when nothing is within
+    /// reach, `None` where the rig has no such sonar.
     pub range_m: [Option<f64>; 3],
     /// Angle of the servo, 0 straight ahead, positive to the left \[rad\].
     pub servo_rad: f64,

@@ -93,7 +93,8 @@ pub struct Truth {
     pub forward_m_s: f64,
     /// Turn rate of the body, counter-clockwise.
     pub yaw_rad_s: f64,
-    /// Noise-free range of each sonar by [`SonarId::index`]; `None` where it has no echo or does not exist.
+    /// Noise-free range of each sonar by [`SonarId::index`]; infinite where nothing is within
+    /// reach, `None` where there is no such sonar.
     pub range_m: [Option<f64>; 3],
     /// Terminal voltage of the battery.
     pub battery_v: f64,
@@ -446,8 +447,9 @@ impl Plant {
     #[must_use]
     pub fn truth(&self, state: &State) -> Truth {
         let range_m = SonarId::ALL.map(|sonar| {
-            self.view(state, sonar)
-                .and_then(|view| self.sonar.true_range_m(&self.world, state.now_us, &view))
+            let view = self.view(state, sonar)?;
+            let range_m = self.sonar.true_range_m(&self.world, state.now_us, &view);
+            Some(range_m.unwrap_or(f64::INFINITY))
         });
         let [left, right] = &state.drivetrain.wheels;
         Truth {

@@ -5,7 +5,7 @@ use crate::metric_names::{Shown, bare};
 use crate::summary::{figure, heading, shell};
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, escape, put, with_unit, word};
-use rumbo_control::params::{ParamId, ParamKind};
+use rumbo_control::params::ParamId;
 use rumbo_experiment::files::ScenarioFile;
 use rumbo_experiment::metrics;
 use rumbo_experiment::sweep::{Axis, Design, Row, Spread, Sweep};
@@ -439,11 +439,7 @@ impl Page<'_> {
 
 /// The value of a parameter: of a switch or a choice its name.
 fn value_of(language: Language, axis: &Axis, value: f64) -> String {
-    let kind = ParamId::from_name(&axis.name).map(ParamId::kind);
-    let named = kind
-        .filter(|kind| *kind != ParamKind::Number)
-        .and_then(|kind| kind.name_of(value as f32));
-    match named {
+    match axis.name_of(value) {
         Some(name) => name.to_owned(),
         None => language.significant(value, 4),
     }

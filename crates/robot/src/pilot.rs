@@ -236,6 +236,12 @@ impl Pilot {
         }
     }
 
+    /// Takes the place of what the mode requested of the wheels.
+    #[cfg(not(target_arch = "avr"))]
+    pub(crate) fn request_duty(&mut self, duty: Wheels<f32>) {
+        self.action.drive = Drive::Duty(duty);
+    }
+
     /// The duty that was let through.
     pub(crate) fn drove(&mut self, duty: Wheels<Duty>) {
         self.duty = duty;

@@ -242,6 +242,13 @@ impl Robot {
         }
     }
 
+    /// Has the wheels driven open loop at the next tick, by shares of the full PWM of -1 to 1, whatever the mode requested:
+    /// for a caller without a link.
+    #[cfg(not(target_arch = "avr"))]
+    pub fn request_duty(&mut self, duty: rumbo_control::Wheels<f32>) {
+        self.pilot.request_duty(duty);
+    }
+
     /// The state of the drive layer, for [`Robot::loops`].
     #[cfg(not(target_arch = "avr"))]
     pub fn drive_layer(&self) -> &DriveLayer {

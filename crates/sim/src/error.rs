@@ -47,7 +47,7 @@ impl fmt::Display for SimError {
             }
             Self::NoBaseline { mode, rig } => write!(
                 f,
-                "the report's program does not do mode {} on rig {rig}; leave out --program baseline or choose another scenario",
+                "the report's program does not do mode {} on rig {rig}; leave out the program baseline or choose another scenario",
                 mode.name()
             ),
             Self::LinkPins {

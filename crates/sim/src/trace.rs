@@ -25,7 +25,8 @@ pub struct Sample {
     pub wheel_rad_s: [f64; 2],
     /// PWM at the bridges, left and right, -255..=255.
     pub duty: [i16; 2],
-    /// True range of the left, right and front sonar [m]; infinite when nothing is within reach.
+    /// True range of the left, right and front sonar [m]; infinite when nothing is within reach, not a
+    /// number where there is no such sonar.
     pub range_m: [f64; 3],
     /// Where the servo points [rad].
     pub servo_rad: f64,
@@ -114,9 +115,7 @@ impl Trace {
             heading_rad,
             wheel_rad_s: truth.wheel_rad_s,
             duty: [duty.left.counts(), duty.right.counts()],
-            range_m: truth
-                .range_m
-                .map(|range_m| range_m.unwrap_or(f64::INFINITY)),
+            range_m: truth.range_m.map(|range_m| range_m.unwrap_or(f64::NAN)),
             servo_rad: truth.servo_rad,
             battery_v: truth.battery_v,
             touching: truth.touching,
@@ -175,7 +174,7 @@ impl Trace {
     /// The samples as CSV, units in the names of the columns.
     pub fn csv(&self) -> String {
         let mut text = String::from(
-            "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,left_m,right_m,front_m,servo_rad,battery_v\n",
+            "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,range_left_m,range_right_m,range_front_m,servo_rad,battery_v\n",
         );
         for sample in &self.samples {
             let Sample {
@@ -191,10 +190,10 @@ impl Trace {
                 touching: _,
             } = sample;
             let [left_m, right_m, front_m] = range_m.map(|range_m| {
-                if range_m.is_finite() {
-                    format!("{range_m:.5}")
-                } else {
-                    String::new()
+                match range_m.is_nan() {
+                    true => String::new(),
+                    // `inf` where nothing is within reach.
+                    false => format!("{range_m:.5}"),
                 }
             });
             // Writing to a string cannot fail.

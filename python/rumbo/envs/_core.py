@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import copy
+import ctypes
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from gymnasium import error, spaces
 from numpy.typing import NDArray
 
+from .. import _rumbo
 from .._rumbo import REACH_M
-from .._setup import Source
-from .._sim import TRUE, Batch
+from .._setup import Parameters, Source
+from .._sim import OBSERVED, TRUE, Batch
 from ._render import frame
 from ._tasks import ACTION_S, FAILURE, MAX_WHEEL_RAD_S, Bools, Floats, Task, collided, mix
 
@@ -22,13 +27,26 @@ STAND_S = 0.5
 _ANGLE = np.float32(np.pi)
 _LOW = [-60, -60, 0, 0, 0, 0, 0, 0, -_ANGLE / 2, -50, -50, -_ANGLE, -50, -50]
 _HIGH = [60, 60, REACH_M, REACH_M, REACH_M, 1, 1, 1, _ANGLE / 2, 50, 50, _ANGLE, 50, 50]
-#: What an action of 1 is: the wheels [rad/s], the servo [rad]; a little less than its end, which it must not pass.
-SCALE = np.array([MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S, 1.5707], np.float32)
-SCALE.setflags(write=False)
+#: So many robots are worth the while that giving their memory back takes.
+MANY = 64
+#: Where the servo points at an action of 1 [rad]: a little less than its end, which it must not pass.
+_SERVO_RAD = 1.5707
+#: What an action of 1 is: the wheels [rad/s], the servo [rad]; and the same where wheels get shares of the full PWM.
+SCALE = np.array([MAX_WHEEL_RAD_S, MAX_WHEEL_RAD_S, _SERVO_RAD], np.float32)
+PWM_SCALE = np.array([1.0, 1.0, _SERVO_RAD], np.float32)
+for _scale in (SCALE, PWM_SCALE):
+    _scale.setflags(write=False)
+
+_X, _Y, _HEADING = (OBSERVED.index(name) for name in ("x_m", "y_m", "heading_rad"))
+
+
+def observation_names(task: Task) -> tuple[str, ...]:
+    """The names of the numbers of an observation: those of `rumbo.OBSERVED`, the last two being the task's."""
+    return (*OBSERVED[:-2], *task.names)
 
 
 def observation_space() -> spaces.Box:
-    """Of one environment: by the names of `rumbo.OBSERVED`."""
+    """Of one environment: by its `observation_names`."""
     return spaces.Box(np.array(_LOW, np.float32), np.array(_HIGH, np.float32), dtype=np.float32)
 
 
@@ -43,9 +61,20 @@ class Settings:
 
     robot: Source | None = None
     world: Source | None = None
-    parameters: Mapping[str, float] | None = None
+    parameters: Parameters | None = None
     randomize: bool | None = None
     threads: int | None = None
+    #: Actions of an episode before it is cut off; that of the task by default, -1 for no end.
+    max_episode_steps: int | None = None
+
+
+@dataclass(frozen=True)
+class EnvSnapshot:
+    """Environments as they were at one moment, to be restored any number of times; they can be pickled."""
+
+    _scenario: str
+    _robots: _rumbo.Snapshot
+    _state: dict[str, Any] = field(repr=False)
 
 
 @dataclass
@@ -59,14 +88,22 @@ class Step:
     truncated: Bools
 
 
+#: What of a core changes with time, besides the robots.
+_MOMENT = ("_names", "_bases", "_begun", "seeds", "_targets", "_reached", "_points", "_steps", "_known", "_truth")
+
+
 class Core:
     """Robots with a task, each in an episode of its own."""
 
     def __init__(self, task: Task, settings: Settings, count: int) -> None:
         if count < 1:
             raise ValueError(f"num_envs = {count}: must be at least 1")
+        steps = task.steps if settings.max_episode_steps is None else settings.max_episode_steps
+        if steps < 1 and steps != -1:
+            raise ValueError(f"max_episode_steps = {steps}: must be at least 1, or -1 for no end")
         self.task = task
         self.count = count
+        self._most_steps = np.iinfo(np.int64).max if steps == -1 else steps
         self._settings = settings
         self._robot = task.robot if settings.robot is None else settings.robot
         self._world = task.world if settings.world is None else settings.world
@@ -81,12 +118,14 @@ class Core:
         self.seeds = np.zeros(count, np.int64)
         self._targets = np.zeros((count, 2))
         self._has_targets = task.targets(0) is not None
+        #: Of a course: how many of its points each robot has reached, and all of them in the world [m].
+        self._reached = np.zeros(count, np.int64)
+        self._points = np.zeros((count, len(task.course), 2))
         #: Episodes that begin from now on are recorded.
         self.recorded = False
-        #: The columns of the ground truth that infos have: without a goal where the task has none.
-        self._names = [
-            (column, name) for column, name in enumerate(TRUE) if not (self._has_targets and name.startswith("goal_"))
-        ]
+        #: The columns of the ground truth that infos have: none of a goal that the world lacks, or of a sonar that the
+        #: robots lack. The first reset shows it.
+        self._names: list[tuple[int, str]] = []
         self._steps = np.zeros(count, np.int64)
         self._known = np.zeros((count, len(_LOW)), np.float32)
         self._truth = np.zeros((count, len(TRUE)))
@@ -115,17 +154,28 @@ class Core:
         seeds = [int(self.seeds[index]) for index in chosen]
         if self._batch is None:
             self._batch = self._make()
+            first = self._batch.truth_rows()[0]
+            self._names = [(column, name) for column, name in enumerate(TRUE) if not np.isnan(first[column])]
         else:
             self._batch.renew(chosen, seeds)
         if self.recorded:
             self._batch.record(chosen)
         self._batch.begin_wheel_speed(chosen, STAND_S)
-        for index, seed in zip(chosen, seeds):
-            self._targets[index] = self.task.targets(seed) or (0.0, 0.0)
         self._steps[chosen] = 0
+        self._reached[chosen] = 0
         # All are looked at again, which changes nothing for those that go on.
         self._known, self._truth = self._batch.rows()
+        for index, seed in zip(chosen, seeds):
+            self._targets[index] = self.task.targets(seed) or (0.0, 0.0)
+            if self.task.course:
+                self._points[index] = self._course_from(self._truth[index])
         self._finish(self._known)
+
+    def _course_from(self, truth: Floats) -> list[tuple[float, float]]:
+        """Where in the world the points of the course are, for a robot that begins here [m]."""
+        x_m, y_m, heading_rad = (float(truth[TRUE.index(name)]) for name in ("x_m", "y_m", "heading_rad"))
+        ahead, left = math.cos(heading_rad), math.sin(heading_rad)
+        return [(x_m + x * ahead - y * left, y_m + x * left + y * ahead) for x, y in self.task.course]
 
     def _make(self) -> Batch:
         settings = self._settings
@@ -150,20 +200,40 @@ class Core:
         batch = self.batch
         rows = self._checked_actions(actions)
         before = self._truth
-        known, truth = batch.drive(rows, ACTION_S, active=active)
+        known, truth = batch.drive(rows, ACTION_S, active=active, pwm=self.task.pwm)
+        self._steps[active] += 1
+        reward, succeeded = self.task.judge(before, truth, self._aims())
+        if self.task.course:
+            self._reached[active & succeeded] += 1
+            succeeded &= self._reached == len(self.task.course)
         self._finish(known)
         self._known, self._truth = known, truth
-        self._steps[active] += 1
-        reward, succeeded = self.task.judge(before, truth, self._targets)
         failed = collided(truth) & ~succeeded
         reward = np.where(failed, reward + FAILURE, reward)
         terminated = failed | succeeded
-        truncated = (self._steps >= self.task.steps) & ~terminated
+        truncated = (self._steps >= self._most_steps) & ~terminated
         return Step(known, truth, reward, terminated, truncated)
+
+    def _aims(self) -> Floats:
+        """What the task judges by: its targets, or the next point of the course, the last one if there is none."""
+        if not self.task.course:
+            return self._targets
+        aims: Floats = self._points[np.arange(self.count), self._next()]
+        return aims
+
+    def _next(self) -> NDArray[np.int64]:
+        return np.minimum(self._reached, len(self.task.course) - 1)
 
     def _finish(self, known: NDArray[np.float32]) -> None:
         if self._has_targets:
             known[:, -2:] = self._targets
+        elif self.task.course:
+            # One by one: NumPy may round sines of many otherwise than those of one.
+            for row, next_one in zip(known, self._next().tolist()):
+                x_m, y_m = self.task.course[next_one]
+                x_m, y_m, heading_rad = x_m - float(row[_X]), y_m - float(row[_Y]), float(row[_HEADING])
+                ahead, left = math.cos(heading_rad), math.sin(heading_rad)
+                row[-2:] = x_m * ahead + y_m * left, y_m * ahead - x_m * left
         np.clip(known, self._low, self._high, out=known)
 
     def _checked_actions(self, actions: Any) -> NDArray[np.float32]:
@@ -173,7 +243,7 @@ class Core:
         if np.isnan(rows).any():
             row, column = np.argwhere(np.isnan(rows))[0]
             raise ValueError(f"action[{row}, {column}] is not a number")
-        return np.clip(rows, np.float32(-1), np.float32(1)) * SCALE
+        return np.clip(rows, np.float32(-1), np.float32(1)) * (PWM_SCALE if self.task.pwm else SCALE)
 
     def known(self) -> NDArray[np.float32]:
         """The present observations: a copy."""
@@ -196,15 +266,45 @@ class Core:
         """The world from above."""
         return frame(self.batch.obstacles(index), dict(zip(TRUE, self._truth[index])))
 
+    def snapshot(self, also: Mapping[str, Any]) -> EnvSnapshot:
+        """The robots and their episodes as they are now, and what else there is."""
+        state = {name: getattr(self, name) for name in _MOMENT} | dict(also)
+        return EnvSnapshot(self.task.scenario, self.batch.snapshot(), copy.deepcopy(state))
+
+    def restore(self, snapshot: EnvSnapshot) -> dict[str, Any]:
+        """Puts all back, and gives what else was there."""
+        self.check_open()
+        robots = snapshot._robots
+        if (snapshot._scenario, len(robots)) != (self.task.scenario, self.count):
+            raise ValueError(
+                f"a snapshot of {len(robots)} robots of {snapshot._scenario} does not fit {self.count} of "
+                f"{self.task.scenario}"
+            )
+        if self._batch is None:
+            self._batch = self._make()
+        self._batch.restore(robots)
+        state = copy.deepcopy(snapshot._state)
+        for name in _MOMENT:
+            setattr(self, name, state.pop(name))
+        return state
+
     def close(self) -> None:
         """Lets go of the robots."""
-        self._closed = True
-        self._batch = None
+        held, self._batch, self._closed = self._batch, None, True
+        if held is not None and self.count >= MANY:
+            del held
+            _give_back()
 
     def check_open(self) -> None:
         """Refuses what comes after `close`."""
         if self._closed:
             raise error.ClosedEnvironmentError("this environment was closed; make a new one")
+
+
+def _give_back() -> None:
+    """Has glibc hand freed memory to the system: of thousands of small robots it keeps most for itself."""
+    with contextlib.suppress(AttributeError, OSError, TypeError):
+        ctypes.CDLL(None).malloc_trim(0)
 
 
 def checked_seed(seed: int) -> int:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import gymnasium
@@ -11,9 +10,9 @@ import numpy as np
 from gymnasium import error
 from numpy.typing import NDArray
 
-from .._setup import Source
+from .._setup import Parameters, Source
 from . import _tasks
-from ._core import Core, Settings, action_space, observation_space
+from ._core import Core, EnvSnapshot, Settings, action_space, observation_names, observation_space
 
 _ALL = np.ones(1, np.bool_)
 
@@ -25,6 +24,8 @@ class RumboEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         robot, world, parameters: As for `rumbo.run`, in place of the task's.
         randomize: ``False``: every episode drives the robot of the file; only noise, world and task differ.
         render_mode: ``"rgb_array"``, the world from above, shape (256, 256, 3); or ``None``.
+        max_episode_steps: Actions before the episode is truncated; those of the task by default, -1 for no end. In an
+            environment of ``gymnasium.make`` its ``TimeLimit`` does that, by the argument of the same name.
 
     Raises:
         ValueError: An action of a wrong shape or with a value that is not a number, with its index; whatever is wrong
@@ -41,15 +42,19 @@ class RumboEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         *,
         robot: Source | None = None,
         world: Source | None = None,
-        parameters: Mapping[str, float] | None = None,
+        parameters: Parameters | None = None,
         randomize: bool | None = None,
         render_mode: str | None = None,
+        max_episode_steps: int | None = None,
     ) -> None:
         check_render_mode(render_mode)
         self.render_mode = render_mode
         self.observation_space: gymnasium.spaces.Box = observation_space()  # type: ignore[assignment]
         self.action_space: gymnasium.spaces.Box = action_space()  # type: ignore[assignment]
-        self._core = Core(self._task, Settings(robot, world, parameters, randomize, threads=1), 1)
+        #: The names of the numbers of an observation.
+        self.observation_names: tuple[str, ...] = observation_names(self._task)
+        settings = Settings(robot, world, parameters, randomize, threads=1, max_episode_steps=max_episode_steps)
+        self._core = Core(self._task, settings, 1)
         self._over = True
 
     def reset(
@@ -73,13 +78,32 @@ class RumboEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         if one.shape != (3,):
             raise ValueError(f"action has the shape {one.shape}: must be (3,)")
         done = self._core.step(one[None], _ALL)
-        terminated, truncated = bool(done.terminated[0]), bool(done.truncated[0])
+        # Gymnasium's `make` wraps a limit around, which may be another one.
+        terminated, truncated = bool(done.terminated[0]), bool(done.truncated[0]) and self.spec is None
         self._over = terminated or truncated
         return done.known[0].copy(), float(done.reward[0]), terminated, truncated, self._core.info(0)
 
     def render(self) -> NDArray[np.uint8] | None:
         """The world from above; ``None`` without a render mode."""
         return None if self.render_mode is None else self._core.render(0)
+
+    def snapshot(self) -> EnvSnapshot:
+        """The episode as it is now: `restore` puts it back, any number of times, and it can be pickled.
+
+        It is of this environment, not of wrappers around it that count or average; ``copy.deepcopy`` copies those, too.
+        """
+        return self._core.snapshot({"_over": self._over})
+
+    def restore(self, snapshot: EnvSnapshot) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Puts the environment back to a snapshot of one of the same task; gives the observation and infos of then.
+
+        From there on it is bit for bit the same.
+
+        Raises:
+            ValueError: The snapshot is of another task, or of a vector.
+        """
+        self._over = self._core.restore(snapshot)["_over"]
+        return self._core.known()[0], self._core.info(0)
 
     def record(self, wanted: bool = True) -> None:
         """Whether episodes that begin from now on are recorded, for `write_log`; `RecordLog` does both."""
@@ -110,6 +134,28 @@ class WheelSpeedEnv(RumboEnv):
     """
 
     _task = _tasks.WHEEL_SPEED
+
+
+class WheelPwmEnv(RumboEnv):
+    """``rumbo/WheelPwm-v0``: both wheels at speeds of their own, as `WheelSpeedEnv`, but by PWM, for 5 s.
+
+    The first two numbers of an action are shares of the full PWM, -1 to 1, which the motors get as they are: battery,
+    friction and load are the policy's to make up for, by the wheel speeds that the robot makes of its encoders' edges.
+    """
+
+    _task = _tasks.WHEEL_PWM
+
+
+class DriveSquareEnv(RumboEnv):
+    """``rumbo/DriveSquare-v0``: drive a square with sides of 1 m, to the left, by PWM, within 40 s.
+
+    The first two numbers of an action are shares of the full PWM, -1 to 1. The last two numbers of an observation are
+    the next corner as seen from the robot by its odometry: ahead, to the left [m]. The reward is how much nearer the
+    robot came to it [m], and 1 for each corner that it comes nearer to than 0.1 m. The fourth, where it started, ends
+    the episode. A contact above 0.1 m/s, or a fault of the robot, costs 10 and ends it.
+    """
+
+    _task = _tasks.DRIVE_SQUARE
 
 
 class StopAtWallEnv(RumboEnv):

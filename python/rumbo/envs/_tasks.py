@@ -24,6 +24,8 @@ MAX_WHEEL_RAD_S = 12.0
 HARD_CONTACT_M_S = 0.1
 #: The reward of an end that should not be: a contact, or a fault of the robot.
 FAILURE = -10.0
+#: The side of the square, and how near a robot must come to a corner of it [m].
+SIDE_M, NEAR_M = 1.0, 0.1
 #: A distance farther than the sonars reach counts as this [m].
 REACH_M = 2.5
 
@@ -74,15 +76,22 @@ class Task:
     world: Source | None
     #: An episode is cut off after this many actions.
     steps: int
+    #: Names of the last two numbers of an observation.
+    names: tuple[str, str]
+    #: Actions are shares of the full PWM; else setpoints of the wheels.
+    pwm: bool = False
+    #: Points to reach one after the other, as seen from the start: ahead, to the left [m].
+    course: tuple[tuple[float, float], ...] = ()
 
     def targets(self, seed: int) -> tuple[float, float] | None:
-        """The last two numbers of the observations of an episode; ``None`` where the goal of the world stands there."""
-        raise NotImplementedError
+        """The last two numbers of the observations of an episode; ``None`` where a goal stands there."""
+        return None
 
     def judge(self, before: Floats, truth: Floats, targets: Floats) -> tuple[Floats, Bools]:
-        """Rewards, and whether each robot has succeeded, which ends its episode.
+        """Rewards, and whether each robot has succeeded, which ends its episode, or reached the point of its course.
 
-        `before` and `truth` are the ground truth before and after the action, `targets` those of `Task.targets`.
+        `before` and `truth` are the ground truth before and after the action, `targets` those of `Task.targets`, or
+        where in the world the next point of the course is [m].
         """
         raise NotImplementedError
 
@@ -124,11 +133,17 @@ class FollowWall(Task):
         return ahead * closeness(error, 0.5), np.zeros(len(truth), np.bool_)
 
 
+class DriveSquare(Task):
+    """Drive along the corners of a square."""
+
+    def judge(self, before: Floats, truth: Floats, targets: Floats) -> tuple[Floats, Bools]:
+        was, now = _distance_m(before, *targets.T), _distance_m(truth, *targets.T)
+        reached: Bools = now < NEAR_M
+        return (was - now) + 1.0 * reached, reached
+
+
 class Goal(Task):
     """Reach a goal among boxes."""
-
-    def targets(self, seed: int) -> tuple[float, float] | None:
-        return None
 
     def judge(self, before: Floats, truth: Floats, targets: Floats) -> tuple[Floats, Bools]:
         was, now = _goal_m(before), _goal_m(truth)
@@ -137,8 +152,11 @@ class Goal(Task):
 
 
 def _goal_m(truth: Floats) -> Floats:
-    x_m = column(truth, "goal_x_m") - column(truth, "x_m")
-    y_m = column(truth, "goal_y_m") - column(truth, "y_m")
+    return _distance_m(truth, column(truth, "goal_x_m"), column(truth, "goal_y_m"))
+
+
+def _distance_m(truth: Floats, to_x_m: Floats, to_y_m: Floats) -> Floats:
+    x_m, y_m = to_x_m - column(truth, "x_m"), to_y_m - column(truth, "y_m")
     distance: Floats = np.sqrt(x_m * x_m + y_m * y_m)
     return distance
 
@@ -153,7 +171,25 @@ def _calibrated() -> dict[str, Any]:
     return robot
 
 
-WHEEL_SPEED = WheelSpeed(scenario="mode5", robot=None, world=None, steps=50)
-STOP_AT_WALL = StopAtWall(scenario="mode1", robot=None, world=None, steps=100)
-FOLLOW_WALL = FollowWall(scenario="mode4", robot=None, world=None, steps=200)
-GOAL = Goal(scenario="mode8-random", robot=_calibrated(), world="boxes", steps=600)
+_SPEEDS = ("target_left_rad_s", "target_right_rad_s")
+_RANGE = ("target_range_m", "nothing")
+_SQUARE = ((SIDE_M, 0.0), (SIDE_M, SIDE_M), (0.0, SIDE_M), (0.0, 0.0))
+
+WHEEL_SPEED = WheelSpeed("mode5", None, None, steps=50, names=_SPEEDS)
+WHEEL_PWM = WheelSpeed("mode5", None, None, steps=50, names=_SPEEDS, pwm=True)
+DRIVE_SQUARE = DriveSquare(
+    "mode5", None, None, steps=400, names=("corner_ahead_m", "corner_left_m"), pwm=True, course=_SQUARE
+)
+STOP_AT_WALL = StopAtWall("mode1", None, None, steps=100, names=_RANGE)
+FOLLOW_WALL = FollowWall("mode4", None, None, steps=200, names=_RANGE)
+GOAL = Goal("mode8-random", _calibrated(), "boxes", steps=600, names=("goal_ahead_m", "goal_left_m"))
+
+#: The tasks by the names of their environments, without ``rumbo/`` and ``-v0``.
+ALL = {
+    "WheelSpeed": WHEEL_SPEED,
+    "WheelPwm": WHEEL_PWM,
+    "DriveSquare": DRIVE_SQUARE,
+    "StopAtWall": STOP_AT_WALL,
+    "FollowWall": FOLLOW_WALL,
+    "Goal": GOAL,
+}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,9 +11,9 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from .._setup import Source
+from .._setup import Parameters, Source
 from . import _tasks
-from ._core import Core, Settings, action_space, observation_space
+from ._core import Core, EnvSnapshot, Settings, action_space, observation_names, observation_space
 from ._env import check_render_mode
 
 Observations = NDArray[np.float32]
@@ -29,6 +29,7 @@ class RumboVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[Any]])
         autoreset_mode: What happens at the end of an episode, by Gymnasium's three modes. ``NEXT_STEP`` resets in the
             next step, ``SAME_STEP`` in the same one (``final_obs`` and ``final_info`` in the infos), ``DISABLED`` when
             ``reset(options={"reset_mask": mask})`` is called.
+        max_episode_steps: Actions before an episode is truncated; those of the task by default, -1 for no end.
 
     Raises:
         ValueError, ClosedEnvironmentError, ResetNeeded: As `RumboEnv`.
@@ -43,11 +44,12 @@ class RumboVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[Any]])
         *,
         robot: Source | None = None,
         world: Source | None = None,
-        parameters: Mapping[str, float] | None = None,
+        parameters: Parameters | None = None,
         randomize: bool | None = None,
         threads: int | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         render_mode: str | None = None,
+        max_episode_steps: int | None = None,
     ) -> None:
         check_render_mode(render_mode)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
@@ -62,7 +64,10 @@ class RumboVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[Any]])
         self.single_action_space = action_space()
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._core = Core(self._task, Settings(robot, world, parameters, randomize, threads), num_envs)
+        #: The names of the numbers of an observation.
+        self.observation_names: tuple[str, ...] = observation_names(self._task)
+        settings = Settings(robot, world, parameters, randomize, threads, max_episode_steps)
+        self._core = Core(self._task, settings, num_envs)
         self._over = np.zeros(num_envs, np.bool_)
 
     def reset(
@@ -152,6 +157,19 @@ class RumboVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[Any]])
             "_final_info": over.copy(),
         }
 
+    def snapshot(self) -> EnvSnapshot:
+        """All episodes as they are now: `restore` puts them back, any number of times, and it can be pickled."""
+        return self._core.snapshot({"_over": self._over})
+
+    def restore(self, snapshot: EnvSnapshot) -> tuple[Observations, dict[str, Any]]:
+        """Puts the environments back to a snapshot of as many of the same task; gives observations and infos of then.
+
+        Raises:
+            ValueError: The snapshot is of another task, or of another number.
+        """
+        self._over = self._core.restore(snapshot)["_over"]
+        return self._core.known(), self._core.infos()
+
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """The worlds from above; ``None`` without a render mode."""
         if self.render_mode is None:
@@ -167,6 +185,18 @@ class WheelSpeedVectorEnv(RumboVectorEnv):
     """Many of `WheelSpeedEnv`."""
 
     _task = _tasks.WHEEL_SPEED
+
+
+class WheelPwmVectorEnv(RumboVectorEnv):
+    """Many of `WheelPwmEnv`."""
+
+    _task = _tasks.WHEEL_PWM
+
+
+class DriveSquareVectorEnv(RumboVectorEnv):
+    """Many of `DriveSquareEnv`."""
+
+    _task = _tasks.DRIVE_SQUARE
 
 
 class StopAtWallVectorEnv(RumboVectorEnv):

@@ -10,21 +10,28 @@
 Spaces, seeds and infos are those of `rumbo.envs`.
 """
 
+# The packages are looked for before they are imported.
+# ruff: noqa: E402
 from __future__ import annotations
 
 import math
 import secrets
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
+
+from .._extras import need
+
+need("rumbo.envs.fleet", "pettingzoo", "pettingzoo", (1, 25))
 
 import numpy as np
 from gymnasium import error, spaces
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
-from .._fleet import Fleet
-from .._setup import Source, make_setup
-from .._sim import TRUE
+from .._fleet import Fleet, FleetSnapshot
+from .._setup import Parameters, Source, make_setup
+from .._sim import OBSERVED, TRUE
 from ._core import SCALE, STAND_S, action_space, checked_seed, observation_space
 from ._tasks import ACTION_S, FAILURE, GOAL, collided, mix
 
@@ -68,6 +75,14 @@ def across(robots: int) -> dict[str, Any]:
     }
 
 
+@dataclass(frozen=True)
+class FleetEnvSnapshot:
+    """A parallel environment as it was at one moment."""
+
+    _robots: FleetSnapshot
+    _state: tuple[int, int, int, list[str], NDArray[np.float64]] = field(repr=False)
+
+
 class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
     """Every robot has a goal to reach, and the others in its way: the task of `rumbo.envs.GoalEnv`, for each.
 
@@ -105,13 +120,15 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
         agents: Sequence[str] | None = None,
         robot: Source | None = None,
         world: Source | None = None,
-        parameters: Mapping[str, float] | None = None,
+        parameters: Parameters | None = None,
         randomize: bool | None = None,
     ) -> None:
         """Robots that begin with the first reset."""
         if scenario is not None and robots is not None:
             raise ValueError(f"robots = {robots}: the scenario has robots of its own; leave one of both out")
         source = across(4 if robots is None else robots) if scenario is None else scenario
+        #: What PettingZoo's own wrappers and SuperSuit look for: no frames are drawn.
+        self.render_mode: str | None = None
         self._settings: dict[str, Any] = {
             "robot": robot,
             "world": world,
@@ -136,6 +153,8 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
         self.action_spaces = {name: action_space() for name in self.possible_agents}
         bounds = observation_space()
         self._low, self._high = bounds.low, bounds.high
+        #: The names of the numbers of an observation.
+        self.observation_names: tuple[str, ...] = OBSERVED
         self._fleet: Fleet | None = None
         self._closed = False
         #: The seed given, how many of its episodes were begun, and the actions of this one.
@@ -204,6 +223,28 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
         self.agents = [agent for agent in self.agents if not (terminations[agent] or truncations[agent])]
         return observations, rewards, terminations, truncations, infos
 
+    def snapshot(self) -> FleetEnvSnapshot:
+        """The episode as it is now: `restore` puts it back, any number of times, and it can be pickled."""
+        self._check_open()
+        if self._fleet is None:
+            raise error.ResetNeeded("reset() comes first")
+        state = (self._base, self._begun, self._taken, list(self.agents), self._truth.copy())
+        return FleetEnvSnapshot(self._fleet.snapshot(), state)
+
+    def restore(self, snapshot: FleetEnvSnapshot) -> tuple[dict[str, _Array], dict[str, dict[str, Any]]]:
+        """Puts the environment back to a snapshot of the same robots; gives the observations and infos of then.
+
+        Raises:
+            ValueError: The snapshot is of other robots.
+        """
+        self._check_open()
+        if self._fleet is None:
+            self._fleet = Fleet(self._source, callers=self.possible_agents, **self._settings)
+        self._fleet.restore(snapshot._robots)
+        self._base, self._begun, self._taken, agents, truth = snapshot._state
+        self.agents, self._truth = list(agents), truth.copy()
+        return self._observations(self._fleet.rows()[0]), self._infos()
+
     def close(self) -> None:
         """Lets go of the robots."""
         self._closed = True
@@ -241,5 +282,6 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
         infos: dict[str, dict[str, Any]] = {}
         for agent in self.agents:
             row = self._truth[self._rows[agent]]
-            infos[agent] = {name: float(value) for name, value in zip(TRUE, row)} | {"seed": seed}
+            known = {name: float(value) for name, value in zip(TRUE, row) if not np.isnan(value)}
+            infos[agent] = known | {"seed": seed}
         return infos

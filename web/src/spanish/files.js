@@ -77,7 +77,7 @@ export const FILES = {
   'a program for another chip ({}); {}': 'un programa para otro chip ({}); {}', 'a program for the {} of an {}, and this robot has an {}; {}': 'un programa para el {} de un {}, y este robot lleva un {}; {}',
   'Arduino Mega or Mega 2560': 'Arduino Mega o Mega 2560', 'Arduino Uno or Nano': 'Arduino Uno o Nano',
   'in the Arduino IDE choose Tools > Board > {} (-mmcu={})': 'en el IDE de Arduino elige Herramientas > Placa > {} (-mmcu={})',
-  'in the Arduino IDE choose Tools > Board > {} (-mmcu={}), or take --robot {}': 'en el IDE de Arduino elige Herramientas > Placa > {} (-mmcu={}), o usa --robot {}',
+  'in the Arduino IDE choose Tools > Board > {} (-mmcu={}), or take the robot {}': 'en el IDE de Arduino elige Herramientas > Placa > {} (-mmcu={}), o usa el robot {}',
   'in the Arduino IDE choose Tools > Board > {} (-mmcu={}), or in the Arduino IDE choose Tools > Board > {} (-mmcu={})': 'en el IDE de Arduino elige Herramientas > Placa > {} (-mmcu={}) o {} (-mmcu={})',
   'an object file, which is not a program yet; give the .elf that the linker made': 'un archivo objeto, que aún no es un programa; usa el .elf que hizo el enlazador',
   'line {} of the HEX file is wrong: {}': 'la línea {} del archivo HEX está mal: {}', 'something follows the end record': 'hay algo tras el registro final',

@@ -262,11 +262,12 @@ export const ROBOT = {
   '{} is given twice; give it once': '{} está dos veces; basta una', '{}: is a switch or a choice; compare its values with `rumbo compare`': '{}: es un interruptor o una elección; compara sus valores con `rumbo compare`',
   '{}: its range must lie within {}..{} {}': '{}: su rango ha de estar dentro de {}..{} {}', '{}: is searched in a range; write {} or {}=FROM:TO': '{}: se busca en un rango; escribe {} o {}=DESDE:HASTA',
   'a search needs at least {} runs': 'una búsqueda necesita al menos {} ejecuciones', 'the search was ended': 'se ha terminado la búsqueda',
+  'seed {}: the search drives that robot; check on consecutive seeds, or on fewer that are near each other': 'semilla {}: la búsqueda conduce ese robot; comprueba con semillas consecutivas, o con menos y cercanas entre sí',
   'scenario {} has no limits; give an aim, such as `settling_s`': 'el escenario {} no tiene límites; da un objetivo, como `settling_s`',
   '{}: scenario {} sets it itself, whatever a robot file says; take it out of the scenario': '{}: lo fija el propio escenario {}, diga lo que diga el archivo del robot; quítalo del escenario',
   '`{}`: write metrics and limits with commas between them, e.g. "settling_s, overshoot_m < 0.01"': '`{}`: escribe métricas y límites separados por comas, p. ej. "settling_s, overshoot_m < 0.01"',
   '`{}`: its limit is not a number': '`{}`: su límite no es un número',
-  'unknown {} `{}`; {}': 'no hay {} `{}`; {}', 'did you mean {}?': '¿quizá {}?', 'did you mean {} or {}?': '¿quizá {} o {}?', 'known are {}': 'hay {}', 'none is like it; see `rumbo list`': 'ninguno se le parece; mira `rumbo list`',
+  'unknown {} `{}`; {}': 'no hay {} `{}`; {}', 'did you mean {}?': '¿quizá {}?', 'did you mean {} or {}?': '¿quizá {} o {}?', 'known are {}': 'hay {}', 'there is none to choose from': 'no hay ninguno que elegir',
   'parameter of the control core': 'parámetro del programa de control',
   // Commands, and how they ended.
   'sent: {}': 'enviado: {}',

@@ -100,7 +100,7 @@ rare('it finds what rumbo tune finds, from what the robot has; the values are se
   const cells = (/** @type {number} */ table) => page.locator('#tune-result table').nth(table).locator('tbody tr').evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
   const short = (/** @type {number} */ value) => String(Number(value.toPrecision(4)));
   assert.deepEqual((await cells(0)).map(([name, , now, tuned]) => [name, now, tuned]), found.parameters.map((/** @type {any} */ each) => [each.name, short(each.now), short(each.tuned)]));
-  const passes = `on 100 robots that the search has not seen: ${found.held_out.pass_now} passed, ${found.held_out.pass_tuned} pass`;
+  const passes = `on 100 robots that the search has not seen: ${found.held_out.passed_now} passed, ${found.held_out.passed_tuned} pass`;
   assert.equal(await page.locator('#tune-result p').first().textContent(), passes);
   const settling = (await cells(1)).find(([metric]) => metric === 'step1.settling_s');
   const expected = found.differences.find((/** @type {any} */ each) => each.metric === 'step1.settling_s');

@@ -28,11 +28,13 @@ const WHEEL_PACKAGES: [&str; 4] = [
 
 /// For its tests and figures on Ray.
 const RAY_PACKAGES: [&str; 3] = ["numpy==2.4.6", "pytest==9.2.0", "ray==2.60.0"];
-/// For Stable-Baselines3, which needs PyTorch: 5 GB.
-const SB3_PACKAGES: [&str; 4] = [
+/// For Stable-Baselines3, which needs PyTorch: 5 GB; SuperSuit is the way there from PettingZoo.
+const SB3_PACKAGES: [&str; 6] = [
     "numpy==2.4.6",
     "pytest==9.2.0",
+    "pettingzoo==1.27.0",
     "stable-baselines3==2.9.2",
+    "supersuit==3.11.0",
     "torch==2.15.0",
 ];
 

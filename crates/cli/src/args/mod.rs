@@ -101,7 +101,7 @@ Examples:
   rumbo run mode9-random --policy goal.toml       drive by it
   rumbo flash /dev/ttyACM0 --policy goal.toml     put it on the robot
 
-The network is JSON: inputs, each {\"of\": column, \"centre\": number, \"scale\": number}, and layers, each {\"weights\": [[...]], \"biases\": [...]}, a list
+The network is JSON: activation, \"clip\", which is all that the robot does; inputs, each {\"of\": column, \"centre\": number, \"scale\": number}, and layers, each {\"weights\": [[...]], \"biases\": [...]}, a list
 of weights for each neuron; neurons are clipped to -1..1, the last layer is left wheel, right wheel, servo. examples/python/ppo.py writes one, docs/python.md
 says more. Weights become 8-bit integers.")]
 pub(crate) struct ExportPolicyArgs {

@@ -248,7 +248,7 @@ fn as_json(scenario: &ScenarioFile, runs: &[Variant], seeds: &[u64]) -> Value {
         .map(|variant| {
             let runs = variant.metrics.iter().zip(&variant.passes).zip(seeds);
             let runs: Vec<Value> = runs
-                .map(|((metrics, pass), seed)| json!({ "seed": seed, "pass": pass, "metrics": metrics }))
+                .map(|((metrics, pass), seed)| json!({ "seed": seed, "passed": pass, "metrics": metrics }))
                 .collect();
             json!({ "variant": variant.name, "runs": runs })
         })

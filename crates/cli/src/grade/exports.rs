@@ -12,7 +12,7 @@ use std::fmt::Write;
 
 /// A row for each hand-in: points, and those of each criterion.
 pub(super) fn csv(assignment: &Assignment, marks: &[Mark]) -> String {
-    let mut header: Vec<String> = ["name", "points", "of", "pass"].map(str::to_owned).into();
+    let mut header: Vec<String> = ["name", "points", "of", "passed"].map(str::to_owned).into();
     header.extend(assignment.criteria.iter().map(|one| one.title.text.clone()));
     header.extend(["contact_penalty", "note"].map(str::to_owned));
     let mut rows = vec![header];

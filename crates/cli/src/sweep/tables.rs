@@ -1,6 +1,6 @@
 //! The runs of a sweep as a table.
 //!
-//! One row per run: point, seed, the parameters, whether it passes, every metric. Empty where what is measured
+//! One row per run: point, seed, the parameters, those of switches and choices by name, whether it passed, every metric. Empty where what is measured
 //! never happened, or where the run has no such metric.
 
 use rumbo_experiment::sweep::Sweep;
@@ -20,17 +20,20 @@ pub(super) fn csv(sweep: &Sweep) -> String {
     let header: Vec<&str> = ["point", "seed"]
         .into_iter()
         .chain(axes)
-        .chain(["pass"])
+        .chain(["passed"])
         .chain(metrics.iter().copied())
         .collect();
     let mut text = header.join(",") + "\n";
     for row in &sweep.rows {
         let mut cells = vec![row.point.to_string(), row.seed.to_string()];
-        let values = sweep.plan.points[row.point].iter();
-        cells.extend(values.map(ToString::to_string));
+        let values = sweep.plan.axes.iter().zip(&sweep.plan.points[row.point]);
+        cells.extend(values.map(|(axis, value)| match axis.name_of(*value) {
+            Some(name) => name.to_owned(),
+            None => value.to_string(),
+        }));
         cells.push(row.pass.to_string());
         cells.extend(metrics.iter().map(|name| {
-            let value = row.metrics.get(*name).filter(|value| value.is_finite());
+            let value = row.metrics.get(*name).filter(|value| !value.is_nan());
             value.map(ToString::to_string).unwrap_or_default()
         }));
         text += &(cells.join(",") + "\n");

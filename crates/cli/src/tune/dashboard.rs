@@ -148,7 +148,7 @@ impl OfLab {
             objective,
             seed: asked.seed,
             runs: asked.runs,
-            held_out: HELD_OUT,
+            held_out: Search::held_out(asked.seed, HELD_OUT),
         };
         let setup = self.setup(&library, &asked.scenario, &asked.params);
         let own = library.scenario(&asked.scenario).map_err(refused)?;

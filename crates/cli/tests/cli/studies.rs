@@ -33,7 +33,7 @@ fn a_sweep_writes_tables_a_page_and_logs_and_its_runs_are_those_of_run() {
     let csv = read(&folder, "runs.csv");
     let mut rows = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = rows.next().unwrap();
-    assert_eq!(header[..4], ["point", "seed", "kv", "pass"]);
+    assert_eq!(header[..4], ["point", "seed", "kv", "passed"]);
     let rows: Vec<_> = rows.collect();
     assert_eq!(rows.len(), 6);
     assert_eq!(rows[3][..3], ["1", "2", "0.02"]);

@@ -7,6 +7,7 @@
 //!
 //! A [`Team`] is the robots of a scenario with several, in one world: they go on together.
 
+mod history;
 mod pilot;
 mod robot;
 mod team;
@@ -21,6 +22,12 @@ use crate::files::{FileError, Setup};
 use rayon::prelude::*;
 use rumbo_plant::world::World;
 use std::sync::{Arc, OnceLock};
+
+/// What defines a robot of a setup: its seed, and its [`Robot::history`].
+pub type Life = (u64, Vec<u8>);
+
+/// Called after each robot that is made; its error ends the making of others.
+pub type Made<'a> = &'a (dyn Fn() -> Result<(), FileError> + Sync);
 
 /// Robots of one setup, each with its seed. A clone is a snapshot.
 #[derive(Clone)]
@@ -38,9 +45,27 @@ impl Batch {
     /// # Errors
     /// The setup's values do not fit together, or its calibration failed.
     pub fn new(setup: Setup, driver: Driver, seeds: &[u64]) -> Result<Self, FileError> {
+        let lives: Vec<Life> = seeds.iter().map(|seed| (*seed, Vec::new())).collect();
+        Self::of_lives(setup, driver, &lives, &|| Ok(()))
+    }
+
+    /// The robots of these lives. `made` is called after each one is made; its error ends it all.
+    ///
+    /// # Errors
+    /// As [`Batch::new`], that of `made`, or a history that is none.
+    pub fn of_lives(
+        setup: Setup,
+        driver: Driver,
+        lives: &[Life],
+        made: Made<'_>,
+    ) -> Result<Self, FileError> {
         let setup = Arc::new(setup);
         let world = OnceLock::new();
-        let robots = make_all(seeds, |seed| make(&setup, driver, *seed, &world))?;
+        let robots = make_all(lives.iter().collect(), |(seed, history)| {
+            let mut robot = make(&setup, driver, *seed, &world)?;
+            robot.relive(history)?;
+            made().map(|()| robot)
+        })?;
         Ok(Self {
             setup,
             driver,
@@ -59,20 +84,36 @@ impl Batch {
         &mut self.robots
     }
 
+    /// Their lives, from which [`Batch::of_lives`] makes them again.
+    pub fn lives(&self) -> Vec<Life> {
+        let robots = self.robots.iter();
+        robots
+            .map(|robot| (robot.seed(), robot.history()))
+            .collect()
+    }
+
     /// Puts new robots of these seeds in place of those of these numbers; a number beyond the last robot is passed over.
+    /// `made` is called after each one is made; its error ends it all.
     ///
     /// # Errors
-    /// As [`Batch::new`]; all robots stay as they are then.
-    pub fn renew(&mut self, renewed: &[(usize, u64)]) -> Result<(), FileError> {
-        let robots = make_all(renewed, |(_, seed)| {
-            make(&self.setup, self.driver, *seed, &self.world)
-        })?;
-        for ((index, _), robot) in renewed.iter().zip(robots) {
-            if let Some(slot) = self.robots.get_mut(*index) {
-                *slot = robot;
+    /// As [`Batch::new`], and that of `made`; some of the robots are new then, and others still the old ones.
+    pub fn renew(&mut self, renewed: &[(usize, u64)], made: Made<'_>) -> Result<(), FileError> {
+        let mut seeds = vec![None; self.robots.len()];
+        for (index, seed) in renewed {
+            if let Some(slot) = seeds.get_mut(*index) {
+                *slot = Some(*seed);
             }
         }
-        Ok(())
+        let slots = self.robots.iter_mut().zip(seeds);
+        let work: Vec<_> = slots
+            .filter_map(|(slot, seed)| Some((slot, seed?)))
+            .collect();
+        // Each old one goes as soon as its new one is there: never are all of them there twice.
+        let renewed = make_all(work, |(slot, seed)| {
+            *slot = make(&self.setup, self.driver, seed, &self.world)?;
+            made()
+        });
+        renewed.map(drop)
     }
 
     /// Advances every robot by this many control ticks of 10 ms.
@@ -135,20 +176,20 @@ fn for_all<T>(work: &mut [T], act: impl Fn(&mut T)) {
 }
 
 #[cfg(feature = "host")]
-fn make_all<T: Sync>(
-    of: &[T],
-    make: impl Fn(&T) -> Result<Robot, FileError> + Sync,
-) -> Result<Vec<Robot>, FileError> {
-    match of {
-        [only] => Ok(vec![make(only)?]),
-        _ => of.par_iter().map(&make).collect(),
+fn make_all<T: Send, R: Send>(
+    of: Vec<T>,
+    make: impl Fn(T) -> Result<R, FileError> + Sync,
+) -> Result<Vec<R>, FileError> {
+    match <[T; 1]>::try_from(of) {
+        Ok([only]) => Ok(vec![make(only)?]),
+        Err(of) => of.into_par_iter().map(&make).collect(),
     }
 }
 
 #[cfg(not(feature = "host"))]
-fn make_all<T>(
-    of: &[T],
-    make: impl Fn(&T) -> Result<Robot, FileError>,
-) -> Result<Vec<Robot>, FileError> {
-    of.iter().map(make).collect()
+fn make_all<T, R>(
+    of: Vec<T>,
+    make: impl Fn(T) -> Result<R, FileError>,
+) -> Result<Vec<R>, FileError> {
+    of.into_iter().map(make).collect()
 }

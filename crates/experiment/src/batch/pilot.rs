@@ -4,10 +4,10 @@ use crate::files::commands::read_one;
 use crate::files::{FileError, Setup, goal_seen_from};
 use crate::operator::Operator;
 use crate::run::{parameters, prepare};
-use rumbo_control::ServoAngle;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_control::policy::{Known, Observation, observe};
+use rumbo_control::{Drive, ServoAngle};
 use rumbo_sim::Sim;
 use rumbo_sim::trace::TimedMessage;
 use rumbo_wire::{Command, Refusal};
@@ -237,6 +237,24 @@ impl Pilot {
         }
     }
 
+    /// Gives the wheels speeds, or shares of the full PWM in place of the mode, and points the servo. A scenario's robot
+    /// does not obey, one of another mode than that of wheel speeds goes by its mode.
+    pub(super) fn drive(&mut self, sim: &mut Sim, drive: &Drive, servo: ServoAngle) {
+        if self.operator.is_some() {
+            return;
+        }
+        let duty = match drive {
+            Drive::Duty(duty) => Some(*duty),
+            _ => None,
+        };
+        if let Drive::WheelSpeed(wheels) = drive {
+            // Another mode refuses it.
+            let _ = self.command(sim, &Command::WheelReference(*wheels));
+        }
+        sim.drive_duty(duty);
+        sim.aim(Some(servo));
+    }
+
     /// What the robot's program knows after its last tick; zeros if the program is not Rumbo's own.
     ///
     /// Ranges are those of telemetry, the front one in the servo's direction. The pose is by odometry from the start, the
@@ -260,13 +278,12 @@ impl Pilot {
         observe(&known, &(x_m, y_m))
     }
 
-    /// Ground truth now, by [`TRUE`]: ranges infinite where nothing is within reach, `fault` the number of the latched one or
+    /// Ground truth now, by [`TRUE`]: ranges infinite where nothing is within reach and not a number where
+    /// there is no such sonar, `fault` the number of the latched one or
     /// 0, the goal not a number where there is none.
     pub(super) fn true_values(&self, sim: &Sim) -> [f64; TRUE.len()] {
         let truth = sim.truth();
-        let [left, right, front] = truth
-            .range_m
-            .map(|range_m| range_m.unwrap_or(f64::INFINITY));
+        let [left, right, front] = truth.range_m.map(|range_m| range_m.unwrap_or(f64::NAN));
         let [goal_x_m, goal_y_m] = self.goal.map_or([f64::NAN; 2], |goal| goal.at_m);
         let armed = sim.mode_state().is_some();
         let fault = sim.fault().map_or(0, |fault| fault as u8);

@@ -1,9 +1,10 @@
 //! One robot of a batch: its simulation, and who commands it.
 
+use super::history::{Act, History};
 use super::pilot::{Driver, Pilot, TRUE};
 use crate::files::{FileError, Setup};
 use rumbo_control::policy::Observation;
-use rumbo_control::{ServoAngle, TICK_US};
+use rumbo_control::{Drive, ServoAngle, TICK_US, Wheels};
 use rumbo_plant::world::World;
 use rumbo_sim::Sim;
 use rumbo_sim::trace::Trace;
@@ -18,6 +19,7 @@ pub struct Robot {
     pilot: Pilot,
     /// What was recorded of it, if it is.
     trace: Option<Box<Trace>>,
+    history: History,
 }
 
 impl Robot {
@@ -32,7 +34,39 @@ impl Robot {
             sim,
             pilot,
             trace: None,
+            history: History::default(),
         })
+    }
+
+    /// Does to it, at its start, what was done to another one of its setup and seed, which it then is: see
+    /// [`Robot::history`].
+    ///
+    /// # Errors
+    /// These are no bytes of a history.
+    pub fn relive(&mut self, history: &[u8]) -> Result<(), FileError> {
+        for act in History::acts(history)? {
+            // What was refused then is refused again.
+            match act {
+                Act::Advance(ticks) => self.advance(ticks),
+                Act::Command(command) => {
+                    let _ = self.command(&command);
+                }
+                Act::Drive(wheels, servo) => self.drive(wheels, servo),
+                Act::Duty(duty, servo) => self.drive_duty(duty, servo),
+                Act::Instruct(text) => {
+                    let _ = self.instruct(&text);
+                }
+                Act::Aim(servo) => self.aim(servo),
+                Act::Record => self.record()?,
+                Act::Of(_) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// What was done to it since its start, for [`Robot::relive`].
+    pub fn history(&self) -> Vec<u8> {
+        self.history.to_bytes()
     }
 
     /// The seed it was drawn for.
@@ -57,6 +91,7 @@ impl Robot {
     /// The setup's values do not fit together.
     pub fn record(&mut self) -> Result<(), FileError> {
         let parameters = self.pilot.parameters(&mut self.sim)?;
+        self.history.push(&Act::Record);
         self.sim.tap_link();
         self.trace = Some(Box::new(Trace {
             parameters,
@@ -82,6 +117,7 @@ impl Robot {
 
     /// Advances by this many control ticks of 10 ms, or to the end of a program that cannot go on.
     pub fn advance(&mut self, ticks: u32) {
+        self.history.push(&Act::Advance(ticks));
         if !self.needs_every_tick() {
             let until_us = self.sim.now_us() + u64::from(ticks) * u64::from(TICK_US);
             return self.sim.advance(until_us);
@@ -124,6 +160,7 @@ impl Robot {
     /// # Errors
     /// Why the robot refuses it; `None` if its scenario commands it.
     pub fn command(&mut self, command: &Command) -> Result<f32, Option<Refusal>> {
+        self.note(|| Act::Command(*command));
         self.pilot.command(&mut self.sim, command)
     }
 
@@ -132,12 +169,36 @@ impl Robot {
     /// # Errors
     /// What is wrong with the text, or why the robot refuses it.
     pub fn instruct(&mut self, text: &str) -> Result<(), FileError> {
+        self.note(|| Act::Instruct(text.to_owned()));
         self.pilot.instruct(&mut self.sim, text)
     }
 
     /// Points the servo, whatever the mode requests; `None` leaves it to the mode again. A scenario's robot does not obey.
     pub fn aim(&mut self, servo: Option<ServoAngle>) {
+        self.note(|| Act::Aim(servo));
         self.pilot.aim(&mut self.sim, servo);
+    }
+
+    /// Gives its wheels speeds [rad/s], which only the mode of wheel speeds takes, and points its servo. A scenario's robot
+    /// does not obey.
+    pub fn drive(&mut self, wheels: Wheels<f32>, servo: ServoAngle) {
+        self.note(|| Act::Drive(wheels, servo));
+        let drive = Drive::WheelSpeed(wheels);
+        self.pilot.drive(&mut self.sim, &drive, servo);
+    }
+
+    /// Drives its wheels open loop, by shares of the full PWM of -1 to 1, in place of its mode, and points its servo: until
+    /// [`Robot::drive`], and only while it is armed. A scenario's robot does not obey.
+    pub fn drive_duty(&mut self, duty: Wheels<f32>, servo: ServoAngle) {
+        self.note(|| Act::Duty(duty, servo));
+        self.pilot.drive(&mut self.sim, &Drive::Duty(duty), servo);
+    }
+
+    /// What a caller does; a scenario's robot does not obey.
+    fn note(&mut self, act: impl FnOnce() -> Act) {
+        if self.pilot.is_caller() {
+            self.history.push(&act());
+        }
     }
 
     /// What its program knows after its last tick: see [`super::OBSERVED`].

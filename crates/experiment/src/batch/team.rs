@@ -1,9 +1,10 @@
 //! The robots of a scenario with several, in one world, stepped by a caller.
 
+use super::history::{Act, History};
 use super::pilot::{Driver, Pilot, TRUE};
 use crate::files::{FileError, Setup};
 use rumbo_control::policy::OBSERVED;
-use rumbo_control::{ServoAngle, TICK_US};
+use rumbo_control::{Drive, ServoAngle, TICK_US, Wheels};
 use rumbo_plant::world::World;
 use rumbo_sim::fleet::Fleet;
 use rumbo_wire::{Command, Refusal};
@@ -16,6 +17,7 @@ pub struct Team {
     fleet: Fleet,
     pilots: Vec<Pilot>,
     seed: u64,
+    history: History,
 }
 
 impl Team {
@@ -44,7 +46,36 @@ impl Team {
             fleet,
             pilots,
             seed,
+            history: History::default(),
         })
+    }
+
+    /// Does to it, at its start, what was done to another one of its setup, drivers and seed, which it then is: see
+    /// [`Team::history`].
+    ///
+    /// # Errors
+    /// These are no bytes of a history.
+    pub fn relive(&mut self, history: &[u8]) -> Result<(), FileError> {
+        let mut own = 0;
+        for act in History::acts(history)? {
+            match act {
+                Act::Of(index) => own = usize::from(index),
+                Act::Advance(ticks) => self.advance(ticks),
+                Act::Command(command) => {
+                    // What was refused then is refused again.
+                    let _ = self.command(own, &command);
+                }
+                Act::Aim(servo) => self.aim(own, servo),
+                Act::Drive(wheels, servo) => self.drive(own, wheels, servo),
+                Act::Duty(..) | Act::Instruct(_) | Act::Record => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// What was done to it since its start, for [`Team::relive`].
+    pub fn history(&self) -> Vec<u8> {
+        self.history.to_bytes()
     }
 
     /// How many robots there are.
@@ -70,6 +101,7 @@ impl Team {
 
     /// Advances all by this many control ticks of 10 ms, or to the end of a program that cannot go on.
     pub fn advance(&mut self, ticks: u32) {
+        self.history.push(&Act::Advance(ticks));
         for _ in 0..ticks {
             let mut robots = self.fleet.robots().iter();
             if robots.any(|robot| robot.verdict().is_some()) {
@@ -88,6 +120,7 @@ impl Team {
     /// # Errors
     /// Why the robot refuses it; `None` if there is no such robot, or its scenario commands it.
     pub fn command(&mut self, index: usize, command: &Command) -> Result<f32, Option<Refusal>> {
+        self.note(index, || Act::Command(*command));
         let sim = self.fleet.robot_mut(index).ok_or(None)?;
         let pilot = self.pilots.get_mut(index).ok_or(None)?;
         pilot.command(sim, command)
@@ -95,8 +128,27 @@ impl Team {
 
     /// Points the servo of a robot that the caller commands, whatever its mode requests; `None` leaves it to the mode again.
     pub fn aim(&mut self, index: usize, servo: Option<ServoAngle>) {
+        self.note(index, || Act::Aim(servo));
         if let (Some(sim), Some(pilot)) = (self.fleet.robot_mut(index), self.pilots.get(index)) {
             pilot.aim(sim, servo);
+        }
+    }
+
+    /// Gives the wheels of a robot that the caller commands speeds [rad/s], and points its servo.
+    pub fn drive(&mut self, index: usize, wheels: Wheels<f32>, servo: ServoAngle) {
+        self.note(index, || Act::Drive(wheels, servo));
+        let robot = self.fleet.robot_mut(index);
+        if let (Some(sim), Some(pilot)) = (robot, self.pilots.get_mut(index)) {
+            pilot.drive(sim, &Drive::WheelSpeed(wheels), servo);
+        }
+    }
+
+    /// What a caller does; a scenario's robot does not obey.
+    fn note(&mut self, index: usize, act: impl FnOnce() -> Act) {
+        let is_caller = self.pilots.get(index).is_some_and(Pilot::is_caller);
+        if let (true, Ok(number)) = (is_caller, u8::try_from(index)) {
+            self.history.push(&Act::Of(number));
+            self.history.push(&act());
         }
     }
 

@@ -1,7 +1,7 @@
 //! What is wrong with a file: one line per problem, each naming the file, the line, the key, the value and the remedy.
 
 use rumbo_sim::SimError;
-use std::fmt;
+use std::{fmt, io};
 
 /// One problem in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,11 +41,27 @@ pub enum FileError {
         path: String,
         /// The system's message.
         reason: String,
+        /// The system's number of it.
+        code: Option<i32>,
+        /// What to give in its place.
+        wanted: &'static str,
     },
     /// The file was read and is wrong; at least one problem, in the order of lines.
     Invalid(Vec<Problem>),
     /// A value given from outside the file, such as `--param`, is wrong.
     Setting(String),
+}
+
+impl FileError {
+    /// That of a file which the system does not give.
+    pub(crate) fn unreadable(path: String, error: &io::Error, wanted: &'static str) -> Self {
+        Self::Unreadable {
+            path,
+            reason: error.to_string(),
+            code: error.raw_os_error(),
+            wanted,
+        }
+    }
 }
 
 impl fmt::Display for FileError {
@@ -54,11 +70,13 @@ impl fmt::Display for FileError {
             Self::Unknown { kind, name, near } => {
                 write!(f, "unknown {kind} `{name}`; {}", did_you_mean(near))
             }
-            Self::Unreadable { path, reason } => {
-                write!(
-                    f,
-                    "{path}: cannot be read ({reason}); give the path of an existing file"
-                )
+            Self::Unreadable {
+                path,
+                reason,
+                wanted,
+                ..
+            } => {
+                write!(f, "{path}: cannot be read ({reason}); give {wanted}")
             }
             Self::Invalid(problems) => {
                 for (index, problem) in problems.iter().enumerate() {
@@ -84,7 +102,7 @@ impl From<SimError> for FileError {
 pub(crate) fn did_you_mean(names: &[String]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.split_last() {
-        None => "none is like it; see `rumbo list`".into(),
+        None => "there is none to choose from".into(),
         Some((only, [])) => format!("did you mean {only}?"),
         Some((last, others)) if names.len() <= 3 => {
             format!("did you mean {} or {last}?", others.join(", "))

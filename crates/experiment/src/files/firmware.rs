@@ -52,7 +52,7 @@ pub fn wired(
             }
             _ => None,
         };
-        let other = other.map(|robot| format!(", or take --robot {robot}"));
+        let other = other.map(|robot| format!(", or take the robot {robot}"));
         FileError::Setting(format!(
             "firmware {name}: {error}{}",
             other.unwrap_or_default()
@@ -112,8 +112,8 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, FileError> {
         false => Err(io::Error::other("no file")),
     });
     read.map_err(|error| {
-        let shown = path.display();
-        FileError::Setting(format!("firmware {shown}: cannot be read ({error}); give the .elf or .hex that the compiler made"))
+        let shown = format!("firmware {}", path.display());
+        FileError::unreadable(shown, &error, "the .elf or .hex that the compiler made")
     })
 }
 

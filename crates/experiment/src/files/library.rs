@@ -185,9 +185,12 @@ impl Library {
         }
         if is_path(name_or_path) {
             let path = self.base.join(name_or_path);
-            let text = bounded::read_text(&path).map_err(|error| FileError::Unreadable {
-                path: path.display().to_string(),
-                reason: error.to_string(),
+            let text = bounded::read_text(&path).map_err(|error| {
+                FileError::unreadable(
+                    path.display().to_string(),
+                    &error,
+                    "the path of an existing file",
+                )
             })?;
             let stem = path
                 .file_stem()

@@ -372,8 +372,8 @@ impl Setup {
     fn needs_a_program(&self) -> FileError {
         let RobotFile { name, board, .. } = &self.robot;
         FileError::Setting(format!(
-            "robot {name}: Rumbo's own control program does not fit into the {} of an {}; run your own with --sketch \
-             FOLDER or --firmware IMAGE, or take another robot with --robot",
+            "robot {name}: Rumbo's own control program does not fit into the {} of an {}; run a sketch or an \
+             image of your own, or take another robot",
             board.chip.name, board.title
         ))
     }

@@ -142,10 +142,8 @@ impl Assignment {
     /// # Errors
     /// Everything that is wrong with it, by line.
     pub fn read(path: &str) -> Result<Self, FileError> {
-        let unreadable = |error: std::io::Error| FileError::Unreadable {
-            path: path.to_owned(),
-            reason: error.to_string(),
-        };
+        let unreadable =
+            |error| FileError::unreadable(path.to_owned(), &error, "the path of an existing file");
         let text = bounded::read_text(Path::new(path)).map_err(unreadable)?;
         Self::parse(path, &text)
     }

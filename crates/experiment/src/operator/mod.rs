@@ -116,7 +116,7 @@ impl<S: Deref<Target = Setup>> Operator<S> {
         };
         let mute = || {
             FileError::Setting(format!(
-                "firmware {}: does not acknowledge commands on the link of wiring {}; choose another with --wiring",
+                "firmware {}: does not acknowledge commands on the link of wiring {}; choose another wiring",
                 firmware.name(),
                 firmware.wiring()
             ))

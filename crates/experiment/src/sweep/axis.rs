@@ -1,6 +1,7 @@
 //! A parameter that varies: `front_kp=1:20:10`, `battery.open_circuit_v=6.8,7.4,8.2`, `waypoint_tracker=straight,pure_pursuit`.
 
 use crate::files::parameters;
+use rumbo_control::params::ParamId;
 use std::fmt;
 
 /// Most values of an axis.
@@ -185,6 +186,12 @@ impl Axis {
                 ..
             } => tidy(from * libm::pow(to / from, share)),
         }
+    }
+
+    /// The name of a value of a switch or a choice; a number has none.
+    #[must_use]
+    pub fn name_of(&self, value: f64) -> Option<&'static str> {
+        ParamId::from_name(&self.name)?.kind().name_of(value as f32)
     }
 
     /// Whether its values have even steps of the logarithm.

@@ -76,7 +76,7 @@ impl fmt::Display for PlanError {
             Self::Twice(name) => write!(f, "{name} has two axes; give each parameter once"),
             Self::NoCount(name) => write!(
                 f,
-                "{name}: a grid needs a count, e.g. {name}=1:20:10; or draw points with --random N or --sobol N"
+                "{name}: a grid needs a count, e.g. {name}=1:20:10; or have points drawn, at random or of a Sobol sequence"
             ),
             Self::Count(name) => write!(
                 f,
@@ -84,11 +84,11 @@ impl fmt::Display for PlanError {
             ),
             Self::TooMany(points) => write!(
                 f,
-                "{points} points are too many: at most {MOST_POINTS} points and {MOST_RUNS} runs; take fewer values, fewer --runs, or --sobol N"
+                "{points} points are too many: at most {MOST_POINTS} points and {MOST_RUNS} runs; take fewer values or fewer runs, or have points of a Sobol sequence drawn"
             ),
             Self::TooManySobol(points) => write!(
                 f,
-                "{points} points are too many: a Sobol sequence has at most {MOST_SOBOL}; draw them with --random N"
+                "{points} points are too many: a Sobol sequence has at most {MOST_SOBOL}; have them drawn at random"
             ),
             Self::TooManyAxes => write!(f, "at most {MOST_AXES} parameters vary at once"),
         }

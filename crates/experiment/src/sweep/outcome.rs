@@ -17,6 +17,7 @@ pub struct Row {
     /// Its seed.
     pub seed: u64,
     /// No limit was missed, and the robot refused nothing and reported no fault.
+    #[serde(rename = "passed")]
     pub pass: bool,
     /// All metrics; not a number where what is measured never happened.
     #[serde(deserialize_with = "with_never")]

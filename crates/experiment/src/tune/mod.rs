@@ -78,6 +78,8 @@ pub enum TuneError {
     Budget(usize),
     /// A scenario without limits, and no aim.
     NoAim(String),
+    /// The search drives the robot of a seed on which its values are to be checked.
+    Seen(u64),
     /// It was ended before it was done.
     Ended,
 }
@@ -104,6 +106,10 @@ impl fmt::Display for TuneError {
                 "{name}: is searched in a range; write {name} or {name}=FROM:TO"
             ),
             Self::Budget(least) => write!(f, "a search needs at least {least} runs"),
+            Self::Seen(seed) => write!(
+                f,
+                "seed {seed}: the search drives that robot; check on consecutive seeds, or on fewer that are near each other"
+            ),
             Self::NoAim(scenario) => write!(
                 f,
                 "scenario {scenario} has no limits; give an aim, such as `settling_s`"
@@ -262,6 +268,14 @@ pub struct Found {
 impl Search<'_> {
     /// A search uses no more seeds than so many from its first on.
     pub const SEEDS: u64 = 1_000_000;
+
+    /// The seeds of so many robots that a search from a first seed does not drive.
+    #[must_use]
+    pub fn held_out(first: u64, count: u32) -> Vec<u64> {
+        let from = first.wrapping_add(Self::SEEDS);
+        let seeds = 0..u64::from(count);
+        seeds.map(|index| from.wrapping_add(index)).collect()
+    }
     /// Fewer runs are no search.
     pub const LEAST: usize = 2_000;
 

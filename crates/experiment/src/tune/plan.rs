@@ -18,8 +18,8 @@ pub struct Request {
     pub seed: u64,
     /// Most runs of the search; `None`: [`Search::default_budget`].
     pub runs: Option<u32>,
-    /// Robots, beside those of the search, on which the values found are checked.
-    pub held_out: u32,
+    /// Seeds of the robots, none of them of the search, on which the values found are checked: [`Search::held_out`].
+    pub held_out: Vec<u64>,
 }
 
 /// A tuning that is ready to begin.
@@ -30,7 +30,7 @@ pub struct Plan {
     objective: Objective,
     seed: u64,
     budget: usize,
-    held_out: u32,
+    held_out: Vec<u64>,
 }
 
 /// What a tuning bought.
@@ -66,6 +66,10 @@ impl Plan {
             held_out,
         } = request;
         over.iter().try_for_each(|over| over.check(own))?;
+        let is_seen = |held_out: &&u64| held_out.wrapping_sub(seed) < Search::SEEDS;
+        if let Some(seen) = held_out.iter().find(is_seen) {
+            return Err(TuneError::Seen(*seen).into());
+        }
         let over = tuned(&setup, &over)?;
         if setup.scenario.limits.is_empty() && objective.names().next().is_none() {
             return Err(TuneError::NoAim(setup.scenario.name).into());
@@ -107,10 +111,8 @@ impl Plan {
 
     /// The seeds of robots that the search does not see.
     #[must_use]
-    pub fn seeds(&self) -> Vec<u64> {
-        let first = self.seed.wrapping_add(Search::SEEDS);
-        let seeds = 0..u64::from(self.held_out);
-        seeds.map(|index| first.wrapping_add(index)).collect()
+    pub fn seeds(&self) -> &[u64] {
+        &self.held_out
     }
 
     /// Searches and checks, on the threads of the current pool; `progress` gets the share of all runs that is done.
@@ -126,14 +128,14 @@ impl Plan {
     ) -> Result<Outcome, FileError> {
         check_metrics(self.objective.names(), &self.setup, self.seed)?;
         let search = self.search();
-        let (budget, check) = (self.budget as f64, 2.0 * f64::from(self.held_out));
+        let (budget, check) = (self.budget as f64, 2.0 * self.held_out.len() as f64);
         let all = budget + check;
         let found = search.run(|share| progress(share * budget / all), goes_on)?;
         let (now, tuned) = (self.setup.clone(), search.setup_of(&found.values)?);
         let mut done = budget;
         let runs = run_variants(
             &[("now".to_owned(), now), ("tuned".to_owned(), tuned)],
-            &self.seeds(),
+            &self.held_out,
             || {
                 done += 1.0;
                 progress(done / all);

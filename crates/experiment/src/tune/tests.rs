@@ -124,7 +124,7 @@ fn a_search_ends_when_it_is_told_to_and_without_limits_needs_an_aim() {
             objective: aims,
             seed: 1,
             runs: None,
-            held_out: 2,
+            held_out: Search::held_out(1, 2),
         };
         Plan::new(setup, &own, request)
     };

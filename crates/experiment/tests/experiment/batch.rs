@@ -160,14 +160,59 @@ fn a_driven_robot_turns_its_wheels_and_its_servo_as_commanded_and_knows_it() {
 fn a_snapshot_continues_bit_for_bit_the_same() {
     for driver in [Driver::Scenario, Driver::Caller] {
         let mut batch = Batch::new(setup("mode4-final"), driver, &SEEDS).unwrap();
+        if driver == Driver::Caller {
+            for robot in batch.robots_mut() {
+                robot.command(&Command::Mode(ModeId::WheelSpeed)).unwrap();
+                robot.command(&Command::Arm).unwrap();
+                robot.drive(Wheels::both(5.0), ServoAngle(0.3));
+                robot.advance(20);
+                robot.drive_duty(Wheels::both(-0.2), ServoAngle(-0.3));
+                robot
+                    .instruct("parameter = \"speed_ki_left\"\nvalue = 0")
+                    .unwrap();
+                robot.aim(None);
+                assert!(robot.instruct("mode = \"mission\"").is_err());
+            }
+        }
         batch.advance(300);
         let mut again = batch.clone();
-        batch.advance(300);
-        again.advance(300);
-        for (one, other) in batch.robots().iter().zip(again.robots()) {
+        // As another process would: by what was done to them.
+        let lives = batch.lives();
+        let mut relived =
+            Batch::of_lives(setup("mode4-final"), driver, &lives, &|| Ok(())).unwrap();
+        assert_eq!(relived.lives(), lives);
+        for all in [&mut batch, &mut again, &mut relived] {
+            all.advance(300);
+        }
+        let robots = batch.robots().iter();
+        for (one, (other, third)) in robots.zip(again.robots().iter().zip(relived.robots())) {
             assert_eq!(of_robot(one), of_robot(other));
+            assert_eq!(of_robot(one), of_robot(third));
         }
     }
+}
+
+#[test]
+fn wheels_are_driven_open_loop_by_shares_of_the_pwm_while_armed() {
+    let mut batch = Batch::new(setup("mode5"), Driver::Caller, &[3]).unwrap();
+    let robot = &mut batch.robots_mut()[0];
+    let duty = Wheels {
+        left: 0.8,
+        right: -0.6,
+    };
+    robot.drive_duty(duty, ServoAngle(0.0));
+    robot.advance(50);
+    assert_eq!(robot.sim().truth().wheel_rad_s, [0.0; 2], "it is not armed");
+    robot.command(&Command::Arm).unwrap();
+    robot.advance(200);
+    let given = robot.sim().duty();
+    assert_eq!([given.left.counts(), given.right.counts()], [204, -153]);
+    let [left, right] = robot.sim().truth().wheel_rad_s;
+    assert!(left > 4.0 && right < -1.0, "{left} {right}");
+    robot.drive(Wheels::both(6.0), ServoAngle(0.0));
+    robot.advance(200);
+    let [left, right] = robot.sim().truth().wheel_rad_s;
+    assert!((left - 6.0).abs() < 0.4 && (right - 6.0).abs() < 0.4);
 }
 
 #[test]
@@ -176,7 +221,7 @@ fn a_renewed_robot_is_that_of_its_seed_and_the_others_go_on() {
     let mut fresh = Batch::new(setup("mode1"), Driver::Scenario, &[9]).unwrap();
     batch.advance(100);
     let second = of_robot(&batch.robots()[1]);
-    batch.renew(&[(0, 9)]).unwrap();
+    batch.renew(&[(0, 9)], &|| Ok(())).unwrap();
     assert_eq!(of_robot(&batch.robots()[1]), second);
     batch.advance(200);
     fresh.advance(200);

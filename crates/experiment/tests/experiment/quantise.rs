@@ -2,7 +2,7 @@
 
 use rumbo_control::policy::{OBSERVED, Observation, decide};
 use rumbo_experiment::files::PolicyFile;
-use rumbo_experiment::quantise::{FloatInput, FloatLayer, Floats, quantise};
+use rumbo_experiment::quantise::{CLIP, FloatInput, FloatLayer, Floats, quantise};
 
 /// A network of two layers with weights that differ.
 fn floats() -> Floats {
@@ -19,6 +19,7 @@ fn floats() -> Floats {
         biases: (0..neurons).map(|row| 0.2 * weight(row, 9)).collect(),
     };
     Floats {
+        activation: CLIP.into(),
         inputs: vec![
             input("goal_ahead_m", 4.0),
             input("goal_left_m", 4.0),
@@ -94,11 +95,23 @@ fn what_cannot_be_quantised_is_refused_with_its_place() {
     }
     for (expected, why) in [
         (
-            "scale of goal_ahead_m = 0",
+            "scale of goal_ahead_m = 0: must be a finite number above 0",
             change(&|it| it.inputs[0].scale = 0.0),
         ),
         (
-            "centre of goal_left_m = NaN",
+            "activation = \"tanh\": the robot's neurons are clipped",
+            change(&|it| it.activation = "tanh".into()),
+        ),
+        (
+            "input `target_range_m`: mode 9 has no source for it",
+            change(&|it| it.inputs[0].of = "target_range_m".into()),
+        ),
+        (
+            "neurons of layer 1: there are 64, must be 1 to 32",
+            change(&|it| it.layers[0].weights = vec![vec![0.0; 3]; 64]),
+        ),
+        (
+            "centre of goal_left_m = NaN: must be a finite number",
             change(&|it| it.inputs[1].centre = f64::NAN),
         ),
         (
@@ -117,8 +130,14 @@ fn what_cannot_be_quantised_is_refused_with_its_place() {
             "biases of layer 1 has 7 values: must be 8",
             change(&|it| it.layers[0].biases.truncate(7)),
         ),
-        ("policy: is no network", change(&|it| it.layers.truncate(1))),
-        ("policy: is no network", change(&|it| it.layers.clear())),
+        (
+            "neurons of layer 1: there are 8, must be 3",
+            change(&|it| it.layers.truncate(1)),
+        ),
+        (
+            "layers: there are 0, must be 1 to 3",
+            change(&|it| it.layers.clear()),
+        ),
     ] {
         assert!(why.contains(expected), "{why}");
     }

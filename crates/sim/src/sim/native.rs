@@ -8,7 +8,7 @@ use crate::wiring::Divider;
 use rumbo_control::drive::DriveLayer;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
-use rumbo_control::{Fault, Inputs, OUTPUT_DELAY_US, Outputs, ServoAngle, TICK_US};
+use rumbo_control::{Fault, Inputs, OUTPUT_DELAY_US, Outputs, ServoAngle, TICK_US, Wheels};
 use rumbo_plant::plant::Event;
 use rumbo_robot::{Cell, Config, Loops, Robot, START_AT};
 use rumbo_wire::{Ack, Command, Message, Refusal, ResetCause, Telemetry, ToRobot};
@@ -65,6 +65,8 @@ pub(super) struct Native {
     pub(super) is_unlinked: bool,
     /// Servo angle set by that caller instead of the mode.
     pub(super) aim: Option<ServoAngle>,
+    /// The shares of the full PWM that the caller gives the wheels, in place of the mode.
+    pub(super) duty: Option<Wheels<f32>>,
     /// How many of that caller's commands were acknowledged, wrapping.
     answered: u16,
 }
@@ -116,6 +118,7 @@ impl Native {
             recorded: None,
             is_unlinked: false,
             aim: None,
+            duty: None,
             answered: 0,
         })
     }
@@ -289,6 +292,9 @@ impl Sim {
             battery_v,
         };
         native.before = *native.robot.drive_layer();
+        if let Some(duty) = native.duty {
+            native.robot.request_duty(duty);
+        }
         let outputs = native.robot.tick_aiming(&inputs, native.aim);
         if let Some(recorded) = &mut native.recorded {
             recorded.push(Latched { received, inputs });

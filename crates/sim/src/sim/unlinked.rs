@@ -6,7 +6,7 @@
 
 use super::native::{Native, SESSION};
 use super::{Controller, Sim};
-use rumbo_control::{Fault, ServoAngle};
+use rumbo_control::{Fault, ServoAngle, Wheels};
 use rumbo_robot::Loops;
 use rumbo_wire::{Command, Message, Refusal, RobotTime, Telemetry, ToRobot};
 
@@ -62,6 +62,14 @@ impl Sim {
     pub fn aim(&mut self, servo: Option<ServoAngle>) {
         if let Some(native) = self.native_mut() {
             native.aim = servo;
+        }
+    }
+
+    /// Drives the wheels of our native robot open loop, by shares of the full PWM of -1 to 1, whatever its mode requests;
+    /// `None` leaves them to the mode. It must be armed.
+    pub fn drive_duty(&mut self, duty: Option<Wheels<f32>>) {
+        if let Some(native) = self.native_mut() {
+            native.duty = duty;
         }
     }
 

@@ -45,7 +45,7 @@ fn a_run_is_one_object_and_the_same_on_any_number_of_threads() {
     assert!(
         objects(&one)
             .iter()
-            .all(|run| run["metrics"]["contacts"].is_number() && run["pass"].is_boolean())
+            .all(|run| run["metrics"]["contacts"].is_number() && run["passed"].is_boolean())
     );
     assert_eq!(stdout(&one), stdout(&run("3")));
 }
@@ -143,6 +143,9 @@ fn each_run_leaves_its_result_and_its_trace_in_the_folder_asked_for() {
         let trace =
             std::fs::read_to_string(folder.join(format!("mode1-{seed}.truth.csv"))).unwrap();
         assert!(trace.starts_with("t_s,") && trace.lines().count() > 800);
+        // No sonar at the sides, one in front.
+        assert!(trace.contains(",range_left_m,range_right_m,range_front_m,"));
+        assert!(trace.lines().nth(1).unwrap().contains(",,,1."));
     }
 }
 

@@ -130,7 +130,7 @@ fn a_new_sketch_for_an_uno_drives_the_robot_with_an_uno_and_no_other() {
     assert_eq!(refused.status.code(), Some(2));
     let error = stderr(&refused);
     assert!(
-        error.contains("Tools > Board > Arduino Mega") && error.ends_with("--robot uno\n"),
+        error.contains("Tools > Board > Arduino Mega") && error.ends_with("take the robot uno\n"),
         "{error}"
     );
     let unknown = rumbo(&bench, &["new", "sketch", "other", "--board", "due"]);
