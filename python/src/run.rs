@@ -46,7 +46,8 @@ pub(crate) fn run<'py>(
     let jobs: Vec<_> = seeds.iter().map(|seed| (&setup.files, *seed)).collect();
     let mut results: Vec<RunResult> = Vec::with_capacity(jobs.len());
     let ended = detached(py, || {
-        run_all_on(threads.min(jobs.len()), &jobs, |_, mut result| {
+        let go_on = || Python::attach(|py| py.check_signals()).map_err(Stop::Python);
+        run_all_on(threads.min(jobs.len()), &jobs, go_on, |_, mut result| {
             if !trace {
                 result.trace = Default::default();
                 for robot in &mut result.robots {

@@ -8,9 +8,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rumbo_experiment::compare::{Variant, differences as of_variants};
 use rumbo_experiment::metrics::Metrics;
-use rumbo_experiment::run::{RunResult, in_order, run as run_once};
+use rumbo_experiment::run::{in_order, run_unless};
 use rumbo_experiment::sweep::{Axis, Design, Plan};
 use std::fmt::Display;
+use std::sync::atomic::AtomicBool;
 
 pub(crate) fn refuse(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
@@ -59,15 +60,19 @@ pub(crate) fn run_jobs(
     handle: Py<PyAny>,
 ) -> PyResult<()> {
     let threads = self::threads(threads)?;
-    let work = |index: usize| {
+    let work = |index: usize, over: &AtomicBool| {
         let (values, seed) = &jobs[index];
         let names = names.iter().map(String::as_str);
         let values: Vec<_> = names.zip(values.iter().copied()).collect();
-        run_once(&setup.files.with_parameters(&values)?, *seed)
+        run_unless(&setup.files.with_parameters(&values)?, *seed, over)
     };
     let ended = detached(py, || {
-        in_order(threads, jobs.len(), work, |_, result| {
-            let result: RunResult = result?;
+        let go_on = || Python::attach(|py| py.check_signals()).map_err(Stop::Python);
+        in_order(threads, jobs.len(), work, go_on, |_, result| {
+            // Given up: nobody waits for it any more.
+            let Some(result) = result? else {
+                return Ok(());
+            };
             Python::attach(|py| {
                 py.check_signals()?;
                 handle.call1(py, (result.pass, result.metrics))

@@ -7,11 +7,12 @@ use crate::showing::Showing;
 use crate::start::Start;
 use rumbo_experiment::files::FileError;
 use rumbo_lab::edited_world;
-use rumbo_log::{Level, WriteError};
+use rumbo_log::Level;
 use rumbo_session::{Extras, Order, Target, TargetError, stop_first};
 use rumbo_wire::Command;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::io;
 use std::rc::Rc;
 
 const STOP: Order = Order::Robot(Command::Stop);
@@ -276,7 +277,7 @@ impl Lab {
     ///
     /// # Errors
     /// Why it cannot be written.
-    pub fn log(&mut self, started: String) -> Result<(String, Vec<u8>), WriteError> {
+    pub fn log(&mut self, started: String) -> io::Result<(String, Vec<u8>)> {
         match self.desk().recording() {
             Some(recording) => recording.log(started),
             None => Ok(Default::default()),

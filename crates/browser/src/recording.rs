@@ -1,7 +1,7 @@
 //! The recording of the page's run: kept in memory, written as a log when it is saved.
 
-use rumbo_log::{Entry, LogWriter, Manifest, Row, WriteError};
-use std::io::Cursor;
+use rumbo_log::{Entry, LogWriter, Manifest, Row};
+use std::io::{self, Cursor};
 use std::sync::Arc;
 
 /// Room for recordings in memory \[bytes\]: some hours of driving of one robot.
@@ -51,14 +51,14 @@ impl Recording {
     }
 
     /// The name of a file for it, and the file; `started` is when the run began, as in a manifest.
-    pub(crate) fn log(&self, started: String) -> Result<(String, Vec<u8>), WriteError> {
+    pub(crate) fn log(&self, started: String) -> io::Result<(String, Vec<u8>)> {
         let mut saving = self.save(started)?;
         while !saving.advance(self, SOME)? {}
         saving.finish()
     }
 
     /// Begins to write it as a file, a piece at a time.
-    pub(crate) fn save(&self, started: String) -> Result<Saving, WriteError> {
+    pub(crate) fn save(&self, started: String) -> io::Result<Saving> {
         let manifest = Manifest {
             started: Some(started),
             ..self.manifest.clone()
@@ -83,11 +83,7 @@ pub(crate) struct Saving {
 
 impl Saving {
     /// Writes some entries more of the recording that it is of; returns whether those were the last.
-    pub(crate) fn advance(
-        &mut self,
-        recording: &Recording,
-        some: usize,
-    ) -> Result<bool, WriteError> {
+    pub(crate) fn advance(&mut self, recording: &Recording, some: usize) -> io::Result<bool> {
         let until = self.until.min(self.written + some);
         for entry in &recording.entries[self.written..until] {
             self.log.record(entry)?;
@@ -97,7 +93,7 @@ impl Saving {
     }
 
     /// The name of a file for it, and the file.
-    pub(crate) fn finish(self) -> Result<(String, Vec<u8>), WriteError> {
+    pub(crate) fn finish(self) -> io::Result<(String, Vec<u8>)> {
         Ok((self.name, self.log.finish()?.into_inner()))
     }
 }

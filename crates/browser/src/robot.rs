@@ -3,9 +3,10 @@
 use crate::desk::{Desk, Place, ROUND_US};
 use crate::recording::{SOME, Saving};
 use crate::serial_port::SerialPort;
-use rumbo_log::{Level, WriteError};
+use rumbo_log::Level;
 use rumbo_session::{BaudTooLow, Extras, Order, TargetError, check_baud, stop_first};
 use rumbo_wire::Command;
+use std::io;
 
 /// Longest time spent on a file of the recording in one round \[us\]: the heartbeat does not wait for it.
 const SAVING_US: u64 = 4_000;
@@ -124,7 +125,7 @@ impl Robot {
     ///
     /// # Errors
     /// Why it cannot be written.
-    pub fn save(&mut self, started: String) -> Result<(), WriteError> {
+    pub fn save(&mut self, started: String) -> io::Result<()> {
         if let Some(recording) = self.desk.recording() {
             self.saving = Some(recording.save(started)?);
         }
@@ -135,10 +136,7 @@ impl Robot {
     ///
     /// # Errors
     /// Why it cannot be written.
-    pub fn saved(
-        &mut self,
-        wall_us: impl Fn() -> u64,
-    ) -> Result<Option<(String, Vec<u8>)>, WriteError> {
+    pub fn saved(&mut self, wall_us: impl Fn() -> u64) -> io::Result<Option<(String, Vec<u8>)>> {
         let Some((mut saving, recording)) = self.saving.take().zip(self.desk.recording()) else {
             return Ok(None);
         };

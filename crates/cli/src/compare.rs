@@ -7,6 +7,7 @@ use crate::args::CompareArgs;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
 use crate::figures;
+use crate::logs;
 use crate::mark::Mark;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
@@ -54,6 +55,7 @@ fn compare_logs(args: &CompareArgs) -> Result<(), Failure> {
         place::try_file(path)?;
     }
     let logs = args.logs.iter().map(|path| {
+        logs::mend(path);
         let log = log_file::read(path).map_err(Failure::input)?;
         warn_if_cut(path, &log)?;
         Ok(log)

@@ -3,6 +3,7 @@
 use crate::args::{ExportArgs, Format};
 use crate::failure::Failure;
 use crate::figures;
+use crate::logs;
 use crate::mark::Mark;
 use crate::output;
 use crate::place::{self, Guard};
@@ -35,6 +36,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     if args.ros2bag {
         bag.check(&guard)?;
     }
+    logs::mend(&args.log);
     let log = log_file::read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log)?;
     // Which columns they have is known only now.

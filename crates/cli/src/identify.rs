@@ -51,7 +51,10 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     let driving = drive(args, name)?;
     let driven = driving.iter().map(|driving| driving.path.clone());
     let paths: Vec<PathBuf> = args.logs.iter().cloned().chain(driven).collect();
-    let bytes = |path: &Path| bounded::read_at_most(path, bounded::LONGEST_LOG);
+    let bytes = |path: &Path| {
+        logs::mend(path);
+        bounded::read_at_most(path, bounded::LONGEST_LOG)
+    };
     let logs = Recordings::read(&paths, bytes).map_err(Failure::input)?;
     logs.notes.iter().for_each(|note| output::note(note));
     if let Some(folder) = &args.plots {

@@ -18,7 +18,19 @@ pub(crate) fn recording(given: Option<&Path>) -> Option<Recording> {
     if let Err(why) = place::try_folder(&folder) {
         output::note(&format!("not recording: {why}"));
     }
+    // What cannot be listed now is not shown later either.
+    paths(&folder).iter().flatten().for_each(|path| mend(path));
     Some(Recording { folder })
+}
+
+/// Makes a log whole whose recording was killed, and says so.
+pub(crate) fn mend(path: &Path) {
+    if log_file::mend(path) {
+        let path = path.display();
+        output::note(&format!(
+            "{path}: its recording had been killed; up to there it is a whole log now"
+        ));
+    }
 }
 
 /// The folder for logs: the one given, else the one that the environment names, else `rumbo/logs` where this system keeps a user's data.
@@ -31,16 +43,20 @@ pub(crate) fn folder(given: Option<&Path>) -> Option<PathBuf> {
         .or_else(usual)
 }
 
-/// The logs in the default folder, in the order of their names, which begin with the time.
+/// What is in the default folder, in the order of the names, which begin with the time.
 pub(crate) fn entries() -> Result<Vec<Value>, Failure> {
-    Ok(paths()?.iter().map(|path| entry(path)).collect())
+    let paths = usual_paths()?;
+    paths.iter().for_each(|path| mend(path));
+    Ok(paths.iter().map(|path| entry(path)).collect())
 }
 
-fn paths() -> Result<Vec<PathBuf>, Failure> {
-    let Some(folder) = folder(None) else {
-        return Ok(Vec::new());
-    };
-    let files = match std::fs::read_dir(&folder) {
+/// The logs in the default folder.
+fn usual_paths() -> Result<Vec<PathBuf>, Failure> {
+    folder(None).map_or(Ok(Vec::new()), |folder| paths(&folder))
+}
+
+fn paths(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let files = match std::fs::read_dir(folder) {
         Ok(files) => files,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
         Err(error) => {
@@ -75,7 +91,7 @@ pub(crate) fn total(entries: &[Value]) -> String {
 pub(crate) fn prune(args: &PruneArgs) -> Result<(), Failure> {
     let days = Duration::from_secs(u64::from(args.keep_days) * 86_400);
     let (mut count, mut bytes) = (0, 0);
-    for path in paths()? {
+    for path in usual_paths()? {
         let unwritable = |error: std::io::Error| {
             let path = path.display();
             Failure::Input(format!(

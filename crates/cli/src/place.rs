@@ -77,7 +77,10 @@ impl Guard {
     }
 
     fn keeps_inputs(&self, path: &Path) -> Result<(), Failure> {
-        let is_same = |input: &&PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
+        // Both are opened for that, and to open a pipe may wait for ever.
+        let is_there = path.symlink_metadata().is_ok();
+        let is_same =
+            |input: &&PathBuf| is_there && same_file::is_same_file(input, path).unwrap_or(false);
         match self.inputs.iter().find(is_same) {
             None => Ok(()),
             Some(input) => Err(Failure::Input(format!(

@@ -3,6 +3,7 @@
 //! A log that `rumbo import` made of a CSV carries it. Any other one has the signals of its telemetry: what was recorded from the first
 //! armed instant to the last becomes rows of the kind that the original program writes in that mode.
 
+use crate::logs;
 use rumbo_control::mode::{Description, ModeId, ReferenceKind, Takes};
 use rumbo_experiment::files::bounded::{LONGEST_LOG, read_at_most};
 use rumbo_log::{Kind, Row, recorded_csv};
@@ -17,6 +18,7 @@ const CLEAR_CM: f64 = 250.0;
 
 /// The run in a log, or why it is not one of a real robot.
 pub(crate) fn from_log(path: &Path) -> Result<FromLog, NotShown> {
+    logs::mend(path);
     let bytes = read_at_most(path, LONGEST_LOG).map_err(|_| NotShown::NoLog)?;
     if let Some(csv) = recorded_csv(&bytes) {
         let csv = String::from_utf8_lossy(&csv).into_owned();

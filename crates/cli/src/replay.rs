@@ -5,6 +5,7 @@ use crate::browser;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
 use crate::ghost;
+use crate::logs;
 use rumbo_station::log_file;
 
 /// Serves the dashboard with the log, or the folder's page.
@@ -16,6 +17,7 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         Some(_) => log_file::read,
         None => log_file::read_replay,
     };
+    logs::mend(&args.log);
     let mut log = read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log)?;
     let ghost = match &args.ghost {

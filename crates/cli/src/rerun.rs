@@ -6,6 +6,7 @@
 use crate::args::RerunArgs;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
+use crate::logs;
 use crate::manifest;
 use crate::output;
 use crate::run_log;
@@ -99,6 +100,7 @@ enum Verdict {
 
 /// Runs the log's run again and returns whether it is the same.
 pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
+    logs::mend(&args.log);
     let log = log_file::read(&args.log).map_err(Failure::input)?;
     let shown = args.log.display();
     let Some(recorded) = &log.manifest else {

@@ -8,7 +8,7 @@ use rumbo_log::Log;
 use rumbo_report::Stamp;
 use rumbo_ros::{bag, convert};
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 /// A bag: a folder with two files.
@@ -49,15 +49,8 @@ impl Bag {
         let [mcap, metadata] = self.paths();
         place::make(&mcap, |place| {
             let written = File::create(place)
-                .map_err(mcap::McapError::Io)
-                .and_then(|file| {
-                    let mut file = bag::write(BufWriter::new(file), &messages, self.stamp.text())?;
-                    Ok(file.flush()?)
-                });
-            written.map_err(|error| match error {
-                mcap::McapError::Io(error) => unwritable(&mcap, &error),
-                error => Failure::Input(format!("{}: {error}", mcap.display())),
-            })
+                .and_then(|file| bag::write(BufWriter::new(file), &messages, self.stamp.text()));
+            written.map(drop).map_err(|error| unwritable(&mcap, &error))
         })?;
         let text = bag::metadata(&messages, &self.file);
         place::write(&metadata, format!("# {}\n{text}", self.stamp.text()))?;

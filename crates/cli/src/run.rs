@@ -51,6 +51,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
             .as_ref()
             .is_some_and(|asked| asked.load(Ordering::Relaxed))
     };
+    let go_on = || match interrupted() {
+        true => Err(Failure::Interrupted),
+        false => Ok(()),
+    };
     let source = Source {
         kind: Kind::Run,
         library: &library,
@@ -69,28 +73,25 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         }
         if args.json {
             progress.suspend(|| output::json(&result))?;
-            return match interrupted() {
-                true => Err(Failure::Interrupted),
-                false => Ok(()),
-            };
+            return go_on();
         }
         // A thousand traces would fill the memory; what is printed needs none.
         result.trace = Trace::default();
         result.robots.clear();
         results.push(result);
-        let end = interrupted();
-        if results.len() == runs || end {
+        if results.len() == runs {
             let results = std::mem::take(&mut results);
             progress.suspend(|| report(setup, &results))?;
         }
-        match end {
-            true => Err(Failure::Interrupted),
-            false => Ok(()),
-        }
+        go_on()
     };
-    let ended = run_jobs(args, &jobs, handle);
+    let ended = run_jobs(args, &jobs, go_on, handle);
     let done = progress.position();
     progress.finish_and_clear();
+    // Of the scenario whose runs were interrupted, those that are over.
+    if let (false, Some((setup, _))) = (results.is_empty(), jobs.get(done as usize - 1)) {
+        report(setup, &results)?;
+    }
     kept.report();
     if matches!(ended, Err(Failure::Interrupted)) {
         output::note(&format!(
@@ -152,10 +153,11 @@ fn check_places(args: &RunArgs, setups: &[Setup]) -> Result<(), Failure> {
 fn run_jobs(
     args: &RunArgs,
     jobs: &[(&Setup, u64)],
+    go_on: impl Fn() -> Result<(), Failure>,
     mut handle: impl FnMut(&Setup, RunResult) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     if !observe::is_wanted(args) {
-        return run::run_all(jobs, handle);
+        return run::run_all_on(rayon::current_num_threads(), jobs, go_on, handle);
     }
     let result = observe::run(args, jobs)?;
     jobs.iter()

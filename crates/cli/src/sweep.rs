@@ -72,17 +72,17 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     progress.set_position(first as u64);
     progress.reset_eta();
     let mut done = Vec::new();
-    let ended = sweep
-        .plan
-        .run(&setup, first, rayon::current_num_threads(), |row| {
-            journal.put(&row)?;
-            done.push(row);
-            progress.inc(1);
-            match asked.load(Ordering::Relaxed) {
-                true => Err(Failure::Interrupted),
-                false => Ok(()),
-            }
-        });
+    let go_on = || match asked.load(Ordering::Relaxed) {
+        true => Err(Failure::Interrupted),
+        false => Ok(()),
+    };
+    let threads = rayon::current_num_threads();
+    let ended = sweep.plan.run(&setup, first, threads, go_on, |row| {
+        journal.put(&row)?;
+        done.push(row);
+        progress.inc(1);
+        go_on()
+    });
     progress.finish_and_clear();
     sweep.rows.extend(done);
     let by = by(args, &setup);

@@ -24,13 +24,15 @@ pub struct Variant {
     pub metrics: Vec<Metrics>,
 }
 
-/// Runs all variants with the same seeds, on all cores; `done` is called after each run and ends the rest with its error.
+/// Runs all variants with the same seeds, on all cores; `done` is called after each run, `go_on` in between, and both end
+/// the rest with their error.
 ///
 /// # Errors
-/// The first error, of a setup or of `done`.
+/// The first error, of a setup, of `go_on` or of `done`.
 pub fn run_variants<E: From<FileError>>(
     variants: &[(String, Setup)],
     seeds: &[u64],
+    go_on: impl Fn() -> Result<(), E>,
     mut done: impl FnMut() -> Result<(), E>,
 ) -> Result<Vec<Variant>, E> {
     let mut all: Vec<Variant> = variants
@@ -51,6 +53,7 @@ pub fn run_variants<E: From<FileError>>(
         count * seeds.len(),
         job,
         |_, result| (result.pass, result.metrics),
+        go_on,
         |index, (pass, metrics)| {
             let variant = &mut all[index % count];
             variant.passes.push(pass);
@@ -240,7 +243,8 @@ mod tests {
             ("again".to_owned(), setup(None)),
             ("less".to_owned(), setup(Some(0.0))),
         ];
-        let runs = run_variants(&variants, &[1, 2, 3], || Ok::<(), FileError>(())).unwrap();
+        let runs =
+            run_variants(&variants, &[1, 2, 3], || Ok(()), || Ok::<(), FileError>(())).unwrap();
         assert!(
             differences(&runs[0], &runs[1])
                 .iter()

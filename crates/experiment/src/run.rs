@@ -22,6 +22,7 @@ use serde::Serialize;
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufWriter};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The file of a run's waveforms.
 pub(crate) type Waves = Waveform<BufWriter<File>>;
@@ -333,6 +334,26 @@ pub fn run(setup: &Setup, seed: u64) -> Result<RunResult, FileError> {
         }
         Ok(())
     })
+}
+
+/// The same, unless that is `over` before the run is.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_unless(
+    setup: &Setup,
+    seed: u64,
+    over: &AtomicBool,
+) -> Result<Option<RunResult>, FileError> {
+    let mut given_up = false;
+    let result = run_by(setup, seed, |run| {
+        while !run.is_over() && !given_up {
+            run.advance();
+            given_up = over.load(Ordering::Relaxed);
+        }
+        Ok::<(), FileError>(())
+    })?;
+    Ok((!given_up).then_some(result))
 }
 
 /// Runs a scenario once, driven by the caller; the run is judged when the caller returns.

@@ -12,6 +12,9 @@ pub(crate) const MANIFEST: &str = "manifest";
 /// Name of the metadata that says how it ended.
 pub(crate) const OUTCOME: &str = "outcome";
 
+/// Name of the metadata, empty, that says that the recording ended early.
+pub(crate) const CUT: &str = "cut";
+
 /// Keys and values of a metadata record.
 pub(crate) type Fields = BTreeMap<String, String>;
 

@@ -18,11 +18,13 @@
 //!
 //! Messages are JSON with JSON schemas, times are the run's own, from 0. A metadata record `manifest` says what ran
 //! ([`Manifest`]); the files it was made of are attached. A log whose writer was killed is readable up to the last
-//! chunk that was closed ([`LogWriter::flush`]).
+//! chunk that was closed ([`LogWriter::flush`]), and [`mend`] gives it the end that it lacks.
 //!
 //! Works on bytes: which file they are in, when they are flushed and who waits for the disk is the caller's business.
 
 mod bound;
+mod compress;
+mod container;
 mod digest;
 mod entry;
 mod error;
@@ -30,6 +32,7 @@ mod event;
 mod log;
 mod lz4;
 mod manifest;
+mod mend;
 mod messages;
 mod parameters;
 mod reader;
@@ -43,11 +46,14 @@ mod summary;
 mod writer;
 
 pub use bound::Bound;
+pub use container::Container;
 pub use entry::{Burst, Entry, Said};
 pub use error::ReadError;
 pub use event::{Level, LoggedEvent};
 pub use log::{Log, Sent};
 pub use manifest::{Kind, Manifest, Outcome};
+pub use mcap::MAGIC;
+pub use mend::mend;
 pub use parameters::{Parameter, ParameterState, parameter, parameters};
 pub use reading::{Names, Reading, Source};
 pub use recorded::{CSV, recorded_csv};
@@ -62,4 +68,4 @@ pub use state::{
     State, Task,
 };
 pub use summary::Summary;
-pub use writer::{LogWriter, WriteError};
+pub use writer::LogWriter;

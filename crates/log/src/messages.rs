@@ -1,13 +1,13 @@
 //! Turns entries into messages; a [`Sink`] takes them.
 
-use crate::entry::{Burst, Entry, Said};
+use crate::entry::{Entry, Said};
 use crate::event::{Level, LoggedEvent};
 use crate::parameters::ParameterState;
 use crate::reading::{Reading, Source};
 use crate::scene::{MapPose, Scene, compose};
 use crate::schema::Topic;
 use crate::signals::Row;
-use crate::state::State;
+use crate::state::{LinkState, ProgramState, RobotState, State};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
@@ -23,6 +23,20 @@ pub(crate) trait Sink {
     /// Why it cannot.
     fn put(&mut self, topic: Topic, t_us: u64, data: &[u8]) -> Result<(), Self::Error>;
 
+    /// The same of what matters only where it changes, and at most every so many microseconds: `what` says of it what
+    /// there is to compare.
+    ///
+    /// # Errors
+    /// Why it cannot.
+    fn put_new(
+        &mut self,
+        topic: Topic,
+        t_us: u64,
+        every_us: u64,
+        what: String,
+        data: Vec<u8>,
+    ) -> Result<(), Self::Error>;
+
     /// The messages of an entry; an outcome has none. Scene and parameters have no time of their own: they get the last
     /// time `now_us`, which a burst updates.
     ///
@@ -32,7 +46,7 @@ pub(crate) trait Sink {
         match entry {
             Entry::Burst(burst) => {
                 *now_us = burst.t_us;
-                self.burst(burst)
+                self.link(burst.to_robot, burst.t_us, &burst.bytes, &[])
             }
             Entry::Said(said) => self.said(said),
             Entry::Rows(rows) => rows.iter().try_for_each(|row| self.row(row)),
@@ -46,24 +60,33 @@ pub(crate) trait Sink {
     }
 }
 
+/// Poses, which telemetry has too, are for viewers: a fifth of its rate is smooth enough \[us\].
+const POSES_US: u64 = 190_000;
+
 /// The messages of one entry each.
-trait Messages: Sink {
+pub(crate) trait Messages: Sink {
     fn put_json(&mut self, topic: Topic, t_us: u64, message: &Value) -> Result<(), Self::Error> {
         self.put(topic, t_us, message.to_string().as_bytes())
     }
 
-    /// Raw bytes of the link.
-    fn burst(&mut self, burst: &Burst) -> Result<(), Self::Error> {
-        let topic = if burst.to_robot {
-            Topic::ToRobot
-        } else {
-            Topic::FromRobot
+    /// Raw bytes of the link, and the pieces in which they came: how long after the one before \[us\], and how many.
+    fn link(
+        &mut self,
+        to_robot: bool,
+        t_us: u64,
+        bytes: &[u8],
+        pieces: &[(u64, usize)],
+    ) -> Result<(), Self::Error> {
+        let topic = match to_robot {
+            true => Topic::ToRobot,
+            false => Topic::FromRobot,
         };
-        self.put_json(
-            topic,
-            burst.t_us,
-            &json!({ "data": STANDARD.encode(&burst.bytes) }),
-        )
+        let data = STANDARD.encode(bytes);
+        let message = match pieces {
+            [] | [_] => json!({ "data": data }),
+            pieces => json!({ "data": data, "pieces": pieces }),
+        };
+        self.put_json(topic, t_us, &message)
     }
 
     /// What a USART sent, or was sent.
@@ -94,13 +117,28 @@ trait Messages: Sink {
             Source::Others => Topic::Others,
             Source::Usart(_) => Topic::Printed,
         };
-        self.put_json(topic, to_us(reading.t_ms), &reading.json())
+        let (t_us, message) = (to_us(reading.t_ms), reading.json());
+        match topic {
+            Topic::Printed => self.put_json(topic, t_us, &message),
+            _ => {
+                let what = message.to_string();
+                let data = what.clone().into_bytes();
+                self.put_new(topic, t_us, 0, what, data)
+            }
+        }
     }
 
     fn pose(&mut self, topic: Topic, t_us: u64, at: MapPose) -> Result<(), Self::Error> {
-        let message =
-            json!({ "timestamp": timestamp(t_us), "frame_id": "world", "pose": pose_json(at) });
-        self.put_json(topic, t_us, &message)
+        let pose = pose_json(at);
+        let what = pose.to_string();
+        let message = json!({ "timestamp": timestamp(t_us), "frame_id": "world", "pose": pose });
+        self.put_new(
+            topic,
+            t_us,
+            POSES_US,
+            what,
+            message.to_string().into_bytes(),
+        )
     }
 
     /// Something that happened.
@@ -123,7 +161,8 @@ trait Messages: Sink {
             Ok(mut message) => {
                 leave_out_unknown(&mut message);
                 let t_us = to_us((state.t_s * 1e3).round() as i64);
-                self.put_json(Topic::State, t_us, &message)
+                let data = message.to_string().into_bytes();
+                self.put_new(Topic::State, t_us, 0, what_is_new(state), data)
             }
             Err(_) => Ok(()),
         }
@@ -155,6 +194,34 @@ trait Messages: Sink {
 
 impl<S: Sink + ?Sized> Messages for S {}
 
+/// What of a state is worth another message at once: all but times, voltages, angles and what is measured of the link.
+fn what_is_new(state: &State) -> String {
+    let link = LinkState {
+        connected: state.link.connected,
+        baud: state.link.baud,
+        ..LinkState::default()
+    };
+    let robot = RobotState {
+        battery_v: None,
+        true_battery_v: None,
+        servo_rad: 0.0,
+        ..state.robot.clone()
+    };
+    let program = state.program.clone().map(|program| ProgramState {
+        profile: None,
+        ..program
+    });
+    let state = State {
+        t_s: 0.0,
+        achieved_speed: 0.0,
+        link,
+        robot,
+        program,
+        ..state.clone()
+    };
+    serde_json::to_string(&state).unwrap_or_default()
+}
+
 /// Unknown values are left out, as in all messages: viewers expect the type in the schema.
 fn leave_out_unknown(message: &mut Value) {
     if let Value::Object(fields) = message {
@@ -173,7 +240,8 @@ fn timestamp(t_us: u64) -> Value {
 }
 
 fn pose_json(at: MapPose) -> Value {
-    let (sin, cos) = (0.5 * at.heading_rad).sin_cos();
+    // A heading in telemetry has four decimals.
+    let [sin, cos] = [f64::sin, f64::cos].map(|of| (of(0.5 * at.heading_rad) * 1e6).round() / 1e6);
     json!({ "position": { "x": at.x_m, "y": at.y_m, "z": 0.0 }, "orientation": { "x": 0.0, "y": 0.0, "z": sin, "w": cos } })
 }
 

@@ -90,7 +90,11 @@ fn read(mut from: impl Read + Seek, with_link: bool) -> Result<Log, ReadError> {
             None => ReadError::Foreign,
         });
     }
+    // What stayed as it was is written late.
     log.rows.sort_by_key(|row| row.t_ms);
+    log.readings.sort_by_key(|reading| reading.t_ms);
+    log.states
+        .sort_by(|one, other| one.t_s.total_cmp(&other.t_s));
     Ok(log)
 }
 

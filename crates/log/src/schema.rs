@@ -230,7 +230,8 @@ fn scene_update() -> Value {
 fn bytes() -> Value {
     object(
         "rumbo.Bytes",
-        json!({ "data": { "type": "string", "contentEncoding": "base64" } }),
+        json!({ "data": { "type": "string", "contentEncoding": "base64" },
+            "pieces": { "type": "array", "items": { "type": "array", "items": { "type": "integer" } } } }),
     )
 }
 

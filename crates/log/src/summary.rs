@@ -1,6 +1,6 @@
 //! What a log is, without reading it: from its index, or, where its writer was stopped, from the heads of its records.
 
-use crate::digest::MANIFEST;
+use crate::digest::{CUT, MANIFEST};
 use crate::error::ReadError;
 use crate::manifest::Manifest;
 use crate::reader::is_log;
@@ -66,7 +66,8 @@ impl Summary {
             duration_s: seconds(statistics.message_end_time),
             complete: true,
         };
-        for MetadataIndex { offset, .. } in &index.metadata_indexes {
+        for MetadataIndex { offset, name, .. } in &index.metadata_indexes {
+            summary.complete &= name != CUT;
             file.seek(SeekFrom::Start(*offset))?;
             if let Some((op::METADATA, length)) = head(file)? {
                 summary.take_metadata(file, length)?;
@@ -163,7 +164,7 @@ mod tests {
         for number in 0..40_000 {
             let burst = Burst {
                 t_us: 1_000 * number,
-                to_robot: false,
+                to_robot: true,
                 bytes: number.to_le_bytes().repeat(8),
             };
             writer.record(&Entry::Burst(burst)).unwrap();

@@ -3,11 +3,10 @@
 
 use crate::convert::Sent;
 use crate::topics::{Quality, Topic};
-use mcap::records::MessageHeader;
-use mcap::{Compression, McapError, WriteOptions};
+use rumbo_log::Container;
 use serde_json::json;
 use std::collections::BTreeMap;
-use std::io::{Seek, Write};
+use std::io::{self, Write};
 
 /// A quality of service as rosbag2 notes it.
 fn quality(quality: Quality) -> String {
@@ -32,38 +31,27 @@ fn quality(quality: Quality) -> String {
 ///
 /// # Errors
 /// What `into` does not take.
-pub fn write<W: Write + Seek>(into: W, messages: &[Sent], library: &str) -> Result<W, McapError> {
-    let mut bag = WriteOptions::new()
-        .profile("ros2")
-        .library(library)
-        .compression(Some(Compression::Lz4))
-        .create(into)?;
+pub fn write<W: Write>(into: W, messages: &[Sent], library: &str) -> io::Result<W> {
+    let mut bag = Container::new(into, "ros2", library)?;
     let mut channels = BTreeMap::new();
     for topic in topics(messages).into_keys() {
         let definition = topic.definition();
-        let schema = bag.add_schema(definition.name, "ros2msg", definition.text().as_bytes())?;
+        let schema = bag.schema(definition.name, "ros2msg", definition.text().as_bytes());
         let about = [
             ("offered_qos_profiles", quality(topic.quality())),
             ("topic_type_hash", definition.hash()),
         ];
         let about = about.map(|(key, value)| (key.to_owned(), value));
-        let channel = bag.add_channel(schema, topic.name(), "cdr", &BTreeMap::from(about))?;
+        let channel = bag.channel(schema, topic.name(), "cdr", &BTreeMap::from(about));
         channels.insert(topic, (channel, 0));
     }
     for message in messages {
-        if let Some((channel_id, sequence)) = channels.get_mut(&message.topic) {
-            let header = MessageHeader {
-                channel_id: *channel_id,
-                sequence: *sequence,
-                log_time: message.t_ns,
-                publish_time: message.t_ns,
-            };
-            bag.write_to_known_channel(&header, &message.data)?;
+        if let Some((channel, sequence)) = channels.get_mut(&message.topic) {
+            bag.message(*channel, *sequence, message.t_ns, &message.data)?;
             *sequence += 1;
         }
     }
-    bag.finish()?;
-    Ok(bag.into_inner())
+    bag.finish()
 }
 
 /// The text of `metadata.yaml`, for an MCAP file of this name. It is JSON, which is YAML too.

@@ -55,6 +55,7 @@ pub struct RobotClient {
     hellos: u32,
     /// Bytes received at this port.
     received_bytes: u64,
+    unread_bytes: u64,
     /// Consecutive rows or frames of the other protocol.
     words: u32,
     /// Columns of the last row.
@@ -102,6 +103,7 @@ impl RobotClient {
             undecided: true,
             hellos: 0,
             received_bytes: 0,
+            unread_bytes: 0,
             words: 0,
             row_kind: None,
             manager: CommandManager::new(session),
@@ -366,6 +368,7 @@ impl RobotClient {
             down_bytes_s: self.down.per_second(now_us),
             telemetry_hz: self.frames.per_second(now_us),
             received_bytes: self.received_bytes,
+            unread_bytes: self.unread_bytes,
             crc_errors: self
                 .decoder
                 .crc_errors()
@@ -383,6 +386,7 @@ impl RobotClient {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::watch::LinkWatch;
     use rumbo_wire::FromRobot;
 
     #[test]
@@ -400,5 +404,29 @@ mod tests {
         let mut damaged = frame(2);
         damaged[2] ^= 0x10;
         assert_eq!(receive(&mut client, &damaged), 1);
+    }
+
+    #[test]
+    fn a_port_that_comes_back_in_the_middle_of_a_frame_is_not_said_to_have_another_speed() {
+        let mut client = RobotClient::new(7, false, KnownTable::OURS);
+        let (mut watch, mut events, mut now_us) = (LinkWatch::default(), Vec::new(), 0);
+        let mut receive = |client: &mut RobotClient, bytes: &[u8]| {
+            now_us += 40_000;
+            client.receive(bytes, now_us, &mut events);
+            let figures = client.link(now_us);
+            watch.look(now_us, &figures, client.connected(), 0, 9_600, false)
+        };
+        // The robot sends on until it is asked who it is.
+        for _ in 0..2 {
+            let frame = |sequence| FromRobot::HeadingRef(0.5).frame(sequence).bytes().to_vec();
+            assert_eq!(receive(&mut client, &frame(0)[3..]), None);
+            for sequence in 1..60 {
+                assert_eq!(receive(&mut client, &frame(sequence)), None);
+            }
+            client.port_is_gone();
+        }
+        // Bytes of another speed are no frames.
+        let said = (0..30).find_map(|number| receive(&mut client, &[0x9c ^ number; 8]));
+        assert!(said.is_some_and(|said| said.contains("9600 baud")));
     }
 }

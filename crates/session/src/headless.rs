@@ -7,11 +7,9 @@ use crate::observer::describe::{Around, describe};
 use crate::target::Shown;
 use rumbo_control::mode::{ModeId, ReferenceKind};
 use rumbo_control::params::Params;
-use rumbo_log::{
-    Burst, Entry, Level, LogWriter, Manifest, Outcome, Said, Scene, Truth, WriteError,
-};
+use rumbo_log::{Burst, Entry, Level, LogWriter, Manifest, Outcome, Said, Scene, Truth};
 use rumbo_wire::{Ack, Command, Decoder, FromRobot, Message, Received, ToRobot};
-use std::io::{Seek, Write};
+use std::io::{self, Write};
 
 /// The state is noted this often \[us\].
 const STATE_PERIOD_US: u64 = 200_000;
@@ -45,11 +43,7 @@ pub struct Run<'a> {
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn record_run<W: Write + Seek>(
-    into: W,
-    manifest: &Manifest,
-    run: Run<'_>,
-) -> Result<W, WriteError> {
+pub fn record_run<W: Write>(into: W, manifest: &Manifest, run: Run<'_>) -> io::Result<W> {
     let mut log = LogWriter::new(into, manifest)?;
     let baud = manifest.baud;
     let mut recorder = RunRecorder {
@@ -110,11 +104,7 @@ pub fn record_run<W: Write + Seek>(
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn record_text<W: Write + Seek>(
-    into: W,
-    manifest: &Manifest,
-    link: &[Burst],
-) -> Result<W, WriteError> {
+pub fn record_text<W: Write>(into: W, manifest: &Manifest, link: &[Burst]) -> io::Result<W> {
     let mut log = LogWriter::new(into, manifest)?;
     let mut observer = Observer::new();
     let mut client = RobotClient::of_text(ModeId::default(), true);
@@ -149,10 +139,7 @@ pub fn record_text<W: Write + Seek>(
 }
 
 /// Records the observer's entries.
-fn keep<W: Write + Seek>(
-    observer: &mut Observer,
-    log: &mut LogWriter<W>,
-) -> Result<(), WriteError> {
+fn keep<W: Write>(observer: &mut Observer, log: &mut LogWriter<W>) -> io::Result<()> {
     for event in observer.take_events() {
         if let Event::Entry(entry) = event {
             log.record(&entry)?;
@@ -188,7 +175,7 @@ struct RunRecorder {
 }
 
 impl RunRecorder {
-    fn keep<W: Write + Seek>(&mut self, log: &mut LogWriter<W>) -> Result<(), WriteError> {
+    fn keep<W: Write>(&mut self, log: &mut LogWriter<W>) -> io::Result<()> {
         keep(&mut self.observer, log)
     }
 

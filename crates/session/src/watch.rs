@@ -75,7 +75,6 @@ pub(crate) struct LinkWatch {
     began_us: Option<u64>,
     noise_from: Option<(u64, u16)>,
     dropped: Option<u8>,
-    nonsense_from: Option<u64>,
 }
 
 impl LinkWatch {
@@ -91,7 +90,7 @@ impl LinkWatch {
         quiet: bool,
     ) -> Option<String> {
         let silent = self.silent(now_us, link.received_bytes) && !quiet;
-        let nonsense = self.nonsense(connected, link.received_bytes);
+        let nonsense = !connected && link.unread_bytes > NONSENSE_BYTES;
         let left_out = self.left_out(dropped);
         let noise = self.noise(now_us, link.crc_errors);
         if silent && self.is_due(Cause::Silence, now_us) {
@@ -123,16 +122,6 @@ impl LinkWatch {
     fn silent(&mut self, now_us: u64, received_bytes: u64) -> bool {
         let began_us = *self.began_us.get_or_insert(now_us);
         received_bytes == 0 && now_us >= began_us + SILENCE_US
-    }
-
-    /// Whether many bytes arrived since the robot was last connected.
-    fn nonsense(&mut self, connected: bool, received_bytes: u64) -> bool {
-        if connected {
-            self.nonsense_from = None;
-            return false;
-        }
-        let from = *self.nonsense_from.get_or_insert(received_bytes);
-        received_bytes.saturating_sub(from) > NONSENSE_BYTES
     }
 
     /// Telemetry frames that the robot has left out since the last call.
@@ -205,6 +194,7 @@ mod tests {
         let mut watch = LinkWatch::default();
         let figures = |received_bytes, crc_errors| LinkFigures {
             received_bytes,
+            unread_bytes: received_bytes,
             crc_errors,
             ..LinkFigures::default()
         };

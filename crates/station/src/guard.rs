@@ -219,8 +219,12 @@ impl Guard {
             return Err(Denied::Token);
         }
         if access.role == Role::Controller {
+            // A page that shows nothing could not ask again, and nobody else could after it.
+            if shown.is_empty() {
+                return Err(Denied::Token);
+            }
             let used_by = self.used_by.get_or_init(|| shown.to_owned());
-            if shown.is_empty() || !bool::from(used_by.as_bytes().ct_eq(shown.as_bytes())) {
+            if !bool::from(used_by.as_bytes().ct_eq(shown.as_bytes())) {
                 return Err(Denied::Token);
             }
             let _ = self.opened.send(());
@@ -334,6 +338,8 @@ mod tests {
         let guard = guard();
         let url = guard.url();
         assert_eq!(guard.key("mine", "token=0000"), Err(Denied::Token));
+        // Who shows nothing gets nothing, and takes nothing from the page.
+        assert_eq!(guard.key("", query(&url)), Err(Denied::Token));
         let key = guard.key("mine", query(&url)).unwrap();
         for another in ["", "min", "yours"] {
             assert_eq!(guard.key(another, query(&url)), Err(Denied::Token));

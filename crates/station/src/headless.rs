@@ -2,10 +2,10 @@
 
 use crate::log_file::LogError;
 use crate::recorder;
-use rumbo_log::{Burst, LogWriter, Manifest, WriteError};
+use rumbo_log::{Burst, LogWriter, Manifest};
 use rumbo_session::headless::{self, Run};
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 /// Writes the log of a run, in place of what was there.
@@ -69,7 +69,7 @@ type Buffered = BufWriter<File>;
 fn write(
     path: &Path,
     file: File,
-    record: impl FnOnce(Buffered) -> Result<Buffered, WriteError>,
+    record: impl FnOnce(Buffered) -> io::Result<Buffered>,
 ) -> Result<(), LogError> {
     match record(BufWriter::new(file)) {
         Ok(_) => Ok(()),

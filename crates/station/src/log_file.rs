@@ -1,9 +1,14 @@
 //! Logs in files.
+//!
+//! A log that is being written is locked by its writer until that ends, however it ends: so [`mend`] knows which logs
+//! without an end nobody writes any more.
 
-use rumbo_log::{Log, ReadError, Summary, WriteError};
+use rumbo_log::{Log, ReadError, Summary};
 use std::fmt;
-use std::fs::File;
-use std::io;
+#[cfg(not(windows))]
+use std::fs::TryLockError;
+use std::fs::{File, Metadata};
+use std::io::{self, BufReader, BufWriter, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// Reads a log.
@@ -38,8 +43,110 @@ pub fn summary(path: &Path) -> Result<Summary, LogError> {
     open(path).and_then(Summary::read).map_err(of(path))
 }
 
+/// Gives a log that its writer could not complete, because it was killed, the end that it lacks: written beside it, and
+/// then moved there. Says whether it did; a log that is whole, still being written, damaged otherwise or not to be
+/// written stays as it is.
+#[must_use]
+pub fn mend(path: &Path) -> bool {
+    try_mend(path).is_ok_and(|mended| mended)
+}
+
+fn try_mend(path: &Path) -> io::Result<bool> {
+    // A link leads to the file that is to be replaced.
+    let path = std::fs::canonicalize(path)?;
+    let about = regular(&path)?;
+    if about.permissions().readonly() || ends_as_one(&path)? {
+        return Ok(false);
+    }
+    let Some(file) = unclaimed(&path)? else {
+        return Ok(false);
+    };
+    let mut part = path.clone().into_os_string();
+    part.push(format!(".{}.part", std::process::id()));
+    let made = File::create_new(&part).and_then(|into| {
+        let Some(into) = rumbo_log::mend(BufReader::new(&file), BufWriter::new(into))? else {
+            return Ok(false);
+        };
+        let into = into.into_inner()?;
+        into.set_permissions(about.permissions())?;
+        // Its age is that of what was recorded.
+        into.set_modified(about.modified()?)?;
+        into.sync_all()?;
+        std::fs::rename(&part, &path)?;
+        Ok(true)
+    });
+    if !matches!(made, Ok(true)) {
+        // It may not have been made.
+        let _ = std::fs::remove_file(&part);
+    }
+    made
+}
+
+/// Whether a file ends as a whole log ends, which is quick to see.
+fn ends_as_one(path: &Path) -> io::Result<bool> {
+    let mut end = Vec::new();
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(8)))?;
+    file.read_to_end(&mut end)?;
+    Ok(length < 8 || end == rumbo_log::MAGIC)
+}
+
+/// Says of a new log that it is being written, for as long as it is open.
+pub(crate) fn claim(file: File) -> File {
+    // Where a disk has no locks, `unclaimed` gets none either, and all logs are let be.
+    #[cfg(not(windows))]
+    let _ = file.try_lock();
+    file
+}
+
+/// Whether somebody writes a log.
+pub(crate) fn is_claimed(path: &Path) -> bool {
+    !matches!(unclaimed(path), Ok(Some(_)))
+}
+
+/// A log that nobody writes, opened so that nobody else mends it.
+#[cfg(not(windows))]
+fn unclaimed(path: &Path) -> io::Result<Option<File>> {
+    let file = File::open(path)?;
+    match file.try_lock() {
+        Ok(()) => Ok(Some(file)),
+        Err(TryLockError::WouldBlock) => Ok(None),
+        Err(TryLockError::Error(error)) => Err(error),
+    }
+}
+
+/// The same where a lock would keep others from reading: what somebody writes cannot be opened for oneself.
+#[cfg(windows)]
+fn unclaimed(path: &Path) -> io::Result<Option<File>> {
+    use std::os::windows::fs::OpenOptionsExt;
+    /// FILE_SHARE_READ and FILE_SHARE_DELETE.
+    const NOBODY_WRITES: u32 = 1 | 4;
+    /// ERROR_SHARING_VIOLATION.
+    const SHARED: i32 = 32;
+    let mut options = File::options();
+    match options.read(true).share_mode(NOBODY_WRITES).open(path) {
+        Ok(file) => Ok(Some(file)),
+        Err(error) if error.raw_os_error() == Some(SHARED) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
 fn open(path: &Path) -> Result<File, ReadError> {
+    regular(path)?;
     Ok(File::open(path)?)
+}
+
+/// What is known of a file. Pipes, sockets and devices are refused: to open one may wait for ever.
+fn regular(path: &Path) -> io::Result<Metadata> {
+    let about = std::fs::metadata(path)?;
+    match about.is_file() {
+        true => Ok(about),
+        false => Err(io::Error::new(
+            ErrorKind::InvalidInput,
+            "a folder, a pipe or a device, not a file",
+        )),
+    }
 }
 
 fn of(path: &Path) -> impl FnOnce(ReadError) -> LogError {
@@ -63,7 +170,7 @@ pub(crate) enum Problem {
     /// No thread to write it.
     NoThread(io::Error),
     /// It could not be written to its end.
-    NotWritten(WriteError),
+    NotWritten(io::Error),
     /// The disk did not take all.
     Dropped(u64),
     /// The thread that wrote it panicked.
@@ -76,7 +183,7 @@ impl LogError {
         Self { path, problem }
     }
 
-    pub(crate) fn not_written(path: &Path, error: WriteError) -> Self {
+    pub(crate) fn not_written(path: &Path, error: io::Error) -> Self {
         Self::new(path, Problem::NotWritten(error))
     }
 

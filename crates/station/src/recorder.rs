@@ -3,8 +3,8 @@
 //! Entries that a slow disk cannot keep up with are dropped and counted; a disk that fails ends the recording. Both are
 //! reported ([`Recorder::trouble`]), and the session continues.
 
-use crate::log_file::{LogError, Problem};
-use rumbo_log::{Bound, Entry, Kind, LogWriter, Manifest, WriteError};
+use crate::log_file::{LogError, Problem, claim};
+use rumbo_log::{Bound, Entry, Kind, LogWriter, Manifest};
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -113,11 +113,16 @@ impl Recorder {
             .take()
     }
 
-    fn close(&mut self) {
+    /// No more comes: its thread completes the log while others complete theirs.
+    pub(crate) fn end(&mut self) {
         if let Some(note) = self.bound.as_mut().and_then(|bound| bound.pass_to(0)) {
             self.queue(Arc::new(note));
         }
         drop(self.entries.take());
+    }
+
+    fn close(&mut self) {
+        self.end();
         if let Some(thread) = self.thread.take()
             && thread.join().is_err()
         {
@@ -147,7 +152,7 @@ pub(crate) fn file_in(folder: &Path, manifest: &Manifest) -> Result<(PathBuf, Fi
         };
         let path = folder.join(name);
         match File::create_new(&path) {
-            Ok(file) => return Ok((path, file)),
+            Ok(file) => return Ok((path, claim(file))),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => number += 1,
             Err(error) => return Err(failed(&path, error)),
         }
@@ -164,11 +169,7 @@ fn report(trouble: &Trouble, problem: Problem) {
 }
 
 /// Writes entries until the sender is gone.
-fn write(
-    file: File,
-    manifest: &Manifest,
-    entries: &Receiver<Arc<Entry>>,
-) -> Result<(), WriteError> {
+fn write(file: File, manifest: &Manifest, entries: &Receiver<Arc<Entry>>) -> io::Result<()> {
     let mut log = LogWriter::new(BufWriter::new(file), manifest)?;
     let (mut dirty, mut due) = (false, Instant::now() + FLUSH);
     loop {

@@ -10,14 +10,12 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, SystemTime};
+use std::time::SystemTime;
 
 /// Replays served at once; the oldest ends for a new one.
 const MOST_REPLAYS: usize = 4;
 /// Rows of a recording to compare, thinned out to about as many.
 const MOST_ROWS: usize = 3_000;
-/// A log without an end that was written to within this time is still being recorded, here or elsewhere.
-const STILL_WRITTEN: Duration = Duration::from_secs(30);
 
 /// Serves a replay under this name; returns its address, and what ends it when dropped.
 pub(crate) type Show = fn(String, Log) -> Result<(String, Box<dyn Send>), ServeError>;
@@ -25,8 +23,6 @@ pub(crate) type Show = fn(String, Log) -> Result<(String, Box<dyn Send>), ServeE
 /// The recordings of a folder.
 pub(crate) struct Recordings {
     folder: PathBuf,
-    /// Those being recorded, one for each robot.
-    current: Mutex<BTreeMap<String, PathBuf>>,
     show: Show,
     replays: Mutex<Vec<Box<dyn Send>>>,
 }
@@ -107,7 +103,6 @@ impl Recordings {
     pub(crate) fn new(folder: PathBuf, show: Show) -> Self {
         Self {
             folder,
-            current: Mutex::default(),
             show,
             replays: Mutex::default(),
         }
@@ -115,12 +110,6 @@ impl Recordings {
 
     pub(crate) fn folder(&self) -> &Path {
         &self.folder
-    }
-
-    /// This one is being recorded from now on, of this robot if there are several.
-    pub(crate) fn set_current(&self, robot: Option<String>, path: &Path) {
-        let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
-        current.insert(robot.unwrap_or_default(), path.to_owned());
     }
 
     /// The logs in the folder, the one written last first. A link is none of them.
@@ -141,22 +130,13 @@ impl Recordings {
         found.ok_or(RecordingError::Unknown)
     }
 
-    fn is_open(&self, path: &Path, summary: &Summary) -> bool {
-        let current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
-        let written = std::fs::metadata(path).and_then(|about| about.modified());
-        let age = written.ok().and_then(|written| written.elapsed().ok());
-        let unfinished = summary.manifest.is_some() && !summary.complete;
-        current.values().any(|open| open == path)
-            || (unfinished && age.is_none_or(|age| age < STILL_WRITTEN))
-    }
-
     pub(crate) fn list(&self) -> Result<Vec<Entry>, RecordingError> {
         let entry = |path: PathBuf| {
             let about = std::fs::metadata(&path).ok();
             let written = about.as_ref().and_then(|about| about.modified().ok());
             let since = written.and_then(|at| at.duration_since(SystemTime::UNIX_EPOCH).ok());
             let summary = log_file::summary(&path).unwrap_or_default();
-            let open = self.is_open(&path, &summary);
+            let open = is_open(&path, &summary);
             let manifest = summary.manifest;
             Entry {
                 name: stem(&path),
@@ -207,7 +187,7 @@ impl Recordings {
     pub(crate) fn delete(&self, name: &str) -> Result<(), RecordingError> {
         let path = self.find(name)?;
         let summary = log_file::summary(&path).unwrap_or_default();
-        if self.is_open(&path, &summary) {
+        if is_open(&path, &summary) {
             return Err(RecordingError::Open);
         }
         if summary.manifest.is_none() {
@@ -215,6 +195,11 @@ impl Recordings {
         }
         Ok(std::fs::remove_file(path)?)
     }
+}
+
+/// Whether it is being recorded, here or elsewhere.
+fn is_open(path: &Path, summary: &Summary) -> bool {
+    !summary.complete && log_file::is_claimed(path)
 }
 
 /// The name of a recording: that of its file without the ending.

@@ -53,10 +53,8 @@ impl Host for Around {
     /// Begins the log of the run; the one before is complete.
     fn begin_run(&mut self, manifest: Manifest) -> Option<(Level, String)> {
         let recordings = self.recordings.as_ref()?;
-        let robot = manifest.member.clone();
         Some(match recorder(recordings, manifest) {
             Ok(recorder) => {
-                recordings.set_current(robot, recorder.path());
                 let text = format!("recording to {}", recorder.path().display());
                 self.subscribers.record(recorder);
                 (Level::Info, text)
@@ -142,6 +140,13 @@ impl Running {
         for follower in &mut self.followers {
             follower.driver.publish();
         }
+        // All logs are completed at once, and before anything else is done: whoever waits for us may not wait for long.
+        let followers = self.followers.iter_mut().map(|each| &mut each.driver);
+        let drivers = std::iter::once(&mut self.driver).chain(followers);
+        let recorders = drivers.filter_map(|driver| driver.host().subscribers.recorder.take());
+        let mut recorders: Vec<Recorder> = recorders.collect();
+        recorders.iter_mut().for_each(Recorder::end);
+        drop(recorders);
         ended
     }
 

@@ -1,6 +1,6 @@
 """Reads logs as other programs do: with MCAP's own library, each message by its schema, well-known ones by Foxglove's own definitions.
 
-Arguments: logs; a log that was cut off is given as `cut:PATH`, and must be readable up to there.
+Arguments: logs.
 """
 
 import importlib
@@ -10,8 +10,7 @@ import sys
 
 from google.protobuf import json_format
 from jsonschema import Draft202012Validator
-from mcap.exceptions import McapError
-from mcap.reader import NonSeekingReader, make_reader
+from mcap.reader import make_reader
 
 # Of each topic so many messages are checked by their schema: that is slow.
 CHECKED = 200
@@ -58,24 +57,16 @@ def check(messages, topics):
 
 
 def main():
-    for argument in sys.argv[1:]:
-        path = argument.removeprefix("cut:")
+    for path in sys.argv[1:]:
         topics = {}
         with open(path, "rb") as file:
-            if path == argument:
-                reader = make_reader(file, validate_crcs=True)
-                summary = reader.get_summary()
-                if summary is None or summary.statistics is None or not summary.chunk_indexes:
-                    raise ValueError(f"{path}: no index")
-                check(reader.iter_messages(), topics)
-                if sum(topics.values()) != summary.statistics.message_count:
-                    raise ValueError(f"{path}: the index counts other messages")
-            else:
-                try:
-                    check(NonSeekingReader(file).iter_messages(log_time_order=False), topics)
-                except (McapError, EOFError, ValueError) as end:
-                    if not topics or isinstance(end, ValueError) and not isinstance(end, McapError):
-                        raise
+            reader = make_reader(file, validate_crcs=True)
+            summary = reader.get_summary()
+            if summary is None or summary.statistics is None or not summary.chunk_indexes:
+                raise ValueError(f"{path}: no index")
+            check(reader.iter_messages(), topics)
+            if sum(topics.values()) != summary.statistics.message_count:
+                raise ValueError(f"{path}: the index counts other messages")
         if not topics:
             raise ValueError(f"{path}: no message")
         print(f"{path}: " + ", ".join(f"{topic} {count}" for topic, count in sorted(topics.items())))

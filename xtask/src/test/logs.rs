@@ -44,7 +44,7 @@ pub(super) fn check(project: &Project) -> Result<(), Stop> {
         .arg(&recording)
         .arg("--out")
         .arg(&imported))?;
-    let mut logs = vec![
+    let logs = [
         folder.join("mode1-1.mcap"),
         folder.join("mode8-lane-1.mcap"),
         imported,
@@ -53,12 +53,12 @@ pub(super) fn check(project: &Project) -> Result<(), Stop> {
     let mut check = project.command(python);
     check
         .arg("xtask/src/test/check_log.py")
-        .args(logs.drain(..));
-    check.arg(format!("cut:{}", killed.display()));
+        .args(logs)
+        .arg(killed);
     Ok(run(&mut check)?)
 }
 
-/// The log of a session that was killed.
+/// The log of a session that was killed, as the next command leaves it.
 fn killed_session(project: &Project, rumbo: &Path, folder: &Path) -> Result<PathBuf, Stop> {
     let sessions = folder.join("sessions");
     let mut start = project.command(rumbo);
@@ -66,6 +66,9 @@ fn killed_session(project: &Project, rumbo: &Path, folder: &Path) -> Result<Path
     let lab = Lab::start_in(start, &sessions)?;
     std::thread::sleep(Duration::from_secs(3));
     drop(lab);
+    let mut list = project.command(rumbo);
+    list.args(["list", "logs"]).env("RUMBO_LOGS", &sessions);
+    run(list.stdout(Stdio::null()))?;
     let mut files = std::fs::read_dir(&sessions).map_err(|error| error.to_string())?;
     let file = files
         .next()

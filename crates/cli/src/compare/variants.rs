@@ -69,12 +69,13 @@ pub(super) fn compare(args: &CompareArgs, scenario: &str) -> Result<(), Failure>
     set_threads(args.threads)?;
     let progress = progress_bar(variants.len() * seeds.len());
     let asked = interrupt::asked();
-    let runs = run_variants(&variants, &seeds, || {
+    let go_on = || match asked.load(Ordering::Relaxed) {
+        true => Err(Failure::Interrupted),
+        false => Ok(()),
+    };
+    let runs = run_variants(&variants, &seeds, go_on, || {
         progress.inc(1);
-        match asked.load(Ordering::Relaxed) {
-            true => Err(Failure::Interrupted),
-            false => Ok(()),
-        }
+        go_on()
     });
     progress.finish_and_clear();
     let runs = runs?;

@@ -4,13 +4,13 @@
 //! robot takes its time; a simulated one takes none.
 
 use crate::failure::Failure;
-use rumbo_log::{Entry, Level, LogWriter, Manifest, Row, WriteError};
+use rumbo_log::{Entry, Level, LogWriter, Manifest, Row};
 use rumbo_session::{Driver, Event, Extras, Host, Order, SLICE_US, Target};
 use rumbo_station::headless::begin_log;
 use rumbo_station::now_utc;
 use rumbo_wire::Command;
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -49,10 +49,7 @@ struct Recording {
 }
 
 impl Recording {
-    fn write(
-        &mut self,
-        write: impl FnOnce(&mut LogWriter<BufWriter<File>>) -> Result<(), WriteError>,
-    ) {
+    fn write(&mut self, write: impl FnOnce(&mut LogWriter<BufWriter<File>>) -> io::Result<()>) {
         if let Some((path, log)) = &mut self.log
             && let Err(error) = write(log)
         {

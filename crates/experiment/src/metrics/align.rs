@@ -90,7 +90,7 @@ pub(super) fn aligning(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Me
         put("settling_s", response.settling_s);
         put("within_2cm_s", within.settling_s);
         put("overshoot_m", response.overshoot);
-        put("steady_error_m", response.steady_error);
+        put("steady_error_m", response.resting_error());
         put("angle_rad", angle_rad);
         put("rms_m", response.rms);
         put("ripple_m", response.ripple);

@@ -2,7 +2,9 @@
 //!
 //! A step lasts from the command that sets the reference (or arms the robot) until the next one. *Settling* is the time
 //! after which the signal stays within the band; the band is 5 % of the step for distances, 3.2 rpm (the resolution of
-//! the original) for speeds.
+//! the original) for speeds. A distance *rests* if at the end of its step it varies by no more than the band has room
+//! for, wherever that is: what swings about the reference has a mean there, and no steady error. Wheels turn, and how
+//! evenly, their ripple says.
 
 use super::Metrics;
 use crate::files::{Setup, TimedCommand};
@@ -84,7 +86,10 @@ pub(super) struct Response {
     pub(super) settling_s: f64,
     pub(super) rise_s: f64,
     pub(super) overshoot: f64,
+    /// Of the mean.
     pub(super) steady_error: f64,
+    /// It varies little there.
+    pub(super) rests: bool,
     pub(super) rms: f64,
     pub(super) ripple: f64,
 }
@@ -96,9 +101,18 @@ impl Response {
         rise_s: f64::NAN,
         overshoot: f64::NAN,
         steady_error: f64::NAN,
+        rests: false,
         rms: f64::NAN,
         ripple: f64::NAN,
     };
+
+    /// The steady error of what rests.
+    pub(super) fn resting_error(&self) -> f64 {
+        match self.rests {
+            true => self.steady_error,
+            false => f64::NAN,
+        }
+    }
 }
 
 /// Measures `signal` over the samples of a step, from `start` to `reference`. `NaN` where it never arrives: a signal
@@ -133,6 +147,10 @@ fn response(
     let last_outside = samples.iter().rev().find(|sample| !within(sample));
     let settled = samples.last().is_some_and(within);
     let steady = &samples[(samples.len() as f64 * (1.0 - STEADY_SHARE)) as usize..];
+    let (least, most) = steady.iter().map(&signal).fold(
+        (f64::INFINITY, f64::NEG_INFINITY),
+        |(least, most), value| (least.min(value), most.max(value)),
+    );
     let count = steady.len() as f64;
     let mean = steady.iter().map(&signal).sum::<f64>() / count;
     let variance = steady
@@ -163,6 +181,7 @@ fn response(
                 .fold(0.0, f64::max),
         ),
         steady_error: (mean - reference).abs(),
+        rests: most - least <= 2.0 * band,
         rms: square.sqrt(),
         ripple: if_so(arrives, variance.sqrt()),
     }
@@ -194,7 +213,7 @@ pub(super) fn distance_steps(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &
         put("settling_s", response.settling_s);
         put("rise_s", response.rise_s);
         put("overshoot_m", response.overshoot);
-        put("steady_error_m", response.steady_error);
+        put("steady_error_m", response.resting_error());
         put("rms_m", response.rms);
         put("ripple_m", response.ripple);
     }
@@ -302,7 +321,7 @@ mod tests {
             response.settling_s,
             response.rise_s,
             response.overshoot,
-            response.steady_error,
+            response.resting_error(),
             response.rms,
             response.ripple,
         ];
@@ -320,7 +339,22 @@ mod tests {
             response.ripple,
         ];
         assert!(figures.iter().all(|figure| figure.is_nan()), "{figures:?}");
-        assert!((response.steady_error - 0.7).abs() < 1e-9);
+        assert!((response.resting_error() - 0.7).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_swings_about_the_reference_or_still_moves_has_no_steady_error() {
+        let steady_error = |at_m: f64, swing_m: f64, moves_m_s: f64| {
+            let samples = samples(|t| at_m + moves_m_s * t + swing_m * (9.0 * t).sin());
+            response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| sample.range_m[2]).resting_error()
+        };
+        for swing_m in [0.04, 0.06, 0.12] {
+            assert!(steady_error(0.3, swing_m, 0.0).is_nan());
+        }
+        assert!(steady_error(1.0, 0.0, -0.2).is_nan());
+        // Within the band all the time, and at rest outside it.
+        assert!(steady_error(0.3, 0.034, 0.0) < 0.01);
+        assert!((steady_error(0.4, 0.01, 0.0) - 0.1).abs() < 0.005);
     }
 
     #[test]

@@ -93,7 +93,7 @@ pub(super) fn following(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut M
             |name: &str, value| metrics.insert(format!("step{}.{name}", index + 1), value);
         put("within_2cm_s", response.settling_s);
         put("overshoot_m", response.overshoot);
-        put("steady_error_m", response.steady_error);
+        put("steady_error_m", response.resting_error());
         put("rms_m", response.rms);
         put("ripple_m", response.ripple);
     }

@@ -174,12 +174,13 @@ impl Plan {
     /// are there.
     ///
     /// # Errors
-    /// The first error, of a setup or of `handle`; no further run is begun.
+    /// The first error, of a setup, of `go_on`, which is asked in between, or of `handle`; no further run is begun.
     pub fn run<E: From<FileError>>(
         &self,
         setup: &Setup,
         first: usize,
         threads: usize,
+        go_on: impl Fn() -> Result<(), E>,
         mut handle: impl FnMut(Row) -> Result<(), E>,
     ) -> Result<(), E> {
         let job = |index: usize| {
@@ -187,7 +188,8 @@ impl Plan {
             Ok((Cow::Owned(self.setup(setup, point)?), seed))
         };
         let row = |index: usize, result: RunResult| Row::of(self.job(first + index).0, &result);
-        run_each(threads, self.len() - first, job, row, |_, row| handle(row))
+        let count = self.len() - first;
+        run_each(threads, count, job, row, go_on, |_, row| handle(row))
     }
 }
 

@@ -82,10 +82,16 @@ fn each_run_is_that_of_its_point_and_seed_and_can_go_on_anywhere() {
     let plan = Plan::new(axes, Design::Grid, 3, 2).unwrap();
     let rows = |first: usize| {
         let mut rows = Vec::new();
-        plan.run(&setup, first, 2, |row| {
-            rows.push(row);
-            Ok::<(), FileError>(())
-        })
+        plan.run(
+            &setup,
+            first,
+            2,
+            || Ok(()),
+            |row| {
+                rows.push(row);
+                Ok::<(), FileError>(())
+            },
+        )
         .unwrap();
         rows
     };

@@ -133,16 +133,18 @@ impl Plan {
         let found = search.run(|share| progress(share * budget / all), goes_on)?;
         let (now, tuned) = (self.setup.clone(), search.setup_of(&found.values)?);
         let mut done = budget;
+        let go_on = || match goes_on() {
+            true => Ok(()),
+            false => Err(FileError::from(TuneError::Ended)),
+        };
         let runs = run_variants(
             &[("now".to_owned(), now), ("tuned".to_owned(), tuned)],
             &self.held_out,
+            go_on,
             || {
                 done += 1.0;
                 progress(done / all);
-                match goes_on() {
-                    true => Ok(()),
-                    false => Err(FileError::from(TuneError::Ended)),
-                }
+                go_on()
             },
         )?;
         let runs = <[Variant; 2]>::try_from(runs).map_err(|_| TuneError::Ended)?;

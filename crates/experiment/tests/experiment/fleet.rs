@@ -105,10 +105,15 @@ fn the_same_on_any_number_of_threads() {
     let on = |threads: usize| {
         let jobs: Vec<_> = (1..5).map(|seed| (&setup, seed)).collect();
         let mut results: Vec<RunResult> = Vec::new();
-        run_all_on::<FileError>(threads, &jobs, |_, result| {
-            results.push(result);
-            Ok(())
-        })
+        run_all_on::<FileError>(
+            threads,
+            &jobs,
+            || Ok(()),
+            |_, result| {
+                results.push(result);
+                Ok(())
+            },
+        )
         .unwrap();
         let robots = results.into_iter().flat_map(|result| result.robots);
         robots.map(|robot| robot.trace).collect::<Vec<_>>()

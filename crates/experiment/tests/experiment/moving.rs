@@ -28,10 +28,15 @@ fn setup(scenario: &str, program: NativeProgram) -> Setup {
 fn runs_on(threads: usize, setup: &Setup, seeds: std::ops::Range<u64>) -> Vec<RunResult> {
     let jobs: Vec<_> = seeds.map(|seed| (setup, seed)).collect();
     let mut results = Vec::new();
-    run_all_on::<rumbo_experiment::files::FileError>(threads, &jobs, |_, result| {
-        results.push(result);
-        Ok(())
-    })
+    run_all_on::<rumbo_experiment::files::FileError>(
+        threads,
+        &jobs,
+        || Ok(()),
+        |_, result| {
+            results.push(result);
+            Ok(())
+        },
+    )
     .unwrap();
     results
 }

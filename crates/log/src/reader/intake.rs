@@ -35,8 +35,8 @@ const LONGEST_S: f64 = 604_800.0;
 const LARGEST: usize = 256 << 20;
 /// The topic of a log made by `rumbo import`.
 const IMPORTED: &str = "telemetry";
-/// Why a log ends of which nothing says that it does.
-const NO_END: &str = "the log has no end: its writer was stopped";
+/// Why a log ends of which nothing says that it does, or of which `mend` says so.
+pub(super) const NO_END: &str = "its writer was stopped";
 
 /// Why a log is not read to its end.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -281,16 +281,16 @@ impl Intake {
                 log.scene = scene;
             }
             Topic::FromRobot | Topic::ToRobot => {
-                let Bytes { data } = serde_json::from_slice(data)?;
+                let Bytes { data, pieces } = serde_json::from_slice(data)?;
                 let to_robot = topic == Topic::ToRobot;
                 if to_robot {
                     log.order.push(Place::Link(log.link.len()));
                 }
-                log.link.push(Burst {
-                    t_us,
-                    to_robot,
-                    bytes: decoded(&data)?,
-                });
+                self.filled += size_of::<Burst>() * pieces.len();
+                let bursts = bursts(to_robot, t_us, decoded(&data)?, &pieces);
+                log.link.extend(bursts.ok_or_else(|| {
+                    serde::de::Error::custom("its pieces are not those of its data")
+                })?);
             }
             Topic::Console => {
                 let Console {
@@ -371,6 +371,9 @@ struct Around {
 struct Bytes<'a> {
     #[serde(borrow)]
     data: Cow<'a, str>,
+    /// In which it came: how long after the one before \[us\], and how many bytes.
+    #[serde(default)]
+    pieces: Vec<(u64, usize)>,
 }
 
 #[derive(Deserialize)]
@@ -379,6 +382,32 @@ struct Console<'a> {
     to_chip: bool,
     #[serde(borrow)]
     data: Cow<'a, str>,
+}
+
+/// Each piece of what crossed the link; `None` if they are not those of these bytes.
+fn bursts(
+    to_robot: bool,
+    mut t_us: u64,
+    bytes: Vec<u8>,
+    pieces: &[(u64, usize)],
+) -> Option<Vec<Burst>> {
+    let burst = |t_us, bytes| Burst {
+        t_us,
+        to_robot,
+        bytes,
+    };
+    if pieces.is_empty() {
+        return Some(vec![burst(t_us, bytes)]);
+    }
+    let mut rest = &bytes[..];
+    let mut bursts = Vec::with_capacity(pieces.len());
+    for (after_us, length) in pieces {
+        t_us = t_us.checked_add(*after_us)?;
+        let (piece, next) = rest.split_at_checked(*length)?;
+        bursts.push(burst(t_us, piece.to_vec()));
+        rest = next;
+    }
+    (rest.is_empty() && t_us as f64 <= LONGEST_S * 1e6).then_some(bursts)
 }
 
 fn decoded(data: &str) -> serde_json::Result<Vec<u8>> {

@@ -1,6 +1,7 @@
 //! What a log says of itself, and whether that can be relied on.
 
-use crate::digest::{Digest, Fields, MANIFEST, OUTCOME};
+use super::intake::NO_END;
+use crate::digest::{CUT, Digest, Fields, MANIFEST, OUTCOME};
 use crate::log::Log;
 use crate::manifest::{Manifest, Outcome};
 use std::collections::BTreeMap;
@@ -32,6 +33,9 @@ impl Metadata {
         log.manifest = manifest.and_then(|fields| Manifest::from_metadata(&fields));
         if let Some(manifest) = &mut log.manifest {
             manifest.files = std::mem::take(&mut self.files);
+        }
+        if self.records.contains_key(CUT) && log.cut.is_none() {
+            log.cut = Some(NO_END.to_owned());
         }
         let outcome = self.sound(OUTCOME, log, verified);
         log.outcome = outcome.map(|fields| Outcome::from_metadata(&fields));

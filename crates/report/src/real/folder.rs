@@ -44,9 +44,12 @@ pub fn read(
             file: file.clone(),
             why,
         };
-        let found = match is_a(&path, "mcap") {
-            true => log(&path),
-            false => Ok(csv_of(&path)?),
+        let found = match (path.is_file(), is_a(&path, "mcap")) {
+            (true, true) => log(&path),
+            (true, false) => Ok(csv_of(&path)?),
+            // A pipe or a device: to open one may wait for ever.
+            (false, true) => Err(NotShown::NoLog),
+            (false, false) => Err(NotShown::Header),
         };
         let FromLog { csv: text, ours } = match found {
             Ok(found) => found,

@@ -70,6 +70,8 @@ pub struct LinkFigures {
     pub telemetry_hz: f64,
     /// Bytes from the robot since the port was opened.
     pub received_bytes: u64,
+    /// Those of them that came after the last frame or row of text.
+    pub unread_bytes: u64,
     /// Frames from the robot that failed the CRC, wrapping.
     pub crc_errors: u16,
     /// Frames from the robot missing by their sequence numbers, wrapping.

@@ -13,7 +13,9 @@ impl RobotClient {
         self.down.add(bytes.len(), now_us);
         self.received_bytes += bytes.len() as u64;
         for byte in bytes {
+            self.unread_bytes += 1;
             if let Some(row) = self.terminal.receive(*byte, (now_us / 1_000) as i64) {
+                self.unread_bytes = 0;
                 self.receive_row(row, now_us, events);
             }
             let body = match self.decoder.push(*byte) {
@@ -21,6 +23,7 @@ impl RobotClient {
                 // A robot addressed in binary answers in binary; a line is left from before.
                 Some(Received::Line(_)) | None => continue,
             };
+            self.unread_bytes = 0;
             let errors = self.decoder.crc_errors();
             self.cut_off.get_or_insert(errors.min(1));
             match FromRobot::from_body(&body) {

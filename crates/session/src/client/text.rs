@@ -38,7 +38,7 @@ impl RobotClient {
     /// The port is gone, and the robot with it. Another one may be there when it is back: its protocol is detected
     /// then, unless it was given.
     pub fn port_is_gone(&mut self) {
-        self.received_bytes = 0;
+        (self.received_bytes, self.unread_bytes) = (0, 0);
         self.terminal.forget();
         if self.undecided {
             self.text = false;

@@ -59,7 +59,7 @@ fn a_device_that_never_ends_is_no_file_of_ours() {
             &["identify", "/dev/zero", "--check", "memoria"],
             "longer than",
         ),
-        (&["export", "/dev/zero"], "no MCAP log"),
+        (&["export", "/dev/zero"], "a pipe or a device"),
     ] {
         let output = rumbo_in(folder, arguments);
         let message = stderr(&output);
