@@ -3,17 +3,16 @@
 //! The file only grows: killed at any moment, all chunks but the last are whole. What its end says of them, the index,
 //! is collected on the way.
 
-use crate::compress::{self, BLOCK};
 use crc::{Crc, Digest, Table};
-use lz4_flex::frame::FrameDecoder;
+use lz4_flex::frame::{FrameDecoder, FrameEncoder};
 use mcap::MAGIC;
 use mcap::records::{ChunkHeader, op};
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 
 /// A chunk is closed before it becomes longer than this, before compression \[bytes\]: what a damaged or cut one takes
-/// with it. It is compressed as one block.
-const CHUNK: usize = BLOCK;
+/// with it. It is compressed as one block of LZ4.
+const CHUNK: usize = 64 << 10;
 /// A message without its data, and the head before it \[bytes\].
 const MESSAGE: usize = 9 + 22;
 /// The checksum that MCAP uses everywhere.
@@ -274,7 +273,9 @@ impl<W: Write> Container<W> {
         if self.chunk.records.is_empty() {
             return Ok(());
         }
-        let frame = compress::lz4(&self.chunk.records);
+        let mut frame = FrameEncoder::new(Vec::new());
+        frame.write_all(&self.chunk.records)?;
+        let frame = frame.finish()?;
         let (from_ns, until_ns) = self.chunk.times.unwrap_or_default();
         let body = Body::default().u64(from_ns).u64(until_ns);
         let body = body.u64(self.chunk.records.len() as u64);

@@ -15,6 +15,9 @@ pub(crate) const OUTCOME: &str = "outcome";
 /// Name of the metadata, empty, that says that the recording ended early.
 pub(crate) const CUT: &str = "cut";
 
+/// Why a log ends of which nothing says that it does, or of which `mend` says so.
+pub(crate) const NO_END: &str = "its writer was stopped";
+
 /// Keys and values of a metadata record.
 pub(crate) type Fields = BTreeMap<String, String>;
 

@@ -23,7 +23,6 @@
 //! Works on bytes: which file they are in, when they are flushed and who waits for the disk is the caller's business.
 
 mod bound;
-mod compress;
 mod container;
 mod digest;
 mod entry;

@@ -7,7 +7,7 @@
 use super::metadata::Metadata;
 use super::reading_json::Readings;
 use super::row_json::Signals;
-use crate::digest::Digest;
+use crate::digest::{Digest, NO_END};
 use crate::entry::{Burst, Said};
 use crate::event::{Level, LoggedEvent};
 use crate::log::{Log, Place};
@@ -35,8 +35,6 @@ const LONGEST_S: f64 = 604_800.0;
 const LARGEST: usize = 256 << 20;
 /// The topic of a log made by `rumbo import`.
 const IMPORTED: &str = "telemetry";
-/// Why a log ends of which nothing says that it does, or of which `mend` says so.
-pub(super) const NO_END: &str = "its writer was stopped";
 
 /// Why a log is not read to its end.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,7 +1,6 @@
 //! What a log says of itself, and whether that can be relied on.
 
-use super::intake::NO_END;
-use crate::digest::{CUT, Digest, Fields, MANIFEST, OUTCOME};
+use crate::digest::{CUT, Digest, Fields, MANIFEST, NO_END, OUTCOME};
 use crate::log::Log;
 use crate::manifest::{Manifest, Outcome};
 use std::collections::BTreeMap;
