@@ -89,7 +89,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let done = progress.position();
     progress.finish_and_clear();
     // Of the scenario whose runs were interrupted, those that are over.
-    if let (false, Some((setup, _))) = (results.is_empty(), jobs.get(done as usize - 1)) {
+    let last = (done as usize)
+        .checked_sub(1)
+        .and_then(|last| jobs.get(last));
+    if let (false, Some((setup, _))) = (results.is_empty(), last) {
         report(setup, &results)?;
     }
     kept.report();
