@@ -132,7 +132,7 @@ fn the_baseline_is_refused_where_it_has_no_program() {
     ] {
         let error = run(&baseline(scenario), 1).unwrap_err().to_string();
         assert!(
-            error.contains(mode) && error.contains("--program"),
+            error.contains(mode) && error.contains("leave out the program baseline"),
             "{error}"
         );
     }
