@@ -54,7 +54,7 @@ class Batch:
     with ``driver="caller"``. Ctrl-C ends it at once.
 
     Batches can be pickled and copied. A copy goes on by itself. A pickle holds the setup with its files, the seeds and
-    what was done to each robot, which is done again where it is loaded: that takes what it took, some 0.1 ms of one
+    what was done to each robot, which is done again where it is loaded: that takes what it took, 0.1 to 0.3 ms of one
     core for each second of a robot's time, and its making. It is read by the same version and model only.
 
     Args:

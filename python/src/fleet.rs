@@ -1,7 +1,7 @@
 //! The robots of a scenario with several, in one world, stepped from Python: for `rumbo.Fleet` and the parallel environments.
 
 use crate::batch::{MOST_SPEED, beyond, checked, corners, hold, in_strides, rows, stride};
-use crate::guard::{detached, exception};
+use crate::guard::{call, detached, exception};
 use crate::setup::Setup;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2};
 use pyo3::exceptions::PyValueError;
@@ -13,7 +13,7 @@ use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Driver, OBSERVED, TRUE, Team};
 use rumbo_experiment::files::FileError;
 use rumbo_wire::Command;
-use std::sync::{Mutex, MutexGuard};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Robots in one world.
 #[pyclass(frozen, module = "rumbo._rumbo")]
@@ -63,11 +63,22 @@ impl Fleet {
             true => Driver::Caller,
             false => Driver::Scenario,
         };
+        let interrupted = Mutex::new(None);
+        let made = || {
+            call(None, 0.0).map_err(|error| {
+                *interrupted.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                FileError::Setting("interrupted".to_owned())
+            })
+        };
         let team = detached(py, || {
-            let mut team = Team::new(files, driver, seed)?;
+            let mut team = Team::made(files, driver, seed, &made)?;
             team.relive(history.as_deref().unwrap_or_default())?;
             Ok(team)
         })?;
+        let interrupted = interrupted.into_inner();
+        if let Some(error) = interrupted.unwrap_or_else(PoisonError::into_inner) {
+            return Err(error);
+        }
         Ok(Self {
             team: Mutex::new(team.map_err(|error: FileError| exception(&error))?),
             setup,

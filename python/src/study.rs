@@ -1,6 +1,6 @@
 //! Sweeps, and the differences of variants pair by pair.
 
-use crate::guard::{detached, exception, threads};
+use crate::guard::{call, detached, threads};
 use crate::run::Stop;
 use crate::setup::Setup;
 use pyo3::exceptions::PyValueError;
@@ -13,6 +13,9 @@ use rumbo_experiment::sweep::{Axis, Design, Plan};
 use std::fmt::Display;
 use std::sync::atomic::AtomicBool;
 
+/// Points that are checked between two looks for Ctrl-C: some 10 ms.
+const LOOK_POINTS: usize = 100;
+
 pub(crate) fn refuse(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
@@ -21,7 +24,9 @@ pub(crate) fn refuse(error: impl Display) -> PyErr {
 /// unless it is a grid.
 #[pyfunction]
 #[pyo3(signature = (setup, axes, *, design, count, seed, runs))]
+#[allow(clippy::too_many_arguments, reason = "keywords of one Python call")]
 pub(crate) fn plan(
+    py: Python<'_>,
     setup: &Setup,
     axes: Vec<String>,
     design: &str,
@@ -42,8 +47,16 @@ pub(crate) fn plan(
         }
     };
     let plan = Plan::new(axes, design, seed, runs).map_err(refuse)?;
-    plan.check(&setup.files)
-        .map_err(|error| exception(&error))?;
+    let checked = detached(py, || {
+        for point in 0..plan.points.len() {
+            plan.setup(&setup.files, point)?;
+            if point.is_multiple_of(LOOK_POINTS) {
+                call(None, 0.0).map_err(Stop::Python)?;
+            }
+        }
+        Ok(())
+    })?;
+    checked.map_err(Stop::into_exception)?;
     Ok(plan.points)
 }
 

@@ -270,12 +270,23 @@ def test_a_pickle_of_another_version_is_refused() -> None:
 
 
 def interrupted(act: Any) -> None:
-    """Control-C while something is done."""
-    timer = threading.Timer(0.3, _thread.interrupt_main)
-    timer.start()
-    with pytest.raises(KeyboardInterrupt):
-        act()
-    timer.join()
+    """Control-C while something is done, and again later: Python ignores one in a weak reference's callback."""
+    ended = threading.Event()
+
+    def press() -> None:
+        wait_s = 0.3
+        while not ended.wait(wait_s):
+            _thread.interrupt_main()
+            wait_s = 3.0
+
+    presser = threading.Thread(target=press)
+    presser.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            act()
+    finally:
+        ended.set()
+        presser.join()
 
 
 def test_control_c_ends_the_driving_of_robots_with_all_at_one_time() -> None:
@@ -296,6 +307,22 @@ def test_control_c_ends_the_making_of_robots() -> None:
     made = rumbo.Batch("mode5", seeds=range(20_000))
     interrupted(lambda: [made.renew(range(20_000), range(20_000, 40_000)) for _ in range(100)])
     assert len(batch) == 20 and len(made) == 20_000
+    many = {
+        "title": "Many on a floor",
+        "robot": "memoria",
+        "rig": "final",
+        "world": {"title": "A floor", "arena": {"from_m": [-9, -9], "to_m": [9, 9], "walled": True}},
+        "mode": "mission",
+        "duration_s": 9.0,
+        "calibrated": True,
+        "fleet": [{"name": f"r{n}", "start": {"x_m": n % 8 - 4.0, "y_m": n // 8 - 2.0}} for n in range(32)],
+    }
+    interrupted(lambda: [rumbo.Fleet(many) for _ in range(20)])
+
+
+def test_control_c_ends_the_check_of_a_sweep_s_points() -> None:
+    axes = {"front_kp": "1:20", "kv": "0.01:0.1"}
+    interrupted(lambda: rumbo.sweep("mode8-random", axes, design="random", points=200_000, seeds=1))
 
 
 @pytest.mark.parametrize("index", [-1, 2, 2**70])

@@ -447,9 +447,8 @@ impl Plant {
     #[must_use]
     pub fn truth(&self, state: &State) -> Truth {
         let range_m = SonarId::ALL.map(|sonar| {
-            let view = self.view(state, sonar)?;
-            let range_m = self.sonar.true_range_m(&self.world, state.now_us, &view);
-            Some(range_m.unwrap_or(f64::INFINITY))
+            self.view(state, sonar)
+                .map(|view| self.sonar.true_range_m(&self.world, state.now_us, &view))
         });
         let [left, right] = &state.drivetrain.wheels;
         Truth {

@@ -147,10 +147,11 @@ impl Sonar {
         }
     }
 
-    /// Range from the transducer at an instant, without any noise; `None` when nothing returns an echo.
+    /// Range from the transducer at an instant, without any noise; infinite when nothing returns an echo.
     #[must_use]
-    pub fn true_range_m(&self, world: &World, now_us: u64, view: &View) -> Option<f64> {
-        self.heard_m(world, now_us, view, self.params.incidence_limit_rad)
+    pub fn true_range_m(&self, world: &World, now_us: u64, view: &View) -> f64 {
+        let heard_m = self.heard_m(world, now_us, view, self.params.incidence_limit_rad);
+        heard_m.unwrap_or(f64::INFINITY)
     }
 
     fn heard_m(

@@ -36,29 +36,32 @@ pub struct Sample {
     pub touching: bool,
 }
 
-/// The same bits: a range that is not a number equals itself.
+/// Two unknown ranges are equal.
 impl PartialEq for Sample {
     fn eq(&self, other: &Self) -> bool {
-        let numbers = |sample: &Self| {
-            let [left_rad_s, right_rad_s] = sample.wheel_rad_s;
-            let [left_m, right_m, front_m] = sample.range_m;
-            [
-                sample.t_s,
-                sample.x_m,
-                sample.y_m,
-                sample.heading_rad,
-                left_rad_s,
-                right_rad_s,
-                left_m,
-                right_m,
-                front_m,
-                sample.servo_rad,
-                sample.battery_v,
-            ]
-            .map(f64::to_bits)
+        let whole = |sample: &Self| {
+            let Self {
+                t_s,
+                x_m,
+                y_m,
+                heading_rad,
+                wheel_rad_s,
+                duty,
+                range_m,
+                servo_rad,
+                battery_v,
+                touching,
+            } = *sample;
+            let numbers = [t_s, x_m, y_m, heading_rad, servo_rad, battery_v];
+            (
+                numbers,
+                wheel_rad_s,
+                range_m.map(f64::to_bits),
+                duty,
+                touching,
+            )
         };
-        numbers(self) == numbers(other)
-            && (self.duty, self.touching) == (other.duty, other.touching)
+        whole(self) == whole(other)
     }
 }
 

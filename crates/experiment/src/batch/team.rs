@@ -1,5 +1,6 @@
 //! The robots of a scenario with several, in one world, stepped by a caller.
 
+use super::Made;
 use super::history::{Act, History};
 use super::pilot::{Driver, Pilot, TRUE};
 use crate::files::{FileError, Setup};
@@ -31,6 +32,19 @@ impl Team {
         driver: impl Fn(usize) -> Driver,
         seed: u64,
     ) -> Result<Self, FileError> {
+        Self::made(setup, driver, seed, &|| Ok(()))
+    }
+
+    /// The same; `made` is called after each robot is made, and its error ends it.
+    ///
+    /// # Errors
+    /// As [`Team::new`], and that of `made`.
+    pub fn made(
+        setup: &Setup,
+        driver: impl Fn(usize) -> Driver,
+        seed: u64,
+        made: Made<'_>,
+    ) -> Result<Self, FileError> {
         let (mut sims, mut pilots) = (Vec::new(), Vec::new());
         for (index, robot) in setup.robots().iter().enumerate() {
             let robot = Arc::new(robot.clone());
@@ -38,6 +52,7 @@ impl Team {
             pilot.seek_first_goal(&robot);
             sims.push(sim);
             pilots.push(pilot);
+            made()?;
         }
         let fleet = Fleet::new(sims).map_err(|error| {
             FileError::Setting(format!("scenario {}: {error}", setup.scenario.name))

@@ -1,4 +1,4 @@
-// Pins 20 and 21 with nothing connected. A sonar triggered by port writes around delayMicroseconds(10): 9.5 us. Nobody feeds the watchdog.
+// Pins 20 and 21 with nothing connected. A sonar triggered by port writes around delayMicroseconds(10): 9.1 us. Nobody feeds the watchdog.
 
 #include <avr/wdt.h>
 
