@@ -10,6 +10,8 @@
  */
 import { IDENTITY, compose, inverse, near, place, wrapped } from './geometry.js';
 import { Readings } from './readings.js';
+import { ROW } from './row.js';
+import { FACTORS } from './signals.js';
 import { Table } from './table.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
 
@@ -37,13 +39,12 @@ function less(a, b) {
   return a === null || b === null ? null : a - b;
 }
 
-const SLOW = [
-  'reference_cm', 'range_left_cm', 'range_right_cm', 'range_front_cm',
-  'true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'left_pwm', 'right_pwm',
-  'range_difference_cm', 'servo_deg', 'heading_deg', 'heading_ref_deg', 'heading_error_deg', 'true_heading_deg', 'x_m', 'y_m', 'goal_x_m', 'goal_y_m', 'true_x_m', 'true_y_m',
-  'ghost_x_m', 'ghost_y_m', 'ghost_heading_deg', 'ghost_range_left_cm', 'ghost_range_right_cm', 'ghost_range_front_cm', 'x_deviation_m', 'y_deviation_m', 'heading_deviation_deg',
-];
-const FAST = ['left_rpm', 'right_rpm', 'left_ref_rpm', 'right_ref_rpm', 'left_error_rpm', 'right_error_rpm', 'true_left_rpm', 'true_right_rpm', 'ghost_left_rpm', 'ghost_right_rpm'];
+/** Signals of a frame that are plotted as seen from where the run began. */
+const PLACED = /^(true_|ghost_)?(x_m|y_m|heading_rad|heading_ref_rad)$/;
+const SPEEDS = ROW.filter(({ unit }) => unit === 'rpm');
+const OTHERS = ROW.filter(({ unit, column }) => unit !== 'rpm' && !PLACED.test(column));
+const SLOW = [...ROW.filter(({ unit }) => unit !== 'rpm').map(({ name }) => name), 'reference_cm', 'range_difference_cm', 'heading_error_deg', 'goal_x_m', 'goal_y_m'];
+const FAST = [...SPEEDS.map(({ name }) => name), 'left_error_rpm', 'right_error_rpm'];
 
 /** A heading is plotted on through 180 degrees up to here [deg]. */
 const FARTHEST_DEG = 315;
@@ -208,45 +209,24 @@ export class Store {
     const [left, right] = [number(cell('reference_left')), number(cell('reference_right'))];
     const goal = toPlace && left !== null && right !== null ? place(frame, [left, right]) : null;
 
+    /** Signals as plotted, from these columns. @param {typeof ROW} signals @param {(column: string) => string} [of] */
+    const plotted = (signals, of = (column) => column) => Object.fromEntries(signals.map(({ name, column, unit }) => [name, scaled(cell(of(column)), FACTORS[unit] ?? 1)]));
+    /** @param {string} column */
+    const before = (column) => column.replace('_rad_s', '_before_rad_s');
+
     this.slow.push(t_s, {
+      ...plotted(OTHERS),
       reference_cm: reference?.kind === 'distance' && cell('reference_left') !== 0 ? cm('reference_left') : null,
-      range_left_cm: cm('range_left_m'),
-      range_right_cm: cm('range_right_m'),
-      range_front_cm: cm('range_front_m'),
-      true_range_left_cm: cm('true_range_left_m'),
-      true_range_right_cm: cm('true_range_right_m'),
-      true_range_front_cm: cm('true_range_front_m'),
-      ghost_range_left_cm: cm('ghost_range_left_m'),
-      ghost_range_right_cm: cm('ghost_range_right_m'),
-      ghost_range_front_cm: cm('ghost_range_front_m'),
       range_difference_cm: less(cm('range_left_m'), cm('range_right_m')),
-      servo_deg: scaled(cell('servo_rad'), DEG_PER_RAD),
-      left_pwm: number(cell('left_pwm')),
-      right_pwm: number(cell('right_pwm')),
       ...this.#placeAndHeading(estimated && compose(frame, estimated), truth && compose(inverse(this.start), truth), ghost && compose(inverse(this.start), ghost), heading_ref_rad === null ? null : frame.heading_rad + heading_ref_rad),
       goal_x_m: goal?.[0] ?? null,
       goal_y_m: goal?.[1] ?? null,
-      x_deviation_m: number(cell('x_deviation_m')),
-      y_deviation_m: number(cell('y_deviation_m')),
-      heading_deviation_deg: scaled(cell('heading_deviation_rad'), DEG_PER_RAD),
     });
-    this.fast.push(t_s - EARLIER_S, {
-      left_rpm: rpm('left_before_rad_s'),
-      right_rpm: rpm('right_before_rad_s'),
-      true_left_rpm: rpm('true_left_before_rad_s'),
-      true_right_rpm: rpm('true_right_before_rad_s'),
-    });
+    this.fast.push(t_s - EARLIER_S, plotted(SPEEDS.filter(({ column }) => this.#index.has(before(column))), before));
     this.fast.push(t_s, {
-      left_rpm: rpm('left_rad_s'),
-      right_rpm: rpm('right_rad_s'),
-      left_ref_rpm: rpm('left_ref_rad_s'),
-      right_ref_rpm: rpm('right_ref_rad_s'),
+      ...plotted(SPEEDS),
       left_error_rpm: less(rpm('left_ref_rad_s'), rpm('left_rad_s')),
       right_error_rpm: less(rpm('right_ref_rad_s'), rpm('right_rad_s')),
-      true_left_rpm: rpm('true_left_rad_s'),
-      true_right_rpm: rpm('true_right_rad_s'),
-      ghost_left_rpm: rpm('ghost_left_rad_s'),
-      ghost_right_rpm: rpm('ghost_right_rad_s'),
     });
     // The speeds wanted come with every frame, other setpoints with the status.
     const wanted = reference?.kind === 'wheel_speed' ? [number(cell('left_ref_rad_s')), number(cell('right_ref_rad_s'))] : reference?.kind === 'goal' ? goal : [left, right];

@@ -1,68 +1,44 @@
 //! Figures of logs: the signals of one, or those of several overlaid.
 
-use rumbo_log::{Log, Row};
+use rumbo_log::{Log, Row, SIGNALS, Signal};
 use rumbo_plot::{Curve, Ink, Map, Panel, Plot, Points, Shape, Sheet, WIDTH, Words};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
-const RPM_PER_RAD_S: f64 = 30.0 / PI;
-const CM_PER_M: f64 = 100.0;
-const DEG_PER_RAD: f64 = 180.0 / PI;
 /// The modes whose reference is a distance.
 const DISTANCE_MODES: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
 
-/// A signal of a figure: its column, its name for people, and what it is multiplied with.
-type Signal = (&'static str, &'static str, f64);
-
-/// Panels that show signals over time: title, unit, signals.
-const OVER_TIME: [(&str, &str, &[Signal]); 4] = [
+/// Panels that show signals over time.
+const OVER_TIME: [(&str, &[&str]); 4] = [
     (
         "Distances",
-        "cm",
-        &[
-            ("range_front_m", "front", CM_PER_M),
-            ("range_left_m", "left", CM_PER_M),
-            ("range_right_m", "right", CM_PER_M),
-        ],
+        &["range_front_m", "range_left_m", "range_right_m"],
     ),
-    (
-        "Wheel speeds",
-        "rpm",
-        &[
-            ("left_rad_s", "left", RPM_PER_RAD_S),
-            ("right_rad_s", "right", RPM_PER_RAD_S),
-        ],
-    ),
-    (
-        "PWM",
-        "of 255",
-        &[("left_pwm", "left", 1.0), ("right_pwm", "right", 1.0)],
-    ),
-    (
-        "Heading",
-        "degrees",
-        &[
-            ("heading_rad", "estimated", DEG_PER_RAD),
-            ("true_heading_rad", "true", DEG_PER_RAD),
-        ],
-    ),
+    ("Wheel speeds", &["left_rad_s", "right_rad_s"]),
+    ("PWM", &["left_pwm", "right_pwm"]),
+    ("Heading", &["heading_rad", "true_heading_rad"]),
 ];
 
 /// One log: what it has of distances, speeds, PWM and heading over time, and the map.
 pub(crate) fn of_one(log: &Log) -> Sheet {
     let mut panels = Vec::new();
-    for (title, unit, signals) in OVER_TIME {
-        let curves = signals.iter().zip(Ink::PALETTE);
+    for (title, names) in OVER_TIME {
+        let signals = || names.iter().filter_map(|name| signal(name));
+        let curves = signals().zip(Ink::PALETTE);
         let mut curves: Vec<Curve> = curves
-            .filter_map(|((column, name, factor), ink)| {
-                let points = over(log, column, *factor);
-                let ink = if *name == "true" { Ink::True } else { ink };
-                has_values(&points).then(|| Curve::new(name, ink, points))
+            .filter_map(|(signal, ink)| {
+                let points = over(log, signal);
+                let ink = match signal.name.starts_with("true_") {
+                    true => Ink::True,
+                    false => ink,
+                };
+                has_values(&points).then(|| Curve::new(signal.label, ink, points))
             })
             .collect();
         if curves.is_empty() {
             continue;
         }
         curves.extend(references(log, title));
+        let unit = signals().next().map_or("", |signal| signal.shown.0);
         panels.push(Panel::new(&format!("{title}, {unit}"), curves));
     }
     let ways = [
@@ -77,18 +53,19 @@ pub(crate) fn of_one(log: &Log) -> Sheet {
 pub(crate) fn of_many(logs: &[(&str, &Log)]) -> Sheet {
     let coloured = || logs.iter().zip(Ink::PALETTE.into_iter().cycle());
     let mut panels = Vec::new();
-    for (_, unit, signals) in OVER_TIME {
-        for (column, _, factor) in signals {
-            let curves: Vec<Curve> = coloured()
-                .filter_map(|((name, log), ink)| {
-                    let points = over(log, column, *factor);
-                    has_values(&points).then(|| Curve::new(name, ink, points))
-                })
-                .collect();
-            if !curves.is_empty() {
-                let label = format!("{}, {unit}", title_of(column));
-                panels.push(Panel::new(&label, curves));
-            }
+    for signal in OVER_TIME
+        .iter()
+        .flat_map(|(_, names)| names.iter().filter_map(|name| signal(name)))
+    {
+        let curves: Vec<Curve> = coloured()
+            .filter_map(|((name, log), ink)| {
+                let points = over(log, signal);
+                has_values(&points).then(|| Curve::new(name, ink, points))
+            })
+            .collect();
+        if !curves.is_empty() {
+            let label = format!("{}, {}", signal.about, signal.shown.0);
+            panels.push(Panel::new(&label, curves));
         }
     }
     let ways = coloured().map(|((name, log), ink)| {
@@ -116,35 +93,24 @@ fn sheet(panels: Vec<Panel>, shapes: Vec<Shape>, mut ways: Vec<Curve>) -> Sheet 
     }
 }
 
-fn title_of(column: &str) -> &'static str {
-    match column {
-        "range_front_m" => "Distance ahead",
-        "range_left_m" => "Distance on the left",
-        "range_right_m" => "Distance on the right",
-        "left_rad_s" => "Speed of the left wheel",
-        "right_rad_s" => "Speed of the right wheel",
-        "left_pwm" => "PWM of the left wheel",
-        "right_pwm" => "PWM of the right wheel",
-        "heading_rad" => "Heading, estimated",
-        _ => "Heading, true",
-    }
+fn signal(name: &str) -> Option<&'static Signal> {
+    SIGNALS.iter().find(|signal| signal.name == name)
 }
 
 fn has_values(points: &Points) -> bool {
     points.iter().filter(|(_, y)| y.is_finite()).count() > 1
 }
 
-/// A signal over time, gaps where it is unknown or clear. Angles go on through a half turn.
-fn over(log: &Log, column: &str, factor: f64) -> Points {
-    let Some(at) = Row::column(column) else {
-        return Vec::new();
-    };
+/// A signal over time as people read it, gaps where it is unknown or clear. Angles go on through a half turn.
+fn over(log: &Log, signal: &Signal) -> Points {
+    let (_, factor) = signal.shown;
     let mut before: Option<f64> = None;
     log.rows
         .iter()
         .map(|row| {
-            let mut value = row.get(at).filter(|value| value.is_finite());
-            if column.ends_with("heading_rad") {
+            let value = row.signal(signal.name);
+            let mut value = value.filter(|value| value.is_finite());
+            if signal.name.ends_with("heading_rad") {
                 value = value.map(|angle| {
                     before.map_or(angle, |before| {
                         angle + TAU * ((before - angle) / TAU).round()
@@ -174,19 +140,17 @@ fn references(log: &Log, title: &str) -> Vec<Curve> {
                     .filter(|value| *value != 0.0 && DISTANCE_MODES.contains(&mode));
                 (
                     row.t_ms as f64 / 1e3,
-                    value.map_or(f64::NAN, |value| value * CM_PER_M),
+                    value.map_or(f64::NAN, |value| value * 100.0),
                 )
             });
             let points: Points = points.filter(|(_, value)| value.is_finite()).collect();
             given("reference", points).into_iter().collect()
         }
-        "Wheel speeds" => [
-            ("left_ref_rad_s", "left reference"),
-            ("right_ref_rad_s", "right reference"),
-        ]
-        .into_iter()
-        .filter_map(|(column, name)| given(name, over(log, column, RPM_PER_RAD_S)))
-        .collect(),
+        "Wheel speeds" => ["left_ref_rad_s", "right_ref_rad_s"]
+            .iter()
+            .filter_map(|name| signal(name))
+            .filter_map(|signal| given(signal.label, over(log, signal)))
+            .collect(),
         _ => Vec::new(),
     }
 }

@@ -60,7 +60,7 @@ pub use scene::{
     Choice, Experiment, MapPose, Mover, Obstacle, Other, Place, Repeat, RoutePlan, Scene,
     SonarMount, TimedPose, Truth, compose,
 };
-pub use signals::{Cell, EARLIER_MS, Row, Sample, Spread};
+pub use signals::{Cell, EARLIER_MS, Row, SIGNALS, Sample, Signal, Spread};
 pub use state::{
     CalibrationPhase, CalibrationState, Complaint, End, Finding, Findings, FunctionShare,
     InterruptShare, LinkState, ProgramPhase, ProgramProfile, ProgramState, ReplayState, RobotState,

@@ -1,4 +1,4 @@
-//! Samples of the signals: the robot's telemetry of one instant, beside the ground truth.
+//! The signals: the robot's telemetry of one instant, beside the ground truth. [`SIGNALS`] is their one table.
 
 mod row;
 
@@ -7,8 +7,9 @@ pub use row::{Cell, Row};
 
 use crate::scene::{MapPose, Truth};
 use rumbo_control::mode::ModeId;
-use rumbo_control::{Range, Wheels};
+use rumbo_control::{Range, SonarId, Wheels};
 use rumbo_wire::Telemetry;
+use std::f64::consts::PI;
 
 /// The signals at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -49,130 +50,148 @@ pub struct Spread {
 /// The first of the two wheel speeds in a telemetry frame is this much older \[ms\].
 pub const EARLIER_MS: i64 = 20;
 
+/// What people read a signal in: the unit's name, and the factor to it.
+pub(crate) type Shown = (&'static str, f64);
+
+const RPM: Shown = ("rpm", 30.0 / PI);
+const DEGREES: Shown = ("°", 180.0 / PI);
+const CENTIMETRES: Shown = ("cm", 100.0);
+const METRES: Shown = ("m", 1.0);
+const OF_255: Shown = ("of 255", 1.0);
+/// A number without a unit, or one that is not plotted as it is.
+const PLAIN: Shown = ("", 1.0);
+
+/// A signal of a [`Sample`]: what logs, tables, plots and the page know of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Signal {
+    /// Its name in logs and tables, unit last.
+    pub name: &'static str,
+    /// Beside its curve.
+    pub label: &'static str,
+    /// What it is, for people; empty where it is not plotted.
+    pub about: &'static str,
+    /// What people read it in.
+    pub shown: Shown,
+    /// In its own unit; not a number where unknown, infinite where a range is clear.
+    pub(crate) value: fn(&Sample) -> f32,
+}
+
+const fn signal(
+    name: &'static str,
+    label: &'static str,
+    about: &'static str,
+    shown: Shown,
+    value: fn(&Sample) -> f32,
+) -> Signal {
+    Signal {
+        name,
+        label,
+        about,
+        shown,
+        value,
+    }
+}
+
+/// One that is read, not plotted.
+const fn unplotted(name: &'static str, value: fn(&Sample) -> f32) -> Signal {
+    signal(name, "", "", PLAIN, value)
+}
+
 /// Not known.
 const UNKNOWN: f32 = f32::NAN;
 
-fn optional(value: Option<f64>) -> f32 {
-    value.map_or(UNKNOWN, |value| value as f32)
+fn flag(is_so: bool) -> f32 {
+    f32::from(u8::from(is_so))
 }
 
 /// Infinite where nothing is in range.
-fn measured(range: Range) -> f32 {
-    match range {
+fn range(sample: &Sample, sonar: SonarId) -> f32 {
+    match sample.telemetry.ranges[sonar as usize].range {
         Range::Valid(range_m) => range_m,
         Range::Clear => f32::INFINITY,
         Range::Faulty => UNKNOWN,
     }
 }
 
-/// The ghost's signals.
-pub(crate) const GHOST: [&str; 8] = [
-    "ghost_x_m",
-    "ghost_y_m",
-    "ghost_heading_rad",
-    "ghost_left_rad_s",
-    "ghost_right_rad_s",
-    "ghost_range_left_m",
-    "ghost_range_right_m",
-    "ghost_range_front_m",
-];
-
-/// Their values, in this order; not a number where unknown.
-pub(crate) fn ghost_values(truth: &Truth) -> [f64; GHOST.len()] {
-    let [left, right, front] = truth.range_m.map(|range_m| range_m.unwrap_or(f64::NAN));
-    [
-        truth.pose.x_m,
-        truth.pose.y_m,
-        truth.pose.heading_rad,
-        truth.wheel_rad_s.left,
-        truth.wheel_rad_s.right,
-        left,
-        right,
-        front,
-    ]
+fn truly(sample: &Sample, value: fn(&Truth) -> f64) -> f32 {
+    let truth = sample.truth.as_ref();
+    truth.map_or(UNKNOWN, |[_, at]| value(at) as f32)
 }
 
-/// Values in a row.
-pub(crate) const COLUMNS: usize = 42 + GHOST.len();
+fn truly_before(sample: &Sample, value: fn(&Truth) -> f64) -> f32 {
+    let truth = sample.truth.as_ref();
+    truth.map_or(UNKNOWN, |[before, _]| value(before) as f32)
+}
+
+fn ghost(sample: &Sample, value: fn(&Truth) -> f64) -> f32 {
+    let truth = sample.ghost.as_ref();
+    truth.map_or(UNKNOWN, |truth| value(truth) as f32)
+}
+
+fn true_range(truth: &Truth, sonar: SonarId) -> f64 {
+    truth.range_m[sonar as usize].unwrap_or(f64::NAN)
+}
+
+/// The signals, in the order of a row. A line here brings one into logs, tables, Python and the page.
+#[rustfmt::skip]
+pub const SIGNALS: [Signal; 50] = [
+    unplotted("t_s", |s| (s.t_ms as f64 / 1e3) as f32),
+    unplotted("mode", |s| f32::from(s.mode as u8)),
+    unplotted("state", |s| f32::from(s.telemetry.state)),
+    unplotted("armed", |s| flag(s.telemetry.armed)),
+    unplotted("faulted", |s| flag(s.telemetry.faulted)),
+    unplotted("reference_left", |s| s.reference.left),
+    unplotted("reference_right", |s| s.reference.right),
+    signal("x_m", "x", "estimated position, x", METRES, |s| s.telemetry.pose.x_m),
+    signal("y_m", "y", "estimated position, y", METRES, |s| s.telemetry.pose.y_m),
+    signal("heading_rad", "heading", "estimated heading", DEGREES, |s| s.telemetry.pose.heading_rad),
+    signal("x_deviation_m", "σ x", "standard deviation of the estimated position, x", METRES, |s| s.spread.x_m),
+    signal("y_deviation_m", "σ y", "standard deviation of the estimated position, y", METRES, |s| s.spread.y_m),
+    unplotted("xy_correlation", |s| s.spread.correlation),
+    signal("heading_deviation_rad", "σ heading", "standard deviation of the estimated heading", DEGREES, |s| s.spread.heading_rad),
+    signal("heading_ref_rad", "setpoint", "heading setpoint", DEGREES, |s| s.heading_ref_rad),
+    unplotted("origin_x_m", |s| s.origin.x_m as f32),
+    unplotted("origin_y_m", |s| s.origin.y_m as f32),
+    unplotted("origin_heading_rad", |s| s.origin.heading_rad as f32),
+    signal("servo_rad", "servo", "angle of the servo", DEGREES, |s| s.telemetry.servo_rad),
+    unplotted("left_before_rad_s", |s| s.telemetry.wheel_rad_s[0].left),
+    unplotted("right_before_rad_s", |s| s.telemetry.wheel_rad_s[0].right),
+    signal("left_rad_s", "left", "speed, left wheel", RPM, |s| s.telemetry.wheel_rad_s[1].left),
+    signal("right_rad_s", "right", "speed, right wheel", RPM, |s| s.telemetry.wheel_rad_s[1].right),
+    signal("left_ref_rad_s", "set l.", "speed setpoint, left wheel", RPM, |s| s.telemetry.wheel_ref_rad_s.left),
+    signal("right_ref_rad_s", "set r.", "speed setpoint, right wheel", RPM, |s| s.telemetry.wheel_ref_rad_s.right),
+    signal("left_pwm", "left", "PWM, left wheel", OF_255, |s| f32::from(s.telemetry.duty.left.counts())),
+    signal("right_pwm", "right", "PWM, right wheel", OF_255, |s| f32::from(s.telemetry.duty.right.counts())),
+    signal("range_left_m", "left", "range, left sonar", CENTIMETRES, |s| range(s, SonarId::Left)),
+    signal("range_right_m", "right", "range, right sonar", CENTIMETRES, |s| range(s, SonarId::Right)),
+    signal("range_front_m", "front", "range, front sonar", CENTIMETRES, |s| range(s, SonarId::Front)),
+    signal("true_x_m", "true x", "true position, x", METRES, |s| truly(s, |at| at.pose.x_m)),
+    signal("true_y_m", "true y", "true position, y", METRES, |s| truly(s, |at| at.pose.y_m)),
+    signal("true_heading_rad", "true", "true heading", DEGREES, |s| truly(s, |at| at.pose.heading_rad)),
+    unplotted("true_left_before_rad_s", |s| truly_before(s, |at| at.wheel_rad_s.left)),
+    unplotted("true_right_before_rad_s", |s| truly_before(s, |at| at.wheel_rad_s.right)),
+    signal("true_left_rad_s", "true l.", "true speed, left wheel", RPM, |s| truly(s, |at| at.wheel_rad_s.left)),
+    signal("true_right_rad_s", "true r.", "true speed, right wheel", RPM, |s| truly(s, |at| at.wheel_rad_s.right)),
+    signal("true_range_left_m", "true l.", "true range, left sonar", CENTIMETRES, |s| truly(s, |at| true_range(at, SonarId::Left))),
+    signal("true_range_right_m", "true r.", "true range, right sonar", CENTIMETRES, |s| truly(s, |at| true_range(at, SonarId::Right))),
+    signal("true_range_front_m", "true front", "true range, front sonar", CENTIMETRES, |s| truly(s, |at| true_range(at, SonarId::Front))),
+    signal("true_servo_rad", "true servo", "true angle of the servo", DEGREES, |s| truly(s, |at| at.servo_rad)),
+    unplotted("contact", |s| truly(s, |at| f64::from(u8::from(at.contact)))),
+    signal("ghost_x_m", "ghost x", "ghost position, x", METRES, |s| ghost(s, |at| at.pose.x_m)),
+    signal("ghost_y_m", "ghost y", "ghost position, y", METRES, |s| ghost(s, |at| at.pose.y_m)),
+    signal("ghost_heading_rad", "ghost", "ghost heading", DEGREES, |s| ghost(s, |at| at.pose.heading_rad)),
+    signal("ghost_left_rad_s", "ghost l.", "ghost speed, left wheel", RPM, |s| ghost(s, |at| at.wheel_rad_s.left)),
+    signal("ghost_right_rad_s", "ghost r.", "ghost speed, right wheel", RPM, |s| ghost(s, |at| at.wheel_rad_s.right)),
+    signal("ghost_range_left_m", "ghost l.", "ghost range, left sonar", CENTIMETRES, |s| ghost(s, |at| true_range(at, SonarId::Left))),
+    signal("ghost_range_right_m", "ghost r.", "ghost range, right sonar", CENTIMETRES, |s| ghost(s, |at| true_range(at, SonarId::Right))),
+    signal("ghost_range_front_m", "ghost front", "ghost range, front sonar", CENTIMETRES, |s| ghost(s, |at| true_range(at, SonarId::Front))),
+];
 
 impl Sample {
-    /// The row of this sample, each value with its name. The page finds the values by the names.
-    pub(crate) fn named_row(&self) -> [(&'static str, f32); COLUMNS] {
-        let said = &self.telemetry;
-        let [before, at] = said.wheel_rad_s;
-        let [left, right, front] = said.ranges.map(|aged| measured(aged.range));
-        let was = |value: fn(&Truth) -> f64| optional(self.truth.as_ref().map(|[_, at]| value(at)));
-        let was_before = |value: fn(&Truth) -> f64| {
-            optional(self.truth.as_ref().map(|[before, _]| value(before)))
-        };
-        let was_range =
-            |id: usize| optional(self.truth.as_ref().and_then(|[_, at]| at.range_m[id]));
-        let ghost = self.ghost.as_ref().map(ghost_values);
-        let ghosts = |index: usize| (GHOST[index], optional(ghost.map(|values| values[index])));
-        [
-            ("t_s", (self.t_ms as f64 / 1e3) as f32),
-            ("mode", f32::from(self.mode as u8)),
-            ("state", f32::from(said.state)),
-            ("armed", f32::from(u8::from(said.armed))),
-            ("faulted", f32::from(u8::from(said.faulted))),
-            ("reference_left", self.reference.left),
-            ("reference_right", self.reference.right),
-            ("x_m", said.pose.x_m),
-            ("y_m", said.pose.y_m),
-            ("heading_rad", said.pose.heading_rad),
-            ("x_deviation_m", self.spread.x_m),
-            ("y_deviation_m", self.spread.y_m),
-            ("xy_correlation", self.spread.correlation),
-            ("heading_deviation_rad", self.spread.heading_rad),
-            ("heading_ref_rad", self.heading_ref_rad),
-            ("origin_x_m", self.origin.x_m as f32),
-            ("origin_y_m", self.origin.y_m as f32),
-            ("origin_heading_rad", self.origin.heading_rad as f32),
-            ("servo_rad", said.servo_rad),
-            ("left_before_rad_s", before.left),
-            ("right_before_rad_s", before.right),
-            ("left_rad_s", at.left),
-            ("right_rad_s", at.right),
-            ("left_ref_rad_s", said.wheel_ref_rad_s.left),
-            ("right_ref_rad_s", said.wheel_ref_rad_s.right),
-            ("left_pwm", f32::from(said.duty.left.counts())),
-            ("right_pwm", f32::from(said.duty.right.counts())),
-            ("range_left_m", left),
-            ("range_right_m", right),
-            ("range_front_m", front),
-            ("true_x_m", was(|truth| truth.pose.x_m)),
-            ("true_y_m", was(|truth| truth.pose.y_m)),
-            ("true_heading_rad", was(|truth| truth.pose.heading_rad)),
-            (
-                "true_left_before_rad_s",
-                was_before(|truth| truth.wheel_rad_s.left),
-            ),
-            (
-                "true_right_before_rad_s",
-                was_before(|truth| truth.wheel_rad_s.right),
-            ),
-            ("true_left_rad_s", was(|truth| truth.wheel_rad_s.left)),
-            ("true_right_rad_s", was(|truth| truth.wheel_rad_s.right)),
-            ("true_range_left_m", was_range(0)),
-            ("true_range_right_m", was_range(1)),
-            ("true_range_front_m", was_range(2)),
-            ("true_servo_rad", was(|truth| truth.servo_rad)),
-            ("contact", was(|truth| f64::from(u8::from(truth.contact)))),
-            ghosts(0),
-            ghosts(1),
-            ghosts(2),
-            ghosts(3),
-            ghosts(4),
-            ghosts(5),
-            ghosts(6),
-            ghosts(7),
-        ]
-    }
-
     /// The values of the row.
     #[must_use]
     pub fn row(&self) -> Row {
-        Row::new(self.t_ms, self.named_row().map(|(_, value)| value))
+        Row::new(self.t_ms, SIGNALS.map(|signal| (signal.value)(self)))
     }
 
     /// A sample of which only the telemetry is known.

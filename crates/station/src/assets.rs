@@ -72,6 +72,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/response.js": SCRIPT,
     "src/robot_port.js": SCRIPT,
     "src/robots.js": SCRIPT,
+    "src/row.js": SCRIPT,
     "src/run_link.js": SCRIPT,
     "src/seat.js": SCRIPT,
     "src/serial_ports.js": SCRIPT,

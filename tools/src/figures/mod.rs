@@ -4,13 +4,14 @@
 //! pages ──► runs (20 seeds of each program) ──► plot (SVG in docs/img/theory/) and table (Markdown between markers)
 //! ```
 //!
-//! The text of a page between `<!-- figures:NAME -->` and `<!-- /figures -->` is replaced. The same sources give the
+//! Beside them it writes the page's table of signals. The text of a page between `<!-- figures:NAME -->` and `<!-- /figures -->` is replaced. The same sources give the
 //! same bytes: `--check` writes nothing and lists what is out of date.
 
 #![allow(missing_docs)]
 
 mod pages;
 mod runs;
+mod signals;
 mod table;
 
 use std::fs;
@@ -52,6 +53,9 @@ pub(crate) fn main() -> ExitCode {
 /// All figures, and the pages with their new sections; those of `only`, if it names any.
 fn files(root: &Path, only: &[&str]) -> Result<Vec<File>, String> {
     let mut files = Vec::new();
+    if only.is_empty() {
+        files.push(signals::file());
+    }
     for page in pages::PAGES {
         if !only.is_empty() && !only.contains(&page.name) {
             continue;

@@ -1,9 +1,8 @@
 //! A sample as it is shown and recorded: one number per signal, small enough to keep an hour of them.
 
-use super::{COLUMNS, GHOST, Sample, ghost_values};
+use super::{SIGNALS, Sample};
 use crate::scene::{MapPose, Truth};
 use serde::Serialize;
-use std::sync::LazyLock;
 
 /// One value of a row as the page gets it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -35,19 +34,8 @@ pub struct Row {
     pub t_ms: i64,
     /// In the order of [`Row::names`]: not a number where unknown, infinite where a range is clear. The first is for
     /// `t_ms`.
-    values: [f32; COLUMNS],
+    values: [f32; SIGNALS.len()],
 }
-
-static NAMES: LazyLock<[&'static str; COLUMNS]> =
-    LazyLock::new(|| Sample::empty().named_row().map(|(name, _)| name));
-
-/// Column of the first of the three measured ranges.
-static RANGES: LazyLock<usize> = LazyLock::new(|| {
-    NAMES
-        .iter()
-        .position(|name| *name == "range_left_m")
-        .unwrap_or_default()
-});
 
 impl Row {
     /// A row in which nothing is known yet.
@@ -55,28 +43,28 @@ impl Row {
     pub fn unknown(t_ms: i64) -> Self {
         Self {
             t_ms,
-            values: [f32::NAN; COLUMNS],
+            values: [f32::NAN; SIGNALS.len()],
         }
     }
 
-    pub(crate) fn new(t_ms: i64, values: [f32; COLUMNS]) -> Self {
+    pub(crate) fn new(t_ms: i64, values: [f32; SIGNALS.len()]) -> Self {
         Self { t_ms, values }
     }
 
     /// The names of the signals, units last; the first is the time.
     pub fn names() -> impl Iterator<Item = &'static str> {
-        NAMES.iter().copied()
+        SIGNALS.iter().map(|signal| signal.name)
     }
 
     /// The names of the measured ranges, which may be clear.
     pub fn ranges() -> impl Iterator<Item = &'static str> {
-        NAMES.iter().copied().skip(*RANGES).take(3)
+        Self::names().filter(|name| name.starts_with("range_"))
     }
 
     /// The column of a signal.
     #[must_use]
     pub fn column(name: &str) -> Option<usize> {
-        NAMES.iter().position(|each| *each == name)
+        SIGNALS.iter().position(|signal| signal.name == name)
     }
 
     /// A signal by its column: `None` where unknown, infinite where a range is clear.
@@ -131,9 +119,14 @@ impl Row {
 
     /// Sets the ghost's signals; `None`: they are not known.
     pub fn set_ghost(&mut self, truth: Option<&Truth>) {
-        let values = truth.map_or([f64::NAN; GHOST.len()], ghost_values);
-        for (name, value) in GHOST.into_iter().zip(values) {
-            self.set(name, value);
+        let sample = Sample {
+            ghost: truth.copied(),
+            ..Sample::empty()
+        };
+        for (value, signal) in self.values.iter_mut().zip(&SIGNALS) {
+            if signal.name.starts_with("ghost_") {
+                *value = (signal.value)(&sample);
+            }
         }
     }
 
@@ -147,7 +140,7 @@ impl Row {
     /// As the page gets it.
     #[must_use]
     pub fn cells(&self) -> Vec<Cell> {
-        (0..COLUMNS)
+        (0..SIGNALS.len())
             .map(|column| Cell::of(self.get(column).unwrap_or(f64::NAN)))
             .collect()
     }
