@@ -97,30 +97,21 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
         (Some(found), Some(truth)) => found.against(&truth),
         _ => Vec::new(),
     };
+    let report = Report {
+        robot: name,
+        drive: &outcome,
+        sonars: &sonars,
+        plots: plots.iter().map(|path| output::shown(path)).collect(),
+        log: driving.as_ref().map(|driving| output::shown(&driving.path)),
+        against_truth,
+        doubts: &doubts,
+        written: written.map(output::shown),
+    };
     if args.json {
-        output::json(&Report {
-            robot: name,
-            drive: &outcome,
-            sonars: &sonars,
-            plots: plots.iter().map(|path| output::shown(path)).collect(),
-            log: driving.as_ref().map(|driving| output::shown(&driving.path)),
-            against_truth,
-            doubts: &doubts,
-            written: written.map(output::shown),
-        })?;
+        output::json(&report)?;
         return refused(&doubts, is_believed);
     }
-    report(&logs, &outcome, &sonars, &plots)?;
-    if !against_truth.is_empty() {
-        output::line("")?;
-        output::table(&beside_truth(&against_truth))?;
-    }
-    if let Some(driving) = &driving {
-        output::remark(&format!(
-            "log of the drive: {}",
-            output::shown(&driving.path)
-        ))?;
-    }
+    print(&logs, &report, &plots)?;
     refused(&doubts, is_believed)?;
     match written {
         Some(path) => output::remark(&format!(
@@ -254,13 +245,9 @@ fn beside_truth(parameters: &[AgainstTruth]) -> Vec<Vec<String>> {
         .collect()
 }
 
-fn report(
-    logs: &Recordings,
-    outcome: &Outcome,
-    sonars: &[Comparison],
-    plots: &[PathBuf],
-) -> Result<(), Failure> {
-    let text = match outcome {
+/// Prints all but what was written.
+fn print(logs: &Recordings, report: &Report<'_>, plots: &[PathBuf]) -> Result<(), Failure> {
+    let text = match report.drive {
         Outcome::Identified(found) => found.to_string(),
         Outcome::Checked { runs } => runs.iter().map(ToString::to_string).collect(),
     };
@@ -272,11 +259,19 @@ fn report(
             output::line(&format!("{}: {pair}", log.name))?;
         }
     }
-    if !sonars.is_empty() {
+    if !report.sonars.is_empty() {
         output::line("")?;
-        output::lines(sonar_stats::table(sonars).trim_end())?;
+        output::lines(sonar_stats::table(report.sonars).trim_end())?;
     }
-    plots
-        .iter()
-        .try_for_each(|path| output::line(&format!("plot: {}", path.display())))
+    for path in plots {
+        output::line(&format!("plot: {}", path.display()))?;
+    }
+    if !report.against_truth.is_empty() {
+        output::line("")?;
+        output::table(&beside_truth(&report.against_truth))?;
+    }
+    match &report.log {
+        Some(log) => output::remark(&format!("log of the drive: {log}")),
+        None => Ok(()),
+    }
 }

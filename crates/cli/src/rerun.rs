@@ -19,6 +19,7 @@ use rumbo_sim::{Config, Sim};
 use rumbo_station::log_file;
 use rumbo_wire::{Decoder, FromRobot, Message, PROTOCOL_VERSION, Received, Telemetry};
 use serde_json::json;
+use std::path::Path;
 
 /// Longest line of text from a robot that is put together.
 const LINE: usize = 160;
@@ -115,8 +116,24 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
         )));
     }
     let recorder = Recorder::of(&log, recorded);
+    let verdict = run_again(&args.log, &log, recorded, &recorder)?;
+    print(args, &log, recorded, &recorder, &verdict)?;
+    match verdict {
+        Verdict::Equal => Ok(()),
+        Verdict::Differs(..) => Err(Failure::LimitMissed),
+    }
+}
+
+/// Runs what the manifest names, and compares it with the log.
+fn run_again(
+    path: &Path,
+    log: &Log,
+    recorded: &Manifest,
+    recorder: &Recorder,
+) -> Result<Verdict, Failure> {
+    let refused = |why: String| Err(Failure::Input(format!("{}: {why}", path.display())));
     // What another program has written may not even be read: then that is the reason.
-    let (setup, seed) = manifest::setup(&args.log, recorded).map_err(|failure| match failure {
+    let (setup, seed) = manifest::setup(path, recorded).map_err(|failure| match failure {
         failure if recorder.table.is_none() && recorder.version.is_empty() => failure,
         failure => {
             let table = recorder.table.as_ref();
@@ -124,92 +141,84 @@ pub(crate) fn rerun(args: &RerunArgs) -> Result<(), Failure> {
             Failure::Input(format!("{failure}{table}{}", recorder.version))
         }
     })?;
-    let verdict = match recorded.kind {
+    match recorded.kind {
         Kind::Run => {
             let result = run::run(&setup, seed)?;
             let own = match &recorded.member {
                 Some(name) => result.robots.iter().find(|robot| robot.scenario == *name),
                 None => Some(&result),
             };
-            let own = own.ok_or_else(|| {
-                Failure::Input(format!(
-                    "{shown}: its robot is none of its scenario; the log is damaged or forged"
-                ))
-            })?;
-            same(&log, own, recorder.protocol)
+            match own {
+                Some(own) => Ok(same(log, own, recorder.protocol)),
+                None => refused(
+                    "its robot is none of its scenario; the log is damaged or forged".into(),
+                ),
+            }
         }
         Kind::Calibration => {
             let again = calibration_run::run_calibration(&setup, seed)?;
-            same(&log, &again.result, recorder.protocol)
+            Ok(same(log, &again.result, recorder.protocol))
         }
-        Kind::Lab if let Some(protocol) = recorder.protocol => {
-            return Err(Failure::Input(format!(
-                "{shown}: a session in protocol {protocol}, of which only the bytes could be compared, and this program speaks protocol \
-                 {PROTOCOL_VERSION}; run it again with the program that recorded it{}",
-                recorder.version
-            )));
-        }
-        Kind::Lab if recorded.member.is_some() => {
-            return Err(Failure::Input(format!(
-                "{shown}: a session of one of several robots, which depends on what was done with the others; only a log of `rumbo run` can \
-                 be run again with several robots"
-            )));
-        }
-        Kind::Lab => session(&log, &setup, seed, recorded)?,
+        Kind::Lab if let Some(protocol) = recorder.protocol => refused(format!(
+            "a session in protocol {protocol}, of which only the bytes could be compared, and this program speaks protocol \
+             {PROTOCOL_VERSION}; run it again with the program that recorded it{}",
+            recorder.version
+        )),
+        Kind::Lab if recorded.member.is_some() => refused(
+            "a session of one of several robots, which depends on what was done with the others; only a log of `rumbo run` can be run \
+             again with several robots"
+                .into(),
+        ),
+        Kind::Lab => session(log, &setup, seed, recorded),
         Kind::Robot => {
-            return Err(Failure::Input(format!(
-                "{shown}: is of a real robot; only simulated runs can be run again"
-            )));
+            refused("is of a real robot; only simulated runs can be run again".into())
         }
-        Kind::Episode => {
-            return Err(Failure::Input(format!(
-                "{shown}: an episode, whose robot a program in Python drove; run that program again, its seed is {seed}"
-            )));
-        }
-    };
-    let from_robot: usize = log
-        .link
-        .iter()
-        .filter(|burst| !burst.to_robot)
-        .map(|burst| burst.bytes.len())
-        .sum();
-    let (equal, first) = match &verdict {
-        Verdict::Equal => (true, None),
-        Verdict::Differs(t_s, what) => {
-            (false, Some((t_s, recorder.table.as_ref().unwrap_or(what))))
-        }
-    };
-    let compared = match recorder.protocol {
-        Some(_) => recorder.protocol_words(),
-        None => format!(", {from_robot} bytes from the robot"),
+        Kind::Episode => refused(format!(
+            "an episode, whose robot a program in Python drove; run that program again, its seed is {seed}"
+        )),
+    }
+}
+
+/// Prints what the comparison found.
+fn print(
+    args: &RerunArgs,
+    log: &Log,
+    recorded: &Manifest,
+    recorder: &Recorder,
+    verdict: &Verdict,
+) -> Result<(), Failure> {
+    let from_robot = log.link.iter().filter(|burst| !burst.to_robot);
+    let bytes: usize = from_robot.map(|burst| burst.bytes.len()).sum();
+    let first = match verdict {
+        Verdict::Equal => None,
+        Verdict::Differs(t_s, what) => Some((t_s, recorder.table.as_ref().unwrap_or(what))),
     };
     if args.json {
-        output::json(
-            &json!({ "log": output::shown(&args.log), "equal": equal, "duration_s": log.duration_s(), "bytes": from_robot,
+        return output::json(
+            &json!({ "log": output::shown(&args.log), "equal": first.is_none(), "duration_s": log.duration_s(), "bytes": bytes,
             "recorded_by": recorded.version, "run_by": env!("CARGO_PKG_VERSION"),
             "recorded_model": recorded.model, "run_model": MODEL,
             "first_difference_s": first.map(|(t_s, _)| t_s), "difference": first.map(|(_, what)| what) }),
-        )?;
-    } else {
-        output::line(&match first {
-            None => format!(
-                "{shown}: equal{compared} in {:.2} s{}",
-                log.duration_s(),
-                recorder.version
-            ),
-            Some((t_s, what)) => format!(
-                "{shown}: {}differs first at {t_s:.3} s: {what}{}{}",
-                recorder.model_words(),
-                recorder.protocol_words(),
-                recorder.version
-            ),
-        })?;
+        );
     }
-    if equal {
-        Ok(())
-    } else {
-        Err(Failure::LimitMissed)
-    }
+    let shown = args.log.display();
+    let compared = match recorder.protocol {
+        Some(_) => recorder.protocol_words(),
+        None => format!(", {bytes} bytes from the robot"),
+    };
+    output::line(&match first {
+        None => format!(
+            "{shown}: equal{compared} in {:.2} s{}",
+            log.duration_s(),
+            recorder.version
+        ),
+        Some((t_s, what)) => format!(
+            "{shown}: {}differs first at {t_s:.3} s: {what}{}{}",
+            recorder.model_words(),
+            recorder.protocol_words(),
+            recorder.version
+        ),
+    })
 }
 
 /// Compares a run without a window, which was done again, with its log.

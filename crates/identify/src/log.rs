@@ -94,53 +94,8 @@ impl DriveLog {
             .map(String::from)
             .collect();
         let columns = Columns::find(path, &header)?;
-        let (mut rows, mut at_ms, mut is_front) = (Vec::new(), 0_usize, false);
-        let (mut damaged, mut lasted_ms) = (Vec::new(), 0);
-        for record in reader.records() {
-            let record = match record {
-                Ok(record) => record,
-                Err(error) if error.position().is_some() => {
-                    damaged.push(bad(error));
-                    continue;
-                }
-                Err(error) => return Err(bad(error)),
-            };
-            let fields = Fields {
-                path,
-                header: &header,
-                record: &record,
-            };
-            let duration = fields.duration_ms(columns.dt);
-            // A row whose own time is damaged lasted about as long as the one before.
-            lasted_ms = *duration.as_ref().unwrap_or(&lasted_ms);
-            at_ms += lasted_ms;
-            if at_ms > LONGEST_MS {
-                return Err(IdentifyError::Read {
-                    path: path.into(),
-                    cause: format!(
-                        "lasts longer than {} s, the most that is compared; cut it into shorter runs",
-                        LONGEST_MS / 1_000
-                    ),
-                });
-            }
-            let row = duration.and_then(|_| columns.row(&fields, at_ms));
-            match row.and_then(|row| Ok((row, columns.is_front(&fields)?))) {
-                Ok((row, front)) => {
-                    rows.push(row);
-                    is_front = front;
-                }
-                Err(error) => damaged.push(error),
-            }
-        }
-        if damaged.len() > rows.len() / DAMAGED_IN {
-            return Err(damaged.swap_remove(0));
-        }
-        if rows.len() < 2 {
-            return Err(IdentifyError::Read {
-                path: path.into(),
-                cause: "fewer than two rows".into(),
-            });
-        }
+        let mut damaged = Vec::new();
+        let (mut rows, is_front) = columns.rows(path, &header, &mut reader, &mut damaged)?;
         let seen = match columns.signals {
             Signals::Speeds { .. } => Seen::Speeds,
             Signals::Ranges { .. } if is_front => Seen::FrontRange,
@@ -268,6 +223,62 @@ impl Columns {
             path: path.into(),
             found: header.join(","),
         })
+    }
+
+    /// All rows that can be read, and whether the distances are to a wall ahead; the others go to `damaged`.
+    fn rows(
+        &self,
+        path: &Path,
+        header: &[String],
+        reader: &mut csv::Reader<impl std::io::Read>,
+        damaged: &mut Vec<IdentifyError>,
+    ) -> Result<(Vec<Row>, bool), IdentifyError> {
+        let bad = |cause: String| IdentifyError::Read {
+            path: path.into(),
+            cause,
+        };
+        let (mut rows, mut is_front) = (Vec::new(), false);
+        let (mut at_ms, mut lasted_ms) = (0_usize, 0);
+        for record in reader.records() {
+            let record = match record {
+                Ok(record) => record,
+                Err(error) if error.position().is_some() => {
+                    damaged.push(bad(error.to_string()));
+                    continue;
+                }
+                Err(error) => return Err(bad(error.to_string())),
+            };
+            let fields = Fields {
+                path,
+                header,
+                record: &record,
+            };
+            let duration = fields.duration_ms(self.dt);
+            // A row whose own time is damaged lasted about as long as the one before.
+            lasted_ms = *duration.as_ref().unwrap_or(&lasted_ms);
+            at_ms += lasted_ms;
+            if at_ms > LONGEST_MS {
+                return Err(bad(format!(
+                    "lasts longer than {} s, the most that is compared; cut it into shorter runs",
+                    LONGEST_MS / 1_000
+                )));
+            }
+            let row = duration.and_then(|_| self.row(&fields, at_ms));
+            match row.and_then(|row| Ok((row, self.is_front(&fields)?))) {
+                Ok((row, front)) => {
+                    rows.push(row);
+                    is_front = front;
+                }
+                Err(error) => damaged.push(error),
+            }
+        }
+        if damaged.len() > rows.len() / DAMAGED_IN {
+            return Err(damaged.swap_remove(0));
+        }
+        if rows.len() < 2 {
+            return Err(bad("fewer than two rows".into()));
+        }
+        Ok((rows, is_front))
     }
 
     /// Whether the distances are to a wall ahead: modes 1 and 2.

@@ -4,10 +4,11 @@
 //! The route is a polyline from where the robot stands when it starts. The odometry is that of the telemetry.
 
 use super::Metrics;
-use crate::files::{Setup, Start};
+use crate::files::Setup;
 use rumbo_control::mode::waypoints::{Route, Waypoint};
-use rumbo_sim::trace::Trace;
+use rumbo_sim::trace::{Sample, Trace};
 use rumbo_wire::{Command, EventKind, FromRobot};
+use std::f64::consts::TAU;
 
 /// A place and a direction.
 #[derive(Clone, Copy)]
@@ -18,6 +19,21 @@ struct Frame {
 }
 
 impl Frame {
+    const ORIGIN: Self = Self {
+        x_m: 0.0,
+        y_m: 0.0,
+        heading_rad: 0.0,
+    };
+
+    /// Where the robot truly is.
+    fn of(sample: &Sample) -> Self {
+        Self {
+            x_m: sample.x_m,
+            y_m: sample.y_m,
+            heading_rad: sample.heading_rad,
+        }
+    }
+
     /// A point seen from here, in the world.
     fn point(&self, x_m: f64, y_m: f64) -> [f64; 2] {
         let (sin, cos) = self.heading_rad.sin_cos();
@@ -74,6 +90,31 @@ impl Asked {
         (!asked.waypoints.is_empty()).then_some(asked)
     }
 
+    /// How far the robot strayed from the route by its own telemetry, frame by frame [m]; empty where another program
+    /// drove it.
+    fn strayed_by_odometry_m(&self, trace: &Trace) -> Vec<f64> {
+        let poses: Vec<(f64, Frame)> = trace
+            .messages
+            .iter()
+            .filter_map(|message| match message.what {
+                FromRobot::Telemetry(telemetry) => Some((
+                    message.t_s,
+                    Frame {
+                        x_m: f64::from(telemetry.pose.x_m),
+                        y_m: f64::from(telemetry.pose.y_m),
+                        heading_rad: f64::from(telemetry.pose.heading_rad),
+                    },
+                )),
+                _ => None,
+            })
+            .collect();
+        let (before, after) = poses.split_at(poses.partition_point(|(t_s, _)| *t_s <= self.from_s));
+        let start = before.last().map_or(Frame::ORIGIN, |(_, pose)| *pose);
+        let polyline = self.polyline(start, Frame::ORIGIN);
+        let strayed_m = |(_, pose): &(f64, Frame)| distance_m(&polyline, [pose.x_m, pose.y_m]);
+        after.iter().map(strayed_m).collect()
+    }
+
     /// The polyline from `start`, its waypoints as seen from `origin`.
     fn polyline(&self, start: Frame, origin: Frame) -> Vec<[f64; 2]> {
         let origin = if self.relative { start } else { origin };
@@ -117,6 +158,69 @@ pub(super) fn route(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
     let Some(asked) = Asked::last(setup) else {
         return;
     };
+    let samples = trace.between(asked.from_s, f64::INFINITY);
+    let Some(first) = samples.first() else {
+        return;
+    };
+    let scenario = &setup.scenario.start;
+    let origin = Frame {
+        x_m: scenario.x_m,
+        y_m: scenario.y_m,
+        heading_rad: scenario.heading_rad,
+    };
+    let in_truth = asked.polyline(Frame::of(first), origin);
+    let truly_m: Vec<f64> = samples
+        .iter()
+        .map(|sample| distance_m(&in_truth, [sample.x_m, sample.y_m]))
+        .collect();
+    let path_m: f64 = samples
+        .windows(2)
+        .map(|two| (two[1].x_m - two[0].x_m).hypot(two[1].y_m - two[0].y_m))
+        .sum();
+    for (name, distances_m) in [
+        ("odometry", asked.strayed_by_odometry_m(trace)),
+        ("true", truly_m),
+    ] {
+        if !distances_m.is_empty() {
+            let (worst_m, rms_m) = worst_and_rms(&distances_m);
+            metrics.insert(format!("{name}_worst_m"), worst_m);
+            metrics.insert(format!("{name}_rms_m"), rms_m);
+        }
+    }
+    metrics.insert("path_m".into(), path_m);
+    if !asked.repeat {
+        end(&asked, trace, samples, origin, &in_truth, metrics);
+    }
+}
+
+/// Where and when a route that is driven once ended.
+fn end(
+    asked: &Asked,
+    trace: &Trace,
+    samples: &[Sample],
+    origin: Frame,
+    polyline: &[[f64; 2]],
+    metrics: &mut Metrics,
+) {
+    let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
+        return;
+    };
+    let Some([x_m, y_m]) = polyline.last() else {
+        return;
+    };
+    let mut put = |name: &str, value: f64| metrics.insert(name.into(), value);
+    put("end_error_m", (last.x_m - x_m).hypot(last.y_m - y_m));
+    let aim = asked.waypoints.last();
+    if let Some(heading_rad) = aim.and_then(|waypoint| waypoint.heading_rad) {
+        let from = if asked.relative {
+            Frame::of(first)
+        } else {
+            origin
+        };
+        let error_rad = last.heading_rad - from.heading_rad - f64::from(heading_rad);
+        let turns = (error_rad / TAU).round();
+        put("end_turn_rad", (error_rad - turns * TAU).abs());
+    }
     let reached_s = trace
         .messages
         .iter()
@@ -128,93 +232,6 @@ pub(super) fn route(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
             }
             _ => None,
         });
-    let poses: Vec<(f64, Frame)> = trace
-        .messages
-        .iter()
-        .filter_map(|message| match message.what {
-            FromRobot::Telemetry(telemetry) => Some((
-                message.t_s,
-                Frame {
-                    x_m: f64::from(telemetry.pose.x_m),
-                    y_m: f64::from(telemetry.pose.y_m),
-                    heading_rad: f64::from(telemetry.pose.heading_rad),
-                },
-            )),
-            _ => None,
-        })
-        .collect();
-    let samples = trace.between(asked.from_s, f64::INFINITY);
-    let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
-        return;
-    };
-
-    let nowhere = Frame {
-        x_m: 0.0,
-        y_m: 0.0,
-        heading_rad: 0.0,
-    };
-    // The original program sends no telemetry of ours.
-    let before = poses.iter().rfind(|(t_s, _)| *t_s <= asked.from_s);
-    let by_odometry = asked.polyline(before.map_or(nowhere, |(_, pose)| *pose), nowhere);
-    let strayed_m: Vec<f64> = poses
-        .iter()
-        .filter(|(t_s, _)| *t_s > asked.from_s)
-        .map(|(_, pose)| distance_m(&by_odometry, [pose.x_m, pose.y_m]))
-        .collect();
-    let Start {
-        x_m,
-        y_m,
-        heading_rad,
-    } = setup.scenario.start;
-    let origin = Frame {
-        x_m,
-        y_m,
-        heading_rad,
-    };
-    let start = Frame {
-        x_m: first.x_m,
-        y_m: first.y_m,
-        heading_rad: first.heading_rad,
-    };
-    let in_truth = asked.polyline(start, origin);
-    let truly_m: Vec<f64> = samples
-        .iter()
-        .map(|sample| distance_m(&in_truth, [sample.x_m, sample.y_m]))
-        .collect();
-    let path_m: f64 = samples
-        .windows(2)
-        .map(|two| (two[1].x_m - two[0].x_m).hypot(two[1].y_m - two[0].y_m))
-        .sum();
-
-    let mut put = |name: &str, value: f64| metrics.insert(name.into(), value);
-    for (name, distances_m) in [("odometry", &strayed_m), ("true", &truly_m)] {
-        if !distances_m.is_empty() {
-            let (worst_m, rms_m) = worst_and_rms(distances_m);
-            put(&format!("{name}_worst_m"), worst_m);
-            put(&format!("{name}_rms_m"), rms_m);
-        }
-    }
-    put("path_m", path_m);
-    if !asked.repeat
-        && let Some([x_m, y_m]) = in_truth.last()
-    {
-        put("end_error_m", (last.x_m - x_m).hypot(last.y_m - y_m));
-        let heading = asked
-            .waypoints
-            .last()
-            .and_then(|waypoint| waypoint.heading_rad);
-        if let Some(heading_rad) = heading {
-            let origin_rad = if asked.relative { start } else { origin }.heading_rad;
-            let error_rad = last.heading_rad - origin_rad - f64::from(heading_rad);
-            let turns = (error_rad / std::f64::consts::TAU).round();
-            put(
-                "end_turn_rad",
-                (error_rad - turns * std::f64::consts::TAU).abs(),
-            );
-        }
-        put(
-            "finish_s",
-            reached_s.map_or(f64::NAN, |at_s| at_s - asked.from_s),
-        );
-    }
+    let finish_s = reached_s.map_or(f64::NAN, |at_s| at_s - asked.from_s);
+    put("finish_s", finish_s);
 }
