@@ -273,8 +273,7 @@ fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<V
             match next {
                 Sent::Link(burst) => sim.send(&burst.bytes),
                 Sent::Typed(line) => {
-                    let text = String::from_utf8_lossy(&line.bytes);
-                    rumbo_lab::type_to(&mut sim, line.usart, &text);
+                    rumbo_lab::type_to(&mut sim, line.usart, &line.bytes);
                 }
             }
         }

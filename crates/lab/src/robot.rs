@@ -126,16 +126,15 @@ impl SimulatedRobot {
     }
 }
 
-/// Sends a line to a USART of the emulated chip, over the link if it is the link's; whether there is a chip.
-pub fn type_to(sim: &mut Sim, usart: u8, line: &str) -> bool {
-    let bytes = format!("{line}\n");
+/// Sends bytes to a USART of the emulated chip, over the link if it is the link's; whether there is a chip.
+pub fn type_to(sim: &mut Sim, usart: u8, bytes: &[u8]) -> bool {
     let Some(mega) = sim.mega_mut() else {
         return false;
     };
     if mega.firmware().link_usart() == Some(usart) {
-        sim.send(bytes.as_bytes());
+        sim.send(bytes);
     } else {
-        mega.type_in(usart, bytes.as_bytes());
+        mega.type_in(usart, bytes);
     }
     true
 }
@@ -258,8 +257,8 @@ impl Target for SimulatedRobot {
         self.news.pop_front()
     }
 
-    fn type_in(&mut self, usart: u8, line: &str) -> Result<(), TargetError> {
-        match type_to(&mut self.sim, usart, line) {
+    fn type_in(&mut self, usart: u8, text: &str) -> Result<(), TargetError> {
+        match type_to(&mut self.sim, usart, text.as_bytes()) {
             true => Ok(()),
             false => Err(TargetError::NoChip),
         }
