@@ -13,7 +13,7 @@ use rumbo_session::{Abilities, EditedWorld, LinkNews, Shown, Standing, Target, T
 use rumbo_sim::Sim;
 use rumbo_sim::boards::Board;
 use rumbo_sim::debugging::Debugging;
-use rumbo_sim::mega::USB;
+use rumbo_sim::mega::{Mega, USB};
 use rumbo_wire::Command;
 use std::collections::VecDeque;
 
@@ -79,6 +79,8 @@ impl SimulatedRobot {
         {
             scene.worlds.push(world.clone());
         }
+        let caveat = sim.mega().and_then(Mega::data_sheet);
+        let caveat = caveat.map(|text| LinkNews::Program(Level::Info, text));
         Ok(Self {
             library,
             overrides,
@@ -93,7 +95,7 @@ impl SimulatedRobot {
             reading_due_us: 0,
             profiling: false,
             ended: false,
-            news: VecDeque::new(),
+            news: caveat.into_iter().collect(),
             scene,
             first_commands,
         })

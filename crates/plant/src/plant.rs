@@ -11,7 +11,7 @@ pub use crate::event::Event;
 pub use crate::rig::{Mount, Rig};
 
 use crate::contact::{self, Footprint, Pose};
-use crate::drivetrain::{self, Bridge, Drivetrain, Motion, Side};
+use crate::drivetrain::{self, Bridge, Drivetrain, Modulation, Motion, Side};
 use crate::encoder::{self, Encoder};
 use crate::event::Queue;
 use crate::moving::{Body, Motion as BodyMotion, Velocity};
@@ -222,16 +222,16 @@ impl Plant {
             .set_bridge(&mut state.drivetrain, side, bridge);
     }
 
-    /// The same with a PWM of another frequency [Hz] on the enable pin than the parameters'.
+    /// The same with another PWM than the parameters'.
     pub fn set_bridge_at(
         &self,
         state: &mut State,
         side: Side,
         bridge: Bridge,
-        pwm_hz: Option<f64>,
+        modulation: Modulation,
     ) {
         self.drivetrain
-            .set_bridge_at(&mut state.drivetrain, side, bridge, pwm_hz);
+            .set_bridge_at(&mut state.drivetrain, side, bridge, modulation);
     }
 
     /// Commands the servo's angle: 0 ahead, positive to the left.

@@ -1,10 +1,11 @@
 //! Which signal is on which pin of the board.
 
 use crate::boards::Board;
+use crate::drivers::Driver;
 use std::collections::BTreeMap;
 
 /// The signals that a wiring may place: enable and direction inputs of the bridge, encoders, servo, sonars and UARTs.
-pub const SIGNALS: [&str; 19] = [
+pub const SIGNALS: [&str; 20] = [
     "left_enable",
     "left_forward",
     "left_backward",
@@ -13,6 +14,7 @@ pub const SIGNALS: [&str; 19] = [
     "right_forward",
     "right_backward",
     "right_encoder",
+    "standby",
     "servo",
     "left_trigger",
     "left_echo",
@@ -31,10 +33,23 @@ pub const SIGNALS: [&str; 19] = [
 pub struct Wiring {
     /// The board.
     pub board: &'static Board,
+    /// The motor driver.
+    pub driver: &'static Driver,
     /// Pin of each signal.
     pub pins: BTreeMap<String, u8>,
+    /// Inputs of the driver that are held high or low instead, as by a jumper.
+    pub held: BTreeMap<String, bool>,
     /// The divider that brings the battery's voltage to an analogue input, where there is one.
     pub battery: Option<Divider>,
+}
+
+/// The inputs of the motor driver, which may be held at a level, and of which several may be on one pin.
+#[must_use]
+pub fn is_driver_input(signal: &str) -> bool {
+    signal == "standby"
+        || ["_enable", "_forward", "_backward"]
+            .iter()
+            .any(|end| signal.ends_with(end))
 }
 
 /// A divider between battery and analogue input.

@@ -52,7 +52,7 @@ use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::{Cause, Input};
 use rumbo_emulator::verdict::Verdict;
-use rumbo_plant::drivetrain::{Bridge, Side};
+use rumbo_plant::drivetrain::{Bridge, Modulation, Side};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::sonar::SonarId;
 use servo::ServoInput;
@@ -78,8 +78,8 @@ const AHEAD_CYCLES: u64 = CYCLES_PER_US;
 /// An action of the chip on the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Action {
-    /// A half of the bridge is driven in another way, at this frequency of the PWM [Hz].
-    Bridge(Side, Bridge, Option<f64>),
+    /// A half of the bridge is driven in another way, with this PWM.
+    Bridge(Side, Bridge, Modulation),
     /// A pulse to the servo: where it is to point [rad], 0 ahead, positive to the left.
     Servo(f64),
     /// A trigger pulse has ended.
@@ -105,7 +105,7 @@ pub struct Mega {
     /// The chip's cycle at the plant's time 0.
     zero_cycle: u64,
     bridges: [HalfBridge; 2],
-    driven: [(Bridge, Option<f64>); 2],
+    driven: [(Bridge, Modulation); 2],
     servo: ServoInput,
     triggers: [Option<u64>; 3],
     encoders: [bool; 2],
@@ -136,11 +136,14 @@ impl Mega {
     pub(crate) fn new(firmware: Arc<Firmware>, encoders: [bool; 2]) -> Self {
         let mut chip = Chip::new(firmware.image());
         chip.watch(&firmware.wires().felt());
+        let Wires {
+            driver, bridges, ..
+        } = *firmware.wires();
         let mut mega = Self {
             chip,
             zero_cycle: 0,
-            bridges: Default::default(),
-            driven: [(Bridge::Released, None); 2],
+            bridges: bridges.map(|inputs| HalfBridge::new(driver, inputs)),
+            driven: [(Bridge::Released, Modulation::default()); 2],
             servo: ServoInput::default(),
             triggers: [None; 3],
             encoders: [false; 2],
@@ -190,7 +193,7 @@ impl Mega {
         let cycle = self.chip.cycle();
         self.begin(cycle, encoders);
         for index in 0..2 {
-            self.driven[index] = (Bridge::Released, None);
+            self.driven[index] = (Bridge::Released, Modulation::default());
         }
         self.drive();
     }

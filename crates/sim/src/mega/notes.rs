@@ -90,7 +90,17 @@ impl Mega {
         let strange = self.chip.unmodelled().iter().map(line);
         let notes = strange.chain(self.standstill()).chain(self.unsent());
         let notes = notes.chain(self.oddities.told(self.firmware.name()));
-        notes.chain(self.silence()).collect()
+        notes
+            .chain(self.silence())
+            .chain(self.data_sheet())
+            .collect()
+    }
+
+    /// What of the robot was not identified from recordings.
+    pub fn data_sheet(&self) -> Option<String> {
+        let driver = self.firmware.wires().driver;
+        driver.source?;
+        Some(format!("motor driver: {}", driver.in_words()))
     }
 
     /// Why the program has halted for good, if it has.

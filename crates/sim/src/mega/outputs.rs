@@ -46,9 +46,7 @@ impl Mega {
 
     fn level(&mut self, cycle: u64, pin: Pin, high: bool) {
         self.meters.set(cycle, pin, high);
-        if let Some(line) = self.line(pin) {
-            line.set(cycle, high);
-        }
+        self.each_line(pin, |line| line.set(cycle, high));
         if self.wires().servo == Some(pin) {
             let angle_rad = self.servo.set(cycle, high);
             self.actions.extend(angle_rad.map(Action::Servo));
@@ -73,20 +71,19 @@ impl Mega {
 
     fn modulate(&mut self, cycle: u64, pin: Pin, pwm: Option<Pwm>) {
         self.meters.modulate(cycle, pin, pwm);
-        if let Some(line) = self.line(pin) {
-            line.modulate(pwm);
-        }
+        self.each_line(pin, |line| line.modulate(pwm));
     }
 
-    fn line(&mut self, pin: Pin) -> Option<&mut bridge::Line> {
-        let pins = self.firmware.wires().bridges;
-        for (half, pins) in self.bridges.iter_mut().zip(pins) {
-            let wired = [pins.enable, pins.forward, pins.backward];
-            if let Some(at) = wired.iter().position(|wired| *wired == Some(pin)) {
-                return Some(&mut half.lines[at]);
+    /// Does something to the driver's inputs that are on this pin.
+    fn each_line(&mut self, pin: Pin, mut act: impl FnMut(&mut bridge::Line)) {
+        let wired = self.firmware.wires().bridges;
+        for (half, inputs) in self.bridges.iter_mut().zip(wired) {
+            for (line, input) in half.lines.iter_mut().zip(inputs) {
+                if input.pin() == Some(pin) {
+                    act(line);
+                }
             }
         }
-        None
     }
 
     /// Notes what the bridges do now that they did not before.

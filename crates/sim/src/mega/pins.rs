@@ -1,21 +1,40 @@
 //! The signals of a wiring on the pins of the chip.
 
+use crate::drivers::Driver;
 use crate::error::SimError;
 use crate::wiring::{Divider, Wiring};
 use rumbo_emulator::devices::ports::Pin;
 
-/// Enable and direction inputs of one half of the bridge; what is not wired stays low.
+/// The inputs of one half of the driver.
+pub(super) const INPUTS: [&str; 4] = ["enable", "forward", "backward", "standby"];
+
+/// An input of the driver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct BridgePins {
-    pub(super) enable: Option<Pin>,
-    pub(super) forward: Option<Pin>,
-    pub(super) backward: Option<Pin>,
+pub(super) enum DriverInput {
+    /// Not wired, or held low.
+    #[default]
+    Low,
+    /// Held high.
+    High,
+    /// On this pin.
+    Pin(Pin),
+}
+
+impl DriverInput {
+    pub(super) fn pin(self) -> Option<Pin> {
+        match self {
+            Self::Pin(pin) => Some(pin),
+            Self::Low | Self::High => None,
+        }
+    }
 }
 
 /// A wiring in terms of the chip. Pairs are left and right, triples are left, right and front, as the plant counts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Wires {
-    pub(super) bridges: [BridgePins; 2],
+    pub(super) driver: &'static Driver,
+    /// The inputs of each half, as [`INPUTS`].
+    pub(super) bridges: [[DriverInput; 4]; 2],
     pub(super) encoders: [Option<Pin>; 2],
     pub(super) servo: Option<Pin>,
     pub(super) triggers: [Option<Pin>; 3],
@@ -36,13 +55,11 @@ impl Wires {
             .into_iter()
             .zip(self.bridges.iter().zip(self.encoders))
         {
-            named.extend([
-                (format!("{side}_enable"), bridge.enable),
-                (format!("{side}_forward"), bridge.forward),
-                (format!("{side}_backward"), bridge.backward),
-                (format!("{side}_encoder"), encoder),
-            ]);
+            let inputs = INPUTS[..3].iter().zip(bridge);
+            named.extend(inputs.map(|(input, on)| (format!("{side}_{input}"), on.pin())));
+            named.push((format!("{side}_encoder"), encoder));
         }
+        named.push(("standby".to_owned(), self.bridges[0][3].pin()));
         for (index, sonar) in ["left", "right", "front"].into_iter().enumerate() {
             named.push((format!("{sonar}_trigger"), self.triggers[index]));
             named.push((format!("{sonar}_echo"), self.echoes[index]));
@@ -59,13 +76,26 @@ impl Wires {
     pub(super) fn new(name: &str, wiring: &Wiring) -> Result<Self, SimError> {
         let number = |signal: &str| wiring.pins.get(signal).copied();
         let pin = |signal: &str| number(signal).and_then(|number| wiring.board.pin(number));
-        let bridge = |side: &str| BridgePins {
-            enable: pin(&format!("{side}_enable")),
-            forward: pin(&format!("{side}_forward")),
-            backward: pin(&format!("{side}_backward")),
+        let driver = wiring.driver;
+        let input = |signal: &str, otherwise: DriverInput| match wiring.held.get(signal) {
+            Some(true) => DriverInput::High,
+            Some(false) => DriverInput::Low,
+            None => pin(signal).map_or(otherwise, DriverInput::Pin),
+        };
+        let bridge = |side: &str| {
+            let enable = match driver.has_enable {
+                true => input(&format!("{side}_enable"), DriverInput::Low),
+                false => DriverInput::High,
+            };
+            let [forward, backward] = ["forward", "backward"]
+                .map(|way| input(&format!("{side}_{way}"), DriverInput::Low));
+            // A module holds what nobody wires.
+            let standby = input("standby", DriverInput::High);
+            [enable, forward, backward, standby]
         };
         let sonars = ["left", "right", "front"];
         Ok(Self {
+            driver,
             bridges: [bridge("left"), bridge("right")],
             encoders: [pin("left_encoder"), pin("right_encoder")],
             servo: pin("servo"),
@@ -81,7 +111,7 @@ impl Wires {
     pub(super) fn felt(&self) -> Vec<Pin> {
         let bridges = self.bridges.iter();
         bridges
-            .flat_map(|bridge| [bridge.enable, bridge.forward, bridge.backward])
+            .flat_map(|bridge| bridge.map(DriverInput::pin))
             .chain([self.servo])
             .chain(self.triggers)
             .flatten()

@@ -106,9 +106,9 @@ impl Sim {
 
     fn act(&mut self, action: Action) {
         match action {
-            Action::Bridge(side, bridge, pwm_hz) => {
+            Action::Bridge(side, bridge, modulation) => {
                 self.plant
-                    .set_bridge_at(&mut self.state, side, bridge, pwm_hz);
+                    .set_bridge_at(&mut self.state, side, bridge, modulation);
                 let mut duty = self.duty;
                 match side {
                     Side::Left => duty.left = duty_of(bridge),

@@ -7,9 +7,14 @@ use std::process::Output;
 
 /// A folder with a robot on a Uno, wired so, in an open world, and a sketch. `None` where no compiler is installed.
 fn kit(name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
+    driven_by("l298n", name, wiring, sketch)
+}
+
+/// The same with another driver.
+fn driven_by(driver: &str, name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
     let bench = bench(name)?;
     let robot = format!(
-        "title = \"A car\"\nboard = \"uno\"\n[rig.front_single.front]\nx_m = 0.13\n[wiring.car]\n{wiring}"
+        "title = \"A car\"\nboard = \"uno\"\ndriver = \"{driver}\"\n[rig.front_single.front]\nx_m = 0.13\n[wiring.car]\n{wiring}"
     );
     let scenario = "title = \"On the floor\"\nrobot = \"robot.toml\"\nrig = \"front_single\"\nworld = \"open\"\n\
                     mode = \"manual\"\nduration_s = 3\n[spread]\nnone = true\n";
@@ -100,5 +105,125 @@ fn a_letter_without_a_line_ending_is_obeyed_until_the_next_one() {
         stderr(&refused).contains("line_ending = \"nl\": known are `none`, `lf`, `cr`, `crlf`"),
         "{}",
         stderr(&refused)
+    );
+}
+
+/// Forward for a second and a half, then backward.
+fn to_and_fro(pins: &str, forward: &str, backward: &str) -> String {
+    format!(
+        "const byte pins[] = {{{pins}}};\nvoid setup() {{ for (byte pin : pins) pinMode(pin, OUTPUT); }}\n\
+         void loop() {{ {forward} delay(1500); {backward} delay(100000); }}\n"
+    )
+}
+
+#[test]
+fn an_l298n_whose_jumpers_hold_the_enables_drives_by_pwm_on_its_inputs() {
+    let sketch = to_and_fro(
+        "5, 6, 9, 10",
+        "analogWrite(5, 150); analogWrite(9, 150); analogWrite(6, 0); analogWrite(10, 0);",
+        "analogWrite(5, 0); analogWrite(9, 0); analogWrite(6, 150); analogWrite(10, 150);",
+    );
+    let wiring = "left_enable = \"high\"\nleft_forward = 5\nleft_backward = 6\n\
+                  right_enable = \"high\"\nright_forward = 9\nright_backward = 10\n";
+    there_and_back(kit("jumpers", wiring, &sketch));
+    // As such a file was written before there was a word for the jumper.
+    let Some(bench) = kit(
+        "no_jumpers",
+        &wiring.replace("left_enable = \"high\"\n", ""),
+        &sketch,
+    ) else {
+        return;
+    };
+    let refused = drive(&bench, &[]);
+    assert!(
+        stderr(&refused).contains("[wiring.car] left_enable is missing")
+            && stderr(&refused).contains("\"high\" where a jumper holds it"),
+        "{}",
+        stderr(&refused)
+    );
+}
+
+#[test]
+fn a_driver_with_one_direction_input_drives_both_ways() {
+    // As an mBot has it: one wheel's high is forward, the other's backward.
+    let sketch = to_and_fro(
+        "4, 5, 6, 7",
+        "digitalWrite(7, HIGH); digitalWrite(4, LOW); analogWrite(6, 120); analogWrite(5, 120);",
+        "digitalWrite(7, LOW); digitalWrite(4, HIGH);",
+    );
+    let wiring = "left_enable = 6\nleft_forward = 7\nright_enable = 5\nright_backward = 4\n";
+    there_and_back(driven_by("dir-pwm", "dir_pwm", wiring, &sketch));
+}
+
+#[test]
+fn a_tb6612_drives_when_its_standby_is_high() {
+    let run = "digitalWrite(7, HIGH); digitalWrite(8, LOW); digitalWrite(2, HIGH); digitalWrite(4, LOW); \
+               analogWrite(5, 120); analogWrite(6, 120);";
+    let back =
+        "digitalWrite(7, LOW); digitalWrite(8, HIGH); digitalWrite(2, LOW); digitalWrite(4, HIGH);";
+    let sketch = to_and_fro(
+        "2, 3, 4, 5, 6, 7, 8",
+        &format!("digitalWrite(3, HIGH); {run}"),
+        back,
+    );
+    let wiring = "left_enable = 5\nleft_forward = 7\nleft_backward = 8\nright_enable = 6\nright_forward = 2\n\
+                  right_backward = 4\nstandby = 3\n";
+    there_and_back(driven_by("tb6612", "tb6612", wiring, &sketch));
+    let Some(bench) = driven_by("tb6612", "standby", wiring, &to_and_fro("3", run, back)) else {
+        return;
+    };
+    drive(&bench, &[]);
+    assert_eq!(last(&bench, "x_m"), 0.0);
+}
+
+#[test]
+fn a_drv8833_drives_by_pwm_on_its_inputs_and_has_no_enable() {
+    let sketch = to_and_fro(
+        "5, 6, 9, 10",
+        // The left wheel brakes between the pulses, the right one coasts.
+        "digitalWrite(5, HIGH); analogWrite(6, 105); analogWrite(9, 150);",
+        "analogWrite(5, 105); digitalWrite(6, HIGH); analogWrite(9, 0); analogWrite(10, 150);",
+    );
+    let wiring = "left_forward = 5\nleft_backward = 6\nright_forward = 9\nright_backward = 10\n";
+    let Some(bench) = driven_by("drv8833", "drv8833", wiring, &sketch) else {
+        return;
+    };
+    drive(&bench, &[]);
+    // More for the one that brakes: its mean voltage grows with the duty.
+    let (left, right) = (last(&bench, "left_rad_s"), last(&bench, "right_rad_s"));
+    assert!(left < -2.0 && right < 0.0 && left < right, "{left} {right}");
+    let Some(bench) = driven_by(
+        "drv8833",
+        "drv_enable",
+        "left_enable = 3\nleft_forward = 5\n",
+        "",
+    ) else {
+        return;
+    };
+    let refused = stderr(&drive(&bench, &[]));
+    assert!(
+        refused.contains("left_enable: the DRV8833 has no such input"),
+        "{refused}"
+    );
+}
+
+/// It drives forward for half of the run and back in the other half.
+fn there_and_back(bench: Option<PathBuf>) {
+    let Some(bench) = bench else { return };
+    let run = drive(&bench, &[]);
+    let csv = std::fs::read_to_string(bench.join("out/floor-1.truth.csv")).unwrap();
+    let mut lines = csv.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let x = header.iter().position(|each| *each == "x_m").unwrap();
+    let x_m: Vec<f64> = lines
+        .map(|line| line.split(',').nth(x).unwrap().parse().unwrap())
+        .collect();
+    let farthest_m = x_m.iter().copied().fold(0.0, f64::max);
+    let end_m = *x_m.last().unwrap();
+    assert!(
+        farthest_m > 0.3 && end_m < 0.7 * farthest_m,
+        "{farthest_m} {end_m} {}{}",
+        stdout(&run),
+        stderr(&run)
     );
 }
