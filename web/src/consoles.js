@@ -60,7 +60,8 @@ export class Consoles {
 
   /** @param {number} usart */
   #name(usart) {
-    return usart === this.#link && usart > 0 ? t('{} (Bluetooth)', portName(usart)) : portName(usart);
+    const own = portName(usart);
+    return usart === this.#link && own.startsWith('Serial') && usart > 0 ? t('{} (Bluetooth)', own) : own;
   }
 
   /** @param {ConsoleText[]} said */

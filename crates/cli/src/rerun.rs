@@ -15,6 +15,7 @@ use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_experiment::{MODEL, calibration_run};
 use rumbo_log::{Burst, Kind, Log, Manifest, Row, Said, Sample, Sent};
+use rumbo_sim::mega::CONSOLES;
 use rumbo_sim::{Config, Sim};
 use rumbo_station::log_file;
 use rumbo_wire::{Decoder, FromRobot, Message, PROTOCOL_VERSION, Received, Telemetry};
@@ -296,7 +297,7 @@ fn consoles(sim: &mut Sim, t_us: u64) -> Vec<Said> {
     let Some(mega) = sim.mega_mut() else {
         return Vec::new();
     };
-    let said = (0..4).map(|usart| Said {
+    let said = (0..CONSOLES).map(|usart| Said {
         t_us,
         usart,
         to_chip: false,

@@ -249,10 +249,12 @@ section! {
 }
 
 section! {
-    /// One Hall sensor per motor shaft, counted on both edges.
+    /// One sensor per wheel, counted on both edges: a Hall sensor on the motor's shaft, or a slotted disc on the wheel.
     Encoder {
         /// Edges per turn of the motor shaft.
         edges_per_motor_turn = 8.0, 1.0 => 32.0, "count";
+        /// Slots of a disc on the wheel itself, each of which gives two edges; 0: the disc is on the motor's shaft.
+        slots = 0.0, 0.0 => 400.0, "count";
         /// Largest deviation of an edge from even spacing, relative to that spacing.
         spacing_error = 0.05, 0.0 => 0.45, "1";
     }

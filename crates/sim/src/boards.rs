@@ -160,11 +160,12 @@ impl Board {
         self.usarts.iter().map(|[_, transmit]| self.pin(*transmit))
     }
 
-    /// The pins of its USARTs, for people: `19 and 18, 0 and 1`.
-    pub(crate) fn usarts_in_words(&self) -> String {
-        let pairs = self.usarts.iter().rev();
-        let pairs = pairs.map(|[receive, transmit]| format!("{receive} and {transmit}"));
-        pairs.collect::<Vec<_>>().join(", ")
+    /// Receiving and transmitting pin of a USART that it has.
+    pub(crate) fn usart_pins(&self, usart: u8) -> [u8; 2] {
+        self.usarts
+            .get(usize::from(usart))
+            .copied()
+            .unwrap_or_default()
     }
 }
 

@@ -5,15 +5,17 @@ use crate::drivers::Driver;
 use std::collections::BTreeMap;
 
 /// The signals that a wiring may place: enable and direction inputs of the bridge, encoders, servo, sonars and UARTs.
-pub const SIGNALS: [&str; 20] = [
+pub const SIGNALS: [&str; 22] = [
     "left_enable",
     "left_forward",
     "left_backward",
     "left_encoder",
+    "left_encoder_b",
     "right_enable",
     "right_forward",
     "right_backward",
     "right_encoder",
+    "right_encoder_b",
     "standby",
     "servo",
     "left_trigger",
@@ -39,6 +41,8 @@ pub struct Wiring {
     pub pins: BTreeMap<String, u8>,
     /// Inputs of the driver that are held high or low instead, as by a jumper.
     pub held: BTreeMap<String, bool>,
+    /// Rate of the Bluetooth module, where it is not the usual one \[baud\].
+    pub link_baud: Option<u32>,
     /// The divider that brings the battery's voltage to an analogue input, where there is one.
     pub battery: Option<Divider>,
 }

@@ -32,6 +32,8 @@ use std::collections::{BTreeMap, BTreeSet};
 const MOUNT: Allowed = Allowed::new(-1.0, 1.0, "m");
 /// Ratio of a divider.
 const RATIO: Allowed = Allowed::new(1.0, 20.0, "1");
+/// Rates of a Bluetooth module.
+const BAUD: Allowed = Allowed::new(1200.0, 1_382_400.0, "count");
 /// Flash and SRAM of an ATmega2560.
 const FLASH: Allowed = Allowed::new(1.0, 256.0 * 1024.0, "count");
 const SRAM: Allowed = Allowed::new(1.0, 8.0 * 1024.0, "count");
@@ -152,6 +154,12 @@ pub(crate) fn read_plant(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String
             values.insert(limit.key, value);
         }
     }
+    let disc = ["slots", "edges_per_motor_turn"].map(|key| format!("encoder.{key}"));
+    if disc.iter().all(|key| values.contains_key(key)) && values[&disc[0]] > 0.0 {
+        table.complain_here(
+            "slots counts a disc on the wheel, edges_per_motor_turn one on the motor's shaft: leave one of them out",
+        );
+    }
     for section in sections {
         values.extend(read_plant(
             &table.table(&section),
@@ -215,6 +223,8 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
         battery: read_divider(&table.table("battery"), table.has("battery"), board),
         ..Wiring::default()
     };
+    let baud = table.number("link_baud", BAUD);
+    wiring.link_baud = baud.map(|baud| baud as u32);
     for signal in SIGNALS {
         let Some((line, wired)) = read_wired(table, signal, board) else {
             continue;
@@ -293,6 +303,12 @@ fn suits_driver(table: &Table<'_, '_>, wiring: &Wiring) {
         ));
     }
     for side in ["left", "right"] {
+        if has(&format!("{side}_encoder_b")) && !has(&format!("{side}_encoder")) {
+            table.complain_here(&format!(
+                "{side}_encoder_b is the second output of an encoder, which tells the direction: give {side}_encoder, \
+                 the first one, too"
+            ));
+        }
         let [enable, forward, backward] =
             ["enable", "forward", "backward"].map(|input| format!("{side}_{input}"));
         if has(&enable) && !driver.has_enable {
