@@ -14,6 +14,7 @@ export class Consoles {
   #choice = element('console-choice', HTMLDivElement);
   #text = element('console', HTMLPreElement);
   #line = element('console-text', HTMLInputElement);
+  #ending = element('console-ending', HTMLSelectElement);
   /** @type {Map<number, string>} */
   #said = new Map();
   /** @type {number | null} */
@@ -37,7 +38,7 @@ export class Consoles {
     element('console-line', HTMLFormElement).addEventListener('submit', (event) => {
       event.preventDefault();
       if (this.#shown === null) return;
-      send({ type: 'type', usart: this.#shown, text: this.#line.value });
+      send({ type: 'type', usart: this.#shown, text: this.#line.value, ending: this.#ending.value });
       this.#line.select();
     });
   }
@@ -59,7 +60,8 @@ export class Consoles {
 
   /** @param {number} usart */
   #name(usart) {
-    return usart === this.#link && usart > 0 ? t('{} (Bluetooth)', portName(usart)) : portName(usart);
+    const own = portName(usart);
+    return usart === this.#link && own.startsWith('Serial') && usart > 0 ? t('{} (Bluetooth)', own) : own;
   }
 
   /** @param {ConsoleText[]} said */

@@ -96,7 +96,10 @@ export function signal(name) {
 }
 
 /** A port as the student's program calls it. @param {number} usart */
-export const portName = (usart) => (usart === LINK ? 'link' : usart === 0 ? 'Serial (USB)' : `Serial${usart}`);
+export const portName = (usart) => (usart === LINK ? 'link' : usart === 0 ? 'Serial (USB)' : usart === ON_PINS ? 'Bluetooth' : `Serial${usart}`);
+
+/** In place of a USART: the Bluetooth module on other pins. */
+const ON_PINS = 4;
 
 /** In place of a USART: the link to a robot with the text protocol. */
 export const LINK = 255;

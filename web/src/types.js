@@ -148,7 +148,7 @@
  *   | {type: 'program', name: string, data: string}
  *   | {type: 'profile', on: boolean}
  *   | {type: 'world', ticket: number, act: 'show' | 'check' | 'drive', text: string}
- *   | {type: 'type', usart: number, text: string}
+ *   | {type: 'type', usart: number, text: string, ending: string}
  *   | {type: 'speed', factor: number}
  *   | {type: 'seek', t_s: number}
  *   | {type: 'step', frames: number}

@@ -148,7 +148,10 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
             for name in library.list(Kind::Robot) {
                 let file = library.robot(&name).map_err(wrong)?;
                 let rigs: Vec<_> = file.rigs.keys().collect();
-                entries.push(json!({ "name": name, "title": file.title, "rigs": rigs }));
+                entries.push(
+                    json!({ "name": name, "title": file.title, "board": file.board.name,
+                    "driver": file.driver.in_words(), "rigs": rigs }),
+                );
             }
         }
         Topic::Policies => {
@@ -354,7 +357,12 @@ fn row(entry: &Value) -> Vec<String> {
         row.extend([default, format!("{min}..{max}"), text("unit"), text("help")]);
     } else if let Some(rigs) = entry["rigs"].as_array() {
         let rigs: Vec<_> = rigs.iter().filter_map(Value::as_str).collect();
-        row.push(format!("{} (rigs: {})", text("title"), rigs.join(", ")));
+        row.push(format!(
+            "{} (rigs: {}; driver: {})",
+            text("title"),
+            rigs.join(", "),
+            text("driver")
+        ));
     } else {
         row.push(text("title"));
     }

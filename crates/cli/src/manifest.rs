@@ -6,6 +6,7 @@ use rumbo_experiment::files::{
 };
 use rumbo_lab::manifest::{OF_FLEET, OF_POLICY, hash};
 use rumbo_log::Manifest;
+use rumbo_wire::LineEnding;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
@@ -19,10 +20,13 @@ pub(crate) const LONGEST_S: f64 = 3_600.0;
 const EEPROM: usize = 4_096;
 
 fn typed(manifest: &Manifest) -> Vec<TimedText> {
+    let ending = manifest.line_ending.as_deref();
+    let ending = ending.and_then(LineEnding::named).unwrap_or_default();
     let lines = |texts: &[(f64, String)], port: Port| -> Vec<TimedText> {
         let timed = texts.iter().map(|(at_s, text)| TimedText {
             at_s: *at_s,
             text: text.clone(),
+            ending,
             port,
         });
         timed.collect()
@@ -146,16 +150,18 @@ mod tests {
     use rumbo_log::Kind;
 
     #[test]
-    fn a_line_for_the_usb_port_is_read_from_its_own_list() {
+    fn a_line_for_the_usb_port_is_read_from_its_own_list_with_its_ending() {
         let timed = |text: &str, port: Port| TimedText {
             at_s: 2.0,
             text: text.into(),
+            ending: LineEnding::Cr,
             port,
         };
         let texts = vec![timed("REF 30", Port::Link), timed("go", Port::Usb)];
         let manifest = Manifest {
             texts: lines(&texts, Port::Link),
             usb_texts: lines(&texts, Port::Usb),
+            line_ending: Some("cr".into()),
             ..Manifest::default()
         };
         assert_eq!(manifest.usb_texts, [(2.0, "go".to_owned())]);

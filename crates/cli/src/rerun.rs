@@ -15,6 +15,7 @@ use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_experiment::{MODEL, calibration_run};
 use rumbo_log::{Burst, Kind, Log, Manifest, Row, Said, Sample, Sent};
+use rumbo_sim::mega::CONSOLES;
 use rumbo_sim::{Config, Sim};
 use rumbo_station::log_file;
 use rumbo_wire::{Decoder, FromRobot, Message, PROTOCOL_VERSION, Received, Telemetry};
@@ -282,8 +283,7 @@ fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<V
             match next {
                 Sent::Link(burst) => sim.send(&burst.bytes),
                 Sent::Typed(line) => {
-                    let text = String::from_utf8_lossy(&line.bytes);
-                    rumbo_lab::type_to(&mut sim, line.usart, &text);
+                    rumbo_lab::type_to(&mut sim, line.usart, &line.bytes);
                 }
             }
         }
@@ -306,7 +306,7 @@ fn consoles(sim: &mut Sim, t_us: u64) -> Vec<Said> {
     let Some(mega) = sim.mega_mut() else {
         return Vec::new();
     };
-    let said = (0..4).map(|usart| Said {
+    let said = (0..CONSOLES).map(|usart| Said {
         t_us,
         usart,
         to_chip: false,

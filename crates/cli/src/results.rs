@@ -8,11 +8,9 @@ use crate::run_log::{self, Source};
 use rumbo_experiment::files::{ScenarioFile, Setup};
 use rumbo_experiment::run::RunResult;
 use rumbo_session::readable;
+use rumbo_sim::mega::{CONSOLES, ON_PINS};
 use rumbo_sim::trace::Trace;
 use std::path::{Path, PathBuf};
-
-/// USARTs of the emulated chip.
-const USARTS: u8 = 4;
 
 /// The paths of a run's files.
 pub(crate) struct Results {
@@ -39,7 +37,10 @@ impl Results {
     }
 
     fn usart(&self, usart: u8) -> PathBuf {
-        self.file(&format!("-usart{usart}.txt"))
+        match usart {
+            ON_PINS => self.file("-bluetooth.txt"),
+            usart => self.file(&format!("-usart{usart}.txt")),
+        }
     }
 
     /// Whether all of them may be written; `fleet`: the robots, if there are several.
@@ -62,7 +63,7 @@ impl Results {
             guard.check(&files.file(".mcap"), &log)?;
             let truth = Mark::table(&Trace::default().csv());
             guard.check(&files.file(".truth.csv"), &truth)?;
-            (0..USARTS)
+            (0..CONSOLES)
                 .filter(|_| !beside)
                 .try_for_each(|usart| guard.check(&files.usart(usart), &result))
         };
@@ -103,7 +104,7 @@ impl Results {
 
     /// Writes the true signals of a robot, and the output of its USARTs; of several, each has its own.
     fn write_signals(&self, result: &RunResult) -> Result<(), Failure> {
-        for usart in 0..USARTS {
+        for usart in 0..CONSOLES {
             let said = result.trace.console(usart);
             if !said.is_empty() {
                 place::write(&self.usart(usart), readable(&said))?;

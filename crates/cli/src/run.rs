@@ -11,7 +11,7 @@ use crate::results::Results;
 use crate::run_log::{Kept, Source};
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::compare::median;
-use rumbo_experiment::files::{Library, Overrides, ScenarioFile, Setup};
+use rumbo_experiment::files::{Library, Overrides, ScenarioFile, Setup, TimedText};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_log::Kind;
 use rumbo_sim::trace::Trace;
@@ -21,8 +21,10 @@ use std::sync::atomic::Ordering;
 
 /// Runs every scenario with every seed; one line or table per scenario, or one JSON object per run.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
+    let ending = args.line_ending;
+    let texts = args.commands.iter().chain(&args.usb).cloned();
     let overrides = Overrides {
-        texts: [&args.commands[..], &args.usb].concat(),
+        texts: texts.map(|text| TimedText { ending, ..text }).collect(),
         ..args
             .setting
             .overrides(args.program, &args.image, &args.parameters)

@@ -256,8 +256,8 @@ impl Target for FleetRobot {
         self.sim(sight::consoles)
     }
 
-    fn type_in(&mut self, usart: u8, line: &str) -> Result<(), TargetError> {
-        match self.sim(|sim| type_to(sim, usart, line)) {
+    fn type_in(&mut self, usart: u8, text: &str) -> Result<(), TargetError> {
+        match self.sim(|sim| type_to(sim, usart, text.as_bytes())) {
             true => Ok(()),
             false => Err(TargetError::NoChip),
         }

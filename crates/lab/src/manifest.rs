@@ -58,6 +58,11 @@ pub fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manife
         parameters: overrides.parameters.clone(),
         texts: lines(&overrides.texts, Port::Link),
         usb_texts: lines(&overrides.texts, Port::Usb),
+        // One for all of a command.
+        line_ending: overrides
+            .texts
+            .first()
+            .map(|timed| timed.ending.name().to_owned()),
         files,
         ..Manifest::default()
     }

@@ -13,7 +13,7 @@ use rumbo_session::{Abilities, EditedWorld, LinkNews, Shown, Standing, Target, T
 use rumbo_sim::Sim;
 use rumbo_sim::boards::Board;
 use rumbo_sim::debugging::Debugging;
-use rumbo_sim::mega::USB;
+use rumbo_sim::mega::{Mega, USB};
 use rumbo_wire::Command;
 use std::collections::VecDeque;
 
@@ -79,6 +79,8 @@ impl SimulatedRobot {
         {
             scene.worlds.push(world.clone());
         }
+        let caveat = sim.mega().and_then(Mega::data_sheet);
+        let caveat = caveat.map(|text| LinkNews::Program(Level::Info, text));
         Ok(Self {
             library,
             overrides,
@@ -93,7 +95,7 @@ impl SimulatedRobot {
             reading_due_us: 0,
             profiling: false,
             ended: false,
-            news: VecDeque::new(),
+            news: caveat.into_iter().collect(),
             scene,
             first_commands,
         })
@@ -126,16 +128,15 @@ impl SimulatedRobot {
     }
 }
 
-/// Sends a line to a USART of the emulated chip, over the link if it is the link's; whether there is a chip.
-pub fn type_to(sim: &mut Sim, usart: u8, line: &str) -> bool {
-    let bytes = format!("{line}\n");
+/// Sends bytes to a USART of the emulated chip, over the link if it is the link's; whether there is a chip.
+pub fn type_to(sim: &mut Sim, usart: u8, bytes: &[u8]) -> bool {
     let Some(mega) = sim.mega_mut() else {
         return false;
     };
     if mega.firmware().link_usart() == Some(usart) {
-        sim.send(bytes.as_bytes());
+        sim.send(bytes);
     } else {
-        mega.type_in(usart, bytes.as_bytes());
+        mega.type_in(usart, bytes);
     }
     true
 }
@@ -258,8 +259,8 @@ impl Target for SimulatedRobot {
         self.news.pop_front()
     }
 
-    fn type_in(&mut self, usart: u8, line: &str) -> Result<(), TargetError> {
-        match type_to(&mut self.sim, usart, line) {
+    fn type_in(&mut self, usart: u8, text: &str) -> Result<(), TargetError> {
+        match type_to(&mut self.sim, usart, text.as_bytes()) {
             true => Ok(()),
             false => Err(TargetError::NoChip),
         }

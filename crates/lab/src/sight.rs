@@ -4,6 +4,7 @@ use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_log::{MapPose, Source, Truth};
 use rumbo_session::{Abilities, Shown};
+use rumbo_sim::mega::CONSOLES;
 use rumbo_sim::mega::firmware::Language;
 use rumbo_sim::{READING_US, Sim, loop_signals};
 
@@ -63,6 +64,6 @@ pub(crate) fn consoles(sim: &mut Sim) -> Vec<(u8, Vec<u8>)> {
     let Some(mega) = sim.mega_mut() else {
         return Vec::new();
     };
-    let said = (0..4).map(|usart| (usart, mega.take_console(usart)));
+    let said = (0..CONSOLES).map(|usart| (usart, mega.take_console(usart)));
     said.filter(|(_, bytes)| !bytes.is_empty()).collect()
 }

@@ -59,6 +59,8 @@ pub struct Manifest {
     /// Lines typed on the USB port of an emulated Mega, with their times \[s\].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub usb_texts: Vec<(f64, String)>,
+    /// What was sent behind each of those lines, by name; LF where it is missing.
+    pub line_ending: Option<String>,
     /// What the robot's EEPROM held at the start, as hexadecimal digits; `None` where it was erased.
     pub eeprom: Option<String>,
     /// The simulation advanced in steps of this length \[us\].
@@ -90,9 +92,21 @@ impl Manifest {
 
     /// What the log's metadata says; `None` where that is no manifest.
     pub(crate) fn from_metadata(metadata: &BTreeMap<String, String>) -> Option<Self> {
-        const TEXTS: [&str; 13] = [
-            "kind", "version", "started", "scenario", "robot", "member", "world", "rig", "wiring",
-            "program", "image", "port", "eeprom",
+        const TEXTS: [&str; 14] = [
+            "kind",
+            "version",
+            "started",
+            "scenario",
+            "robot",
+            "member",
+            "world",
+            "rig",
+            "wiring",
+            "program",
+            "image",
+            "port",
+            "eeprom",
+            "line_ending",
         ];
         let fields = metadata.iter().map(|(key, text)| {
             let value = match TEXTS.contains(&key.as_str()) {

@@ -12,7 +12,7 @@
 //!
 //! Wheel index 0 is the left wheel, 1 the right. All angles and speeds are the wheels', positive forward.
 
-pub use bridge::Bridge;
+pub use bridge::{Bridge, Decay, Modulation};
 
 use crate::battery::{self, Battery};
 use crate::noise::{Noise, source};
@@ -170,19 +170,19 @@ impl Drivetrain {
 
     /// Sets one half of the bridge; it holds until set again.
     pub fn set_bridge(&self, state: &mut State, side: Side, bridge: Bridge) {
-        self.set_bridge_at(state, side, bridge, None);
+        self.set_bridge_at(state, side, bridge, Modulation::default());
     }
 
-    /// The same with a PWM of another frequency [Hz] than the parameters'.
+    /// The same with another PWM than the parameters'.
     pub fn set_bridge_at(
         &self,
         state: &mut State,
         side: Side,
         bridge: Bridge,
-        pwm_hz: Option<f64>,
+        modulation: Modulation,
     ) {
         let command = &mut state.wheels[side.index()].command;
-        *command = self.winding.command(bridge, pwm_hz, *command);
+        *command = self.winding.command(bridge, modulation, *command);
     }
 
     /// Terminal voltage of the battery, V.

@@ -1,15 +1,18 @@
 //! What the plant reports while time passes, and the queue that puts it in order.
 
 use crate::drivetrain::Side;
+use crate::encoder::Channel;
 use crate::sonar::SonarId;
 
 /// What the robot's pins, or an observer, would see.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
-    /// An edge of a wheel's Hall sensor.
+    /// An edge of a wheel's encoder.
     Edge {
         /// Which wheel.
         wheel: Side,
+        /// Which of its outputs.
+        channel: Channel,
         /// When.
         at_us: u64,
         /// Level after it.

@@ -155,7 +155,7 @@ section! {
 }
 
 section! {
-    /// L298N H bridge, one half per motor, with the PWM on the enable pin.
+    /// H bridge, one half per motor: an L298N with the PWM on its enable pin, or another by its data sheet.
     Bridge {
         /// Voltage lost in the two saturated transistors at small current.
         drop_v = 1.4, 0.0 => 4.0, "V";
@@ -163,6 +163,8 @@ section! {
         drop_ohm = 0.5, 0.0 => 5.0, "ohm";
         /// Forward voltage of one freewheeling diode.
         diode_v = 0.9, 0.0 => 2.0, "V";
+        /// Voltage lost around a shorted motor, in a transistor and a diode; 0 where the transistors conduct both ways.
+        brake_v = 1.6, 0.0 => 4.0, "V";
         /// PWM frequency of the Mega's timers 3 and 4 as Arduino sets them.
         pwm_hz = 490.2, 30.0 => 40000.0, "Hz";
     }
@@ -247,10 +249,12 @@ section! {
 }
 
 section! {
-    /// One Hall sensor per motor shaft, counted on both edges.
+    /// One sensor per wheel, counted on both edges: a Hall sensor on the motor's shaft, or a slotted disc on the wheel.
     Encoder {
         /// Edges per turn of the motor shaft.
         edges_per_motor_turn = 8.0, 1.0 => 32.0, "count";
+        /// Slots of a disc on the wheel itself, each of which gives two edges; 0: the disc is on the motor's shaft.
+        slots = 0.0, 0.0 => 400.0, "count";
         /// Largest deviation of an edge from even spacing, relative to that spacing.
         spacing_error = 0.05, 0.0 => 0.45, "1";
     }

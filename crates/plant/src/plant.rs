@@ -11,8 +11,8 @@ pub use crate::event::Event;
 pub use crate::rig::{Mount, Rig};
 
 use crate::contact::{self, Footprint, Pose};
-use crate::drivetrain::{self, Bridge, Drivetrain, Motion, Side};
-use crate::encoder::{self, Encoder};
+use crate::drivetrain::{self, Bridge, Drivetrain, Modulation, Motion, Side};
+use crate::encoder::{self, Channel, Encoder};
 use crate::event::Queue;
 use crate::moving::{Body, Motion as BodyMotion, Velocity};
 use crate::noise::Noise;
@@ -135,6 +135,15 @@ impl Plant {
         }
     }
 
+    /// The same whose encoders have the output B too.
+    #[must_use]
+    pub fn with_second_channels(self) -> Self {
+        Self {
+            encoders: self.encoders.map(Encoder::with_second),
+            ..self
+        }
+    }
+
     /// Time 0, at rest at a pose, bridges released, servo straight ahead.
     #[must_use]
     pub fn start(&self, pose: Pose) -> State {
@@ -222,16 +231,16 @@ impl Plant {
             .set_bridge(&mut state.drivetrain, side, bridge);
     }
 
-    /// The same with a PWM of another frequency [Hz] on the enable pin than the parameters'.
+    /// The same with another PWM than the parameters'.
     pub fn set_bridge_at(
         &self,
         state: &mut State,
         side: Side,
         bridge: Bridge,
-        pwm_hz: Option<f64>,
+        modulation: Modulation,
     ) {
         self.drivetrain
-            .set_bridge_at(&mut state.drivetrain, side, bridge, pwm_hz);
+            .set_bridge_at(&mut state.drivetrain, side, bridge, modulation);
     }
 
     /// Commands the servo's angle: 0 ahead, positive to the left.
@@ -345,6 +354,7 @@ impl Plant {
             let into_us = libm::ceil(edge.fraction * step_us).clamp(1.0, step_us);
             let event = Event::Edge {
                 wheel,
+                channel: edge.channel,
                 at_us: from_us + into_us as u64,
                 level: edge.level,
             };
@@ -476,8 +486,15 @@ impl Plant {
 
     /// Levels of both Hall sensors, left and right.
     #[must_use]
-    pub fn encoder_levels(&self, state: &State) -> [bool; 2] {
-        [0, 1].map(|index| self.encoders[index].level(&state.encoders[index]))
+    pub fn encoder_levels(&self, state: &State) -> [bool; 4] {
+        let level =
+            |index: usize, channel| self.encoders[index].level(&state.encoders[index], channel);
+        [
+            level(0, Channel::A),
+            level(1, Channel::A),
+            level(0, Channel::B),
+            level(1, Channel::B),
+        ]
     }
 
     /// Lifts the robot of these parameters so that its wheels turn freely, or puts it down.

@@ -114,7 +114,7 @@ pub fn record_text<W: Write>(into: W, manifest: &Manifest, link: &[Burst]) -> io
         let t_ms = to_ms(burst.t_us);
         if burst.to_robot {
             let line = String::from_utf8_lossy(&burst.bytes);
-            client.type_in(line.trim_end());
+            client.type_in(&line);
             observer.note(t_ms, Level::Info, format!("sent: {}", line.trim_end()));
         } else {
             client.receive(&burst.bytes, burst.t_us, &mut events);

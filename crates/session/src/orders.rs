@@ -9,7 +9,7 @@ use rumbo_control::params::ParamId;
 use rumbo_control::rig::Rig;
 use rumbo_control::{Velocity, Wheels};
 use rumbo_log::Choice;
-use rumbo_wire::{Command, Level};
+use rumbo_wire::{Command, Level, LineEnding};
 use serde::Deserialize;
 use std::fmt;
 use std::str::FromStr;
@@ -159,6 +159,8 @@ enum Message {
     Type {
         usart: u8,
         text: String,
+        /// LF where it is left out.
+        ending: Option<String>,
     },
     Speed {
         factor: f64,
@@ -202,10 +204,15 @@ struct Place {
 }
 
 /// A line as a person types it.
-fn text_line(text: String) -> Result<String, BadOrder> {
+fn text_line(text: String, ending: Option<&str>) -> Result<String, BadOrder> {
+    let ending = ending.map_or(Some(LineEnding::default()), LineEnding::named);
+    let ending = ending.ok_or_else(|| {
+        let known = LineEnding::ALL.map(LineEnding::name).join(", ");
+        BadOrder(format!("the ending of a line is one of {known}"))
+    })?;
     let printable = text.bytes().all(|byte| (b' '..=b'~').contains(&byte));
     if printable && text.len() <= MAX_LINE {
-        Ok(text)
+        Ok(text + ending.text())
     } else {
         Err(BadOrder(format!(
             "a line is at most {MAX_LINE} characters of ASCII"
@@ -292,7 +299,11 @@ impl FromStr for Order {
             Message::SaveParams {} => Order::Robot(Command::SaveParams),
             Message::ResetPose {} => Order::Robot(Command::ResetPose),
             Message::Calibrate {} => Order::Calibrate,
-            Message::Type { usart, text } => Order::Type(usart, text_line(text)?),
+            Message::Type {
+                usart,
+                text,
+                ending,
+            } => Order::Type(usart, text_line(text, ending.as_deref())?),
             Message::Speed { factor } if (0.0..=MAX_SPEED).contains(&factor) => {
                 Order::Speed(factor)
             }

@@ -140,11 +140,11 @@ pub trait Target: Send {
         None
     }
 
-    /// Sends a line that a person typed to a USART.
+    /// Sends to a USART what a person typed, with the end of its line.
     ///
     /// # Errors
     /// If there is no such chip.
-    fn type_in(&mut self, _usart: u8, _line: &str) -> Result<(), TargetError> {
+    fn type_in(&mut self, _usart: u8, _text: &str) -> Result<(), TargetError> {
         Err(TargetError::NoTyping)
     }
 

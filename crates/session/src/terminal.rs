@@ -70,17 +70,17 @@ impl Terminal {
         let lines = text::lines_of(command, mode);
         for line in lines.iter().flatten() {
             self.obey(line);
-            self.push(&line.to_string());
+            self.push(&format!("{line}\n"));
         }
         lines != [None; 2]
     }
 
-    /// A line that a person typed, to be sent as it is.
-    pub(crate) fn type_in(&mut self, line: &str) {
-        if let Ok(command) = TextCommand::parse(line) {
+    /// What a person typed, to be sent as it is.
+    pub(crate) fn type_in(&mut self, text: &str) {
+        if let Ok(command) = TextCommand::parse(text.trim_end()) {
             self.obey(&command);
         }
-        self.push(line);
+        self.push(text);
     }
 
     /// Notes what the robot will be like.
@@ -97,12 +97,11 @@ impl Terminal {
         }
     }
 
-    fn push(&mut self, line: &str) {
+    fn push(&mut self, text: &str) {
         if std::mem::take(&mut self.frames_sent) {
             self.waiting.push(b'\n');
         }
-        self.waiting.extend(line.bytes());
-        self.waiting.push(b'\n');
+        self.waiting.extend(text.bytes());
     }
 
     /// Discards the lines not sent yet.
@@ -272,8 +271,8 @@ mod tests {
     fn a_line_begun_by_frames_is_ended_before_the_first_command() {
         let mut terminal = Terminal::new();
         terminal.frames_sent();
-        terminal.type_in("PID A 1 0.001 0");
-        terminal.type_in("on");
+        terminal.type_in("PID A 1 0.001 0\n");
+        terminal.type_in("on\n");
         assert!(terminal.armed());
         let mut bytes = Vec::new();
         terminal.poll(&mut bytes);

@@ -22,6 +22,12 @@ pub struct Board {
     pulled_up: &'static [u8],
     /// The number of pin A0; the others follow.
     pub first_analogue: u8,
+    /// The number of the last analogue input, which may have no digital pin.
+    pub last_analogue: u8,
+    /// Pins with PWM, on which `analogWrite()` does more than switch.
+    pub pwm: &'static [u8],
+    /// Pins with an interrupt for `attachInterrupt()`.
+    pub interrupts: &'static [u8],
     /// Whether our own control program fits into its chip.
     pub runs_rumbo: bool,
 }
@@ -42,10 +48,13 @@ pub static MEGA: Board = Board {
     // Of the two-wire bus.
     pulled_up: &[20, 21],
     first_analogue: 54,
+    last_analogue: 69,
+    pwm: &[2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 44, 45, 46],
+    interrupts: &[2, 3, 18, 19, 20, 21],
     runs_rumbo: true,
 };
 
-/// The Arduino Uno, and the Nano's pins of the same numbers; 14 to 19 are the analogue inputs A0 to A5.
+/// The Arduino Uno; 14 to 19 are the analogue inputs A0 to A5.
 pub static UNO: Board = Board {
     name: "uno",
     title: "Arduino Uno",
@@ -57,12 +66,23 @@ pub static UNO: Board = Board {
     usarts: &[[0, 1]],
     pulled_up: &[],
     first_analogue: 14,
+    last_analogue: 19,
+    pwm: &[3, 5, 6, 9, 10, 11],
+    interrupts: &[2, 3],
     // Its state alone takes more than the 2 KB of SRAM.
     runs_rumbo: false,
 };
 
+/// The Arduino Nano: the Uno's pins of the same numbers, and A6 and A7, which are analogue inputs only.
+pub static NANO: Board = Board {
+    name: "nano",
+    title: "Arduino Nano",
+    last_analogue: 21,
+    ..UNO
+};
+
 /// The boards that there are.
-pub static BOARDS: [&Board; 2] = [&MEGA, &UNO];
+pub static BOARDS: [&Board; 3] = [&MEGA, &UNO, &NANO];
 
 impl Board {
     /// The board of this name.
@@ -82,7 +102,31 @@ impl Board {
     /// The highest number of a pin.
     #[must_use]
     pub fn last_pin(&self) -> u8 {
-        (self.pins.len() - 1) as u8
+        self.last_analogue
+    }
+
+    /// The number of a pin by its name: `A3`, `D5`, `5`.
+    #[must_use]
+    pub fn numbered(&self, name: &str) -> Option<u8> {
+        let analogue = name.strip_prefix(['A', 'a']);
+        let digits = analogue
+            .or_else(|| name.strip_prefix(['D', 'd']))
+            .unwrap_or(name);
+        let number: u8 = digits.parse().ok()?;
+        let number = match analogue {
+            Some(_) => number.checked_add(self.first_analogue)?,
+            None => number,
+        };
+        (number <= self.last_pin()).then_some(number)
+    }
+
+    /// A pin for people: `5`, `A3`.
+    #[must_use]
+    pub fn shown(&self, number: u8) -> String {
+        match number.checked_sub(self.first_analogue) {
+            Some(analogue) => format!("A{analogue}"),
+            None => number.to_string(),
+        }
     }
 
     /// The board's pins by their numbers: `pin_02`.
@@ -116,11 +160,12 @@ impl Board {
         self.usarts.iter().map(|[_, transmit]| self.pin(*transmit))
     }
 
-    /// The pins of its USARTs, for people: `19 and 18, 0 and 1`.
-    pub(crate) fn usarts_in_words(&self) -> String {
-        let pairs = self.usarts.iter().rev();
-        let pairs = pairs.map(|[receive, transmit]| format!("{receive} and {transmit}"));
-        pairs.collect::<Vec<_>>().join(", ")
+    /// Receiving and transmitting pin of a USART that it has.
+    pub(crate) fn usart_pins(&self, usart: u8) -> [u8; 2] {
+        self.usarts
+            .get(usize::from(usart))
+            .copied()
+            .unwrap_or_default()
     }
 }
 

@@ -25,16 +25,14 @@ pub enum SimError {
         /// Name of the rig.
         rig: String,
     },
-    /// The pins of a wiring's link are those of no USART.
-    LinkPins {
+    /// A wiring's link has the pins of a USART, exchanged.
+    LinkExchanged {
         /// Name of the wiring.
         wiring: String,
         /// The board it is on.
         board: &'static Board,
-        /// Pin of `link_rx`.
-        receive: Option<u8>,
-        /// Pin of `link_tx`.
-        transmit: Option<u8>,
+        /// Number of the USART.
+        usart: u8,
     },
 }
 
@@ -50,21 +48,17 @@ impl fmt::Display for SimError {
                 "the report's program does not do mode {} on rig {rig}; leave out the program baseline or choose another scenario",
                 mode.name()
             ),
-            Self::LinkPins {
+            Self::LinkExchanged {
                 wiring,
                 board,
-                receive,
-                transmit,
+                usart,
             } => {
-                let shown =
-                    |pin: &Option<u8>| pin.map_or_else(|| "missing".into(), |pin| pin.to_string());
+                let [receive, transmit] = board.usart_pins(*usart);
                 write!(
                     f,
-                    "wiring {wiring}: link_rx = {} and link_tx = {} are no USART of the {}; those are on {}",
-                    shown(receive),
-                    shown(transmit),
-                    board.title,
-                    board.usarts_in_words()
+                    "wiring {wiring}: link_rx and link_tx are exchanged: the {} receives on one and sends on the other; \
+                     write link_rx = {receive}, link_tx = {transmit}",
+                    board.title
                 )
             }
         }

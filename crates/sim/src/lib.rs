@@ -9,6 +9,7 @@ mod board;
 pub mod boards;
 mod config;
 pub mod debugging;
+pub mod drivers;
 mod error;
 pub mod fleet;
 mod instruments;

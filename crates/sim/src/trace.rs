@@ -1,6 +1,7 @@
 //! Ground truth of a run, sampled at every control tick from the plant and the pins.
 
 use crate::instruments::READING_US;
+use crate::mega::CONSOLES;
 use crate::sim::{Burst, Sim};
 use rumbo_control::params::Params;
 use rumbo_robot::Loops;
@@ -169,7 +170,7 @@ impl Trace {
             self.loops.push((t_us, loops));
         }
         if let Some(mega) = sim.mega_mut() {
-            let said = (0..4).map(|usart| Said {
+            let said = (0..CONSOLES).map(|usart| Said {
                 t_us,
                 usart,
                 bytes: mega.take_console(usart),

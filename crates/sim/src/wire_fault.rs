@@ -2,6 +2,7 @@
 
 use rumbo_control::SonarId;
 use rumbo_plant::drivetrain::Side;
+use rumbo_plant::encoder::Channel;
 use rumbo_plant::noise::Noise;
 use rumbo_plant::plant::Event;
 
@@ -33,6 +34,10 @@ impl Wire {
     pub(crate) fn of(event: &Event) -> Option<(Wire, bool)> {
         let echo = |sonar: rumbo_plant::sonar::SonarId| Wire::Echo(SonarId::ALL[sonar.index()]);
         match *event {
+            Event::Edge {
+                channel: Channel::B,
+                ..
+            } => None,
             Event::Edge { wheel, level, .. } => Some((Wire::Encoder(wheel), level)),
             Event::EchoRise { sonar, .. } => Some((echo(sonar), true)),
             Event::EchoFall { sonar, .. } => Some((echo(sonar), false)),
@@ -46,6 +51,7 @@ impl Wire {
         match (self, level) {
             (Wire::Encoder(wheel), level) => Event::Edge {
                 wheel,
+                channel: Channel::A,
                 at_us,
                 level,
             },

@@ -12,7 +12,7 @@ pub struct Board {
 }
 
 /// The boards that there are, the usual one first.
-pub const BOARDS: [Board; 2] = [
+pub const BOARDS: [Board; 3] = [
     Board {
         name: "mega",
         options: ["-mmcu=atmega2560", "-DARDUINO_AVR_MEGA2560"],
@@ -22,6 +22,11 @@ pub const BOARDS: [Board; 2] = [
         name: "uno",
         options: ["-mmcu=atmega328p", "-DARDUINO_AVR_UNO"],
         variant: "standard",
+    },
+    Board {
+        name: "nano",
+        options: ["-mmcu=atmega328p", "-DARDUINO_AVR_NANO"],
+        variant: "eightanaloginputs",
     },
 ];
 

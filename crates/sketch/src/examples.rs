@@ -58,7 +58,7 @@ pub fn example(name: &str) -> Result<Source, SketchError> {
 /// None: it is part of the program.
 pub fn starter(board: Board) -> Result<String, SketchError> {
     let name = match board.name {
-        "uno" => "wall_uno",
+        "uno" | "nano" => "wall_uno",
         _ => "wall",
     };
     let file = format!("{name}/{name}.ino");

@@ -15,6 +15,7 @@ pub mod csv;
 mod decimal;
 pub mod decoder;
 pub mod frame;
+mod line_ending;
 mod malformed;
 pub mod message;
 #[cfg(feature = "names")]
@@ -34,6 +35,7 @@ mod words;
 pub use codec::Message;
 pub use decoder::{Decoder, Received};
 pub use frame::{Body, Frame, Kind, crc as crc16};
+pub use line_ending::LineEnding;
 pub use malformed::Malformed;
 pub use message::*;
 

@@ -1,9 +1,10 @@
 //! Options of the commands that run experiments and fit numbers: `run`, `experiments`, `identify`, `calibrate`.
 
 use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, ProgramName, SeedArgs, SettingArgs};
-use super::values::{timed_text, usb_text};
+use super::values::{line_ending, timed_text, usb_text};
 use clap::{Args, ValueEnum};
 use rumbo_experiment::files::TimedText;
+use rumbo_wire::LineEnding;
 use std::path::PathBuf;
 
 /// Options of `rumbo run`.
@@ -16,6 +17,7 @@ Examples:
   rumbo run mode1 --rig final --world room
   rumbo run mode1 --sketch my_sketch
   rumbo run mode1 --sketch example:wall --usb 'go@2'
+  rumbo run mode1 --sketch my_car --usb 'F@1' --usb 'S@3' --line-ending none
   rumbo run mode5 --firmware my_sketch.elf --command 'REF 40@20'
   rumbo run mode5 --firmware my_sketch.elf --profile cycles.folded --vcd pins.vcd
   rumbo run mode5 --firmware my_sketch.elf --gdb 1234   # then: avr-gdb my_sketch.elf -ex 'target remote :1234'
@@ -58,6 +60,9 @@ pub(crate) struct RunArgs {
     /// Line of text typed on the board's USB port (Serial) at a time, e.g. 'go@2'; may be repeated
     #[arg(long, value_name = "TEXT@SECONDS", value_parser = usb_text, requires = "image")]
     pub(crate) usb: Vec<TimedText>,
+    /// What is sent behind each of these lines, as in the Serial Monitor: none, for single letters, lf, cr or crlf
+    #[arg(long, value_name = "ENDING", value_parser = line_ending, default_value = "lf")]
+    pub(crate) line_ending: LineEnding,
     #[command(flatten)]
     pub(crate) parameters: ParameterArgs,
     /// Folder for the log, the result and the true signals of each run; made if need be

@@ -2,8 +2,9 @@
 
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
-use rumbo_experiment::files::{Port, TimedText, parameters};
+use rumbo_experiment::files::{Port, TimedText, check_line, parameters};
 use rumbo_sim::boards::{BOARDS, Board};
+use rumbo_wire::LineEnding;
 
 /// A board by its name.
 pub(super) fn board(text: &str) -> Result<&'static Board, String> {
@@ -31,12 +32,11 @@ pub(super) fn timed_text(text: &str) -> Result<TimedText, Failure> {
             "the time must be within 0..{LONGEST_S} s"
         )));
     }
-    if line.is_empty() || !line.bytes().all(|byte| (b' '..=b'~').contains(&byte)) {
-        return Err(Failure::input("the text must be one line of ASCII"));
-    }
+    check_line(line).map_err(Failure::input)?;
     Ok(TimedText {
         at_s,
         text: line.to_owned(),
+        ending: LineEnding::default(),
         port: Port::Link,
     })
 }
@@ -45,6 +45,12 @@ pub(super) fn timed_text(text: &str) -> Result<TimedText, Failure> {
 pub(super) fn usb_text(text: &str) -> Result<TimedText, Failure> {
     let port = Port::Usb;
     timed_text(text).map(|timed| TimedText { port, ..timed })
+}
+
+/// What ends typed lines.
+pub(super) fn line_ending(name: &str) -> Result<LineEnding, String> {
+    let known = || LineEnding::ALL.map(LineEnding::name).join(", ");
+    LineEnding::named(name).ok_or_else(|| format!("no such line ending; there are {}", known()))
 }
 
 /// A tolerance.

@@ -265,7 +265,7 @@ fn a_run_with_an_image_is_run_again_whole_with_what_its_usarts_said() {
     assert!(
         log.said
             .iter()
-            .any(|said| said.to_chip && said.bytes == b"REF 50")
+            .any(|said| said.to_chip && said.bytes == b"REF 50\n")
     );
     let again = rumbo(&["rerun", path.to_str().unwrap()]);
     assert_eq!(again.status.code(), Some(0), "{again:?}");

@@ -19,12 +19,14 @@
 //! | `move = "turn_left"` with `duty = 0.4` or `speed_rpm = 60` | mode `manual`, a basic movement |
 //! | the same with `duty = 0`, `ramp_to_duty = 0.4`, `ramp_s = 12` | open loop, the duty moves by one count of PWM at a time |
 //! | `parameter = "name"` and `value = 1.5` | set a control parameter |
+//! | `text = "F"` or `usb = "F"`, `line_ending = "none"` | type a line: [`typed`] |
 
 use super::error::FileError;
 use super::names::{find_mode, find_movement};
 use super::parameters;
 use super::read::{Allowed, Source, Table};
 use super::route::{self, GOAL, read_route};
+use super::typed::{self, TimedText, read_typed};
 use rumbo_control::mode::{Description, ModeId, Movement, ReferenceKind, Takes};
 use rumbo_control::{Duty, Wheels};
 use rumbo_wire::message::{Command, Level};
@@ -80,13 +82,14 @@ pub struct TimedCommand {
     pub goal_of_world: bool,
 }
 
-/// Reads all commands; `mode` is the mode selected at the start, if valid: mistakes in it have been reported.
+/// Reads all commands and typed lines; `mode` is the mode selected at the start, if valid: mistakes in it have been
+/// reported.
 pub(crate) fn read_commands(
     tables: Vec<Table<'_, '_>>,
     mut mode: Option<ModeId>,
     duration_s: f64,
-) -> Vec<TimedCommand> {
-    let mut commands: Vec<TimedCommand> = Vec::new();
+) -> (Vec<TimedCommand>, Vec<TimedText>) {
+    let (mut commands, mut texts): (Vec<TimedCommand>, _) = (Vec::new(), Vec::new());
     let mut earliest_s = 0.0;
     for table in tables {
         let at = table.placed_number("at_s", Allowed::new(0.0, duration_s, "s"));
@@ -102,6 +105,12 @@ pub(crate) fn read_commands(
             );
             table.complain("at_s", at.line, &at.value.to_string(), &remedy);
         }
+        if let Some(port) = typed::PORTS.into_iter().find(|(key, _)| table.has(key)) {
+            texts.extend(read_typed(&table, at_s, port));
+            earliest_s = at_s.max(earliest_s);
+            table.finish();
+            continue;
+        }
         let after_reached = table.flag("after_reached").is_some_and(|flag| flag.value);
         let mut group = read_command(&table, at_s, &mut mode, duration_s);
         if let Some(first) = group.first_mut() {
@@ -113,7 +122,7 @@ pub(crate) fn read_commands(
             .map_or(earliest_s, |last| last.at_s.max(earliest_s));
         table.finish();
     }
-    commands
+    (commands, texts)
 }
 
 /// Reads the keys of one command, without `at_s`, for a robot in this mode: at once, so that no ramp is among them.
@@ -182,6 +191,8 @@ fn read_command(
                 &ACTIONS,
                 &COMPANIONS,
                 &route::COMPANIONS,
+                &typed::PORTS.map(|(key, _)| key),
+                &[typed::ENDING],
             ]
             .concat();
             for key in &known {

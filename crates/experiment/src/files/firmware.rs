@@ -144,7 +144,7 @@ fn default_wiring(opening: Opening, robot: &RobotFile, scenario: &ScenarioFile) 
     };
     let fits = |name: &str| {
         let wiring = robot.wirings.get(name);
-        let link = wiring.and_then(|wiring| link_usart(name, wiring).ok().flatten());
+        let link = wiring.and_then(link_usart);
         link.is_some_and(|usart| opening.transmits[usize::from(usart)])
     };
     let mut names = robot.wirings.keys();
@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn the_report_s_wirings_have_the_module_on_usart_1_and_2() {
         let robot = Library::new().robot("memoria").unwrap();
-        let link = |name: &str| link_usart(name, &robot.wirings[name]).unwrap();
+        let link = |name: &str| link_usart(&robot.wirings[name]);
         assert_eq!(link("final"), Some(2));
         for name in ["mode_1", "mode_2", "modes_3_and_4", "modes_5_to_7"] {
             assert_eq!(link(name), Some(1), "{name}");

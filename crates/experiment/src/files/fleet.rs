@@ -106,7 +106,7 @@ fn read_member(table: &Table<'_, '_>, name: String, around: &ScenarioFile) -> Me
     }
     let commands = table.tables("command", MOST_COMMANDS);
     if !commands.is_empty() {
-        own.commands = read_commands(commands, Some(own.mode), own.duration_s);
+        (own.commands, own.texts) = read_commands(commands, Some(own.mode), own.duration_s);
     }
     let sonar_faults = table.tables("sonar_fault", MOST_FAULTS);
     if !sonar_faults.is_empty() {

@@ -331,6 +331,15 @@ impl<'a, 't> Table<'a, 't> {
             .is_some_and(|entries| entries.iter().any(|(own, _)| own.get_ref() == key))
     }
 
+    /// Whether the value of a key is text.
+    pub(crate) fn is_text(&self, key: &str) -> bool {
+        self.entries.is_some_and(|entries| {
+            entries
+                .iter()
+                .any(|(own, value)| own.get_ref() == key && value.get_ref().is_str())
+        })
+    }
+
     /// Whether the value of a key is a table.
     pub(crate) fn holds_table(&self, key: &str) -> bool {
         self.entries.is_some_and(|entries| {

@@ -2,12 +2,14 @@
 //!
 //! ```toml
 //! title = "The robot of the report"
-//! board = "mega"         # or "uno"; a Mega if it is left out
+//! board = "mega"         # or "uno", "nano"; a Mega if it is left out
+//! driver = "l298n"       # or another one of `rumbo_sim::drivers`; an L298N if it is left out
 //! [rig.final.front]      # one table per rig and sonar
 //! x_m = 0.13
 //! on_servo = true
 //! [wiring.final]         # signal = pin of the board
 //! front_echo = 3
+//! left_enable = "high"   # an input of the driver that a jumper holds
 //! battery = { pin = 54, ratio = 2.0 }   # a divider to A0, where one is wired
 //! [parameters]           # control parameters that differ from their defaults
 //! [plant.battery]        # physics; what is left out is nominal
@@ -22,13 +24,16 @@ use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
 use rumbo_sim::boards::{BOARDS, Board};
-use rumbo_sim::wiring::{Divider, SIGNALS, Wiring};
+use rumbo_sim::drivers::{DRIVERS, Direction, Driver};
+use rumbo_sim::wiring::{Divider, SIGNALS, Wiring, is_driver_input};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Position of a sonar on the body.
 const MOUNT: Allowed = Allowed::new(-1.0, 1.0, "m");
 /// Ratio of a divider.
 const RATIO: Allowed = Allowed::new(1.0, 20.0, "1");
+/// Rates of a Bluetooth module.
+const BAUD: Allowed = Allowed::new(1200.0, 1_382_400.0, "count");
 /// Flash and SRAM of an ATmega2560.
 const FLASH: Allowed = Allowed::new(1.0, 256.0 * 1024.0, "count");
 const SRAM: Allowed = Allowed::new(1.0, 8.0 * 1024.0, "count");
@@ -42,6 +47,8 @@ pub struct RobotFile {
     pub title: String,
     /// What its programs run on.
     pub board: &'static Board,
+    /// Its motor driver.
+    pub driver: &'static Driver,
     /// The text it was read from, kept for the log's manifest.
     pub text: String,
     /// Physics, from `[plant.*]`: nominal values where the file has none.
@@ -86,8 +93,12 @@ impl RobotFile {
         let title = root
             .required_text("title", "one line that says what the robot is")
             .value;
-        let board = read_board(&root);
-        let mut plant = Params::default();
+        let board = read_named(&root, "board", &BOARDS, |board| board.name);
+        let driver = read_named(&root, "driver", &DRIVERS, |driver| driver.name);
+        let mut plant = Params {
+            bridge: driver.bridge(),
+            ..Params::default()
+        };
         for (key, value) in read_plant(&root.table("plant"), "") {
             if let Err(error) = plant.set(&key, value) {
                 root.complain_here(&error.to_string());
@@ -97,7 +108,9 @@ impl RobotFile {
         if rigs.is_empty() {
             root.complain_here("has no rig: add a table [rig.NAME.front] (or left, right) with x_m, y_m, angle_deg");
         }
-        let wirings = named(&root.table("wiring"), |table| read_wiring(table, board));
+        let wirings = named(&root.table("wiring"), |table| {
+            read_wiring(table, board, driver)
+        });
         let parameters = read_parameters(&root.table("parameters"));
         let firmware = read_caps(&root.table("firmware"));
         root.finish();
@@ -106,6 +119,7 @@ impl RobotFile {
             name: name.into(),
             title,
             board,
+            driver,
             text: text.into(),
             plant,
             rigs,
@@ -140,6 +154,12 @@ pub(crate) fn read_plant(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String
             values.insert(limit.key, value);
         }
     }
+    let disc = ["slots", "edges_per_motor_turn"].map(|key| format!("encoder.{key}"));
+    if disc.iter().all(|key| values.contains_key(key)) && values[&disc[0]] > 0.0 {
+        table.complain_here(
+            "slots counts a disc on the wheel, edges_per_motor_turn one on the motor's shaft: leave one of them out",
+        );
+    }
     for section in sections {
         values.extend(read_plant(
             &table.table(&section),
@@ -171,41 +191,150 @@ fn read_rig(table: &Table<'_, '_>) -> Rig {
     rig
 }
 
-fn read_board(root: &Table<'_, '_>) -> &'static Board {
-    let Some(name) = root.text("board") else {
-        return <&Board>::default();
+/// One of a list by its name; the first one where the key is left out.
+fn read_named<T, const N: usize>(
+    root: &Table<'_, '_>,
+    key: &str,
+    known: &[&'static T; N],
+    name_of: fn(&T) -> &'static str,
+) -> &'static T {
+    let first = known[0];
+    let Some(name) = root.text(key) else {
+        return first;
     };
-    Board::named(&name.value).unwrap_or_else(|| {
-        let known: Vec<String> = BOARDS.map(|board| board.name.to_owned()).into();
-        root.complain("board", name.line, &name.value, &did_you_mean(&known));
-        <&Board>::default()
+    let found = known.iter().find(|each| name_of(each) == name.value);
+    found.copied().unwrap_or_else(|| {
+        let names = known.map(|each| name_of(each).to_owned());
+        root.complain(key, name.line, &name.value, &did_you_mean(&names));
+        first
     })
 }
 
-fn read_wiring(table: &Table<'_, '_>, board: &'static Board) -> Wiring {
+/// What a signal of a wiring is connected to.
+enum Wired {
+    Pin(u8),
+    Held(bool),
+}
+
+fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Driver) -> Wiring {
     let mut wiring = Wiring {
         board,
+        driver,
         battery: read_divider(&table.table("battery"), table.has("battery"), board),
         ..Wiring::default()
     };
-    let pins = Allowed::new(0.0, board.last_pin().into(), "count");
+    let baud = table.number("link_baud", BAUD);
+    wiring.link_baud = baud.map(|baud| baud as u32);
     for signal in SIGNALS {
-        let Some(pin) = table.placed_number(signal, pins) else {
+        let Some((line, wired)) = read_wired(table, signal, board) else {
             continue;
         };
-        let number = pin.value as u8;
-        if let Some((other, _)) = wiring.pins.iter().find(|(_, taken)| **taken == number) {
+        let number = match wired {
+            Wired::Pin(number) => number,
+            Wired::Held(level) => {
+                wiring.held.insert(signal.to_owned(), level);
+                continue;
+            }
+        };
+        // One pin may feed several inputs of the driver.
+        let clashes = |other: &str| !(is_driver_input(signal) && is_driver_input(other));
+        let mut taken = wiring.pins.iter().filter(|(_, pin)| **pin == number);
+        if let Some((other, _)) = taken.find(|(other, _)| clashes(other)) {
             let remedy = format!("{other} is on that pin already: give each signal its own");
-            table.complain(signal, pin.line, &number.to_string(), &remedy);
+            table.complain(signal, line, &board.shown(number), &remedy);
         }
         wiring.pins.insert(signal.to_owned(), number);
     }
+    suits_driver(table, &wiring);
     table.finish();
     wiring
 }
 
+/// The pin of a signal, by number or name, or the level that an input of the driver is held at.
+fn read_wired(table: &Table<'_, '_>, signal: &str, board: &Board) -> Option<(usize, Wired)> {
+    let last = board.last_pin();
+    let placed = if table.is_text(signal) {
+        let name = table.text(signal)?;
+        let level = match (name.value.as_str(), is_driver_input(signal)) {
+            ("high", true) => Some(true),
+            ("low", true) => Some(false),
+            _ => None,
+        };
+        if let Some(level) = level {
+            return Some((name.line, Wired::Held(level)));
+        }
+        let Some(number) = board.numbered(&name.value) else {
+            let held = match is_driver_input(signal) {
+                true => ", or \"high\" or \"low\" where a jumper holds it",
+                false => "",
+            };
+            let remedy = format!(
+                "must be a pin of the {}, 0 to {}, such as 5 or \"A0\"{held}",
+                board.title,
+                board.shown(last)
+            );
+            table.complain(signal, name.line, &format!("{:?}", name.value), &remedy);
+            return None;
+        };
+        (name.line, number)
+    } else {
+        let pin = table.placed_number(signal, Allowed::new(0.0, last.into(), "count"))?;
+        (pin.line, pin.value as u8)
+    };
+    let (line, number) = placed;
+    if board.pin(number).is_none() {
+        let remedy = format!(
+            "is an analogue input only on the {}; take another pin",
+            board.title
+        );
+        table.complain(signal, line, &board.shown(number), &remedy);
+    }
+    Some((line, Wired::Pin(number)))
+}
+
+/// Reports inputs of the driver that it lacks, and inputs that are missing.
+fn suits_driver(table: &Table<'_, '_>, wiring: &Wiring) {
+    let driver = wiring.driver;
+    let has = |signal: &str| wiring.pins.contains_key(signal) || wiring.held.contains_key(signal);
+    if has("standby") && !driver.has_standby {
+        table.complain_here(&format!(
+            "standby: the {} has no such input; leave it out",
+            driver.title
+        ));
+    }
+    for side in ["left", "right"] {
+        if has(&format!("{side}_encoder_b")) && !has(&format!("{side}_encoder")) {
+            table.complain_here(&format!(
+                "{side}_encoder_b is the second output of an encoder, which tells the direction: give {side}_encoder, \
+                 the first one, too"
+            ));
+        }
+        let [enable, forward, backward] =
+            ["enable", "forward", "backward"].map(|input| format!("{side}_{input}"));
+        if has(&enable) && !driver.has_enable {
+            table.complain_here(&format!(
+                "{enable}: the {} has no such input; its PWM is on {forward} and {backward}",
+                driver.title
+            ));
+        }
+        let moves = has(&forward) || has(&backward);
+        if moves && driver.has_enable && !has(&enable) {
+            table.complain_here(&format!(
+                "{enable} is missing, and without it the driver moves nothing: give the pin of its PWM, or \"high\" where \
+                 a jumper holds it"
+            ));
+        }
+        if driver.direction == Direction::One && has(&forward) && has(&backward) {
+            table.complain_here(&format!(
+                "{forward} and {backward}: this driver has one direction input; name it {forward} if its high drives \
+                 forward, else {backward}"
+            ));
+        }
+    }
+}
+
 fn read_divider(table: &Table<'_, '_>, wired: bool, board: &Board) -> Option<Divider> {
-    let (first, last) = (board.first_analogue.into(), board.last_pin().into());
+    let (first, last) = (board.first_analogue.into(), board.last_analogue.into());
     let pins = Allowed::new(first, last, "count");
     let divider = wired.then(|| Divider {
         input: (table.required_number("pin", pins) - first) as u8,

@@ -32,6 +32,7 @@ use super::names::find_mode;
 use super::parameters::read_parameters;
 use super::read::{Allowed, Source, Table};
 use super::robot::read_plant;
+use super::typed::TimedText;
 use super::value::{ANGLE, PLACE};
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
@@ -72,6 +73,8 @@ pub struct ScenarioFile {
     pub calibrated: bool,
     /// What the station sends, in order of time, ramps already resolved into single commands.
     pub commands: Vec<TimedCommand>,
+    /// The lines that are typed besides, in order of time.
+    pub texts: Vec<TimedText>,
     /// Sonars that fail on the way.
     pub sonar_faults: Vec<TimedSonarFault>,
     /// Wires that fail on the way.
@@ -158,6 +161,8 @@ impl ScenarioFile {
         root.require("duration_s", &DURATION.remedy());
         // A wrong one does not shorten anything else.
         let duration_s = root.number("duration_s", DURATION).unwrap_or(DURATION.max);
+        let (commands, texts) =
+            read_commands(root.tables("command", MOST_COMMANDS), mode, duration_s);
         let mut scenario = Self {
             name: name.into(),
             path: None,
@@ -184,7 +189,8 @@ impl ScenarioFile {
             start: read_start(&root.table("start")),
             wheels_in_air: root.flag("wheels_in_air").is_some_and(|flag| flag.value),
             calibrated: root.flag("calibrated").is_some_and(|flag| flag.value),
-            commands: read_commands(root.tables("command", MOST_COMMANDS), mode, duration_s),
+            commands,
+            texts,
             sonar_faults: read_sonar_faults(root.tables("sonar_fault", MOST_FAULTS), duration_s),
             wire_faults: read_wire_faults(root.tables("wire_fault", MOST_FAULTS), duration_s),
             limits: read_limits(&root.table("limits"), ""),

@@ -6,6 +6,7 @@ use super::kept::Calibrations;
 use super::near::{near, near_or_all};
 use super::read::Allowed;
 use super::start::{pose, stand_apart, stands_free};
+use super::typed::TimedText;
 use super::{
     Library, PolicyFile, RobotFile, ScenarioFile, Spread, Start, WorldFile, firmware, parameters,
 };
@@ -32,27 +33,6 @@ pub enum NativeProgram {
     Baseline,
 }
 
-/// Where a line of text goes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Port {
-    /// Over the robot's link.
-    #[default]
-    Link,
-    /// To an emulated Mega, over its USB cable.
-    Usb,
-}
-
-/// A line of text and its time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TimedText {
-    /// Time since the start [s].
-    pub at_s: f64,
-    /// The line, without its end.
-    pub text: String,
-    /// Where it goes.
-    pub port: Port,
-}
-
 /// Values of the command line that replace the scenario's.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
@@ -72,7 +52,7 @@ pub struct Overrides {
     pub firmware: Option<PathBuf>,
     /// Another wiring for it.
     pub wiring: Option<String>,
-    /// Lines of text sent over the link besides the scenario's commands.
+    /// Lines of text that are typed besides the scenario's.
     pub texts: Vec<TimedText>,
     /// What the program says is not believed.
     pub ground_truth: bool,
@@ -95,7 +75,7 @@ pub struct Setup {
     pub program: NativeProgram,
     /// An image on an emulated Mega that replaces it.
     pub firmware: Option<Arc<Firmware>>,
-    /// Lines of text sent over the link besides its commands, in order of time.
+    /// Lines of text that are typed besides its commands, the scenario's among them, in order of time.
     pub texts: Vec<TimedText>,
     /// What an image says is not believed: it is spoken to in text, and nothing that it says reaches a metric.
     pub ground_truth: bool,
@@ -204,7 +184,7 @@ impl Library {
             firmware::beside(firmware, policy.as_ref()).map(Arc::new)
         };
         let firmware = overrides.firmware.as_ref().map(load).transpose()?;
-        let mut texts = overrides.texts.clone();
+        let mut texts = [&scenario.texts[..], &overrides.texts].concat();
         texts.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
         Ok(Setup {
             scenario,

@@ -7,12 +7,12 @@
 //! | any other image | lines of the original's text: [`text`] |
 //! | the report's, native | handed over directly |
 //!
-//! Lines given on the command line ([`Setup::texts`]) go out as they are, whatever the language.
+//! Lines that are typed ([`Setup::texts`]) go out as they are, whatever the language.
 
 mod goal;
 mod text;
 
-use crate::files::{FileError, Port, Setup, TimedText};
+use crate::files::{FileError, Port, Setup};
 use rumbo_control::mode::ModeId;
 use rumbo_sim::Sim;
 use rumbo_sim::trace::TimedMessage;
@@ -200,26 +200,31 @@ impl<S: Deref<Target = Setup>> Operator<S> {
         }
     }
 
-    /// Sends the lines of the command line that are due.
+    /// Sends the typed lines that are due.
     fn type_texts(&mut self, sim: &mut Sim) {
         while let Some(timed) = self.setup.texts.get(self.next_text)
             && timed.at_s * 1e6 <= sim.now_us() as f64
         {
             self.next_text += 1;
-            let line = format!("{}\n", timed.text);
-            if let (Port::Usb, Some(mega)) = (timed.port, sim.mega_mut()) {
-                mega.type_in(USB, line.as_bytes());
+            if timed.port == Port::Usb
+                && let Some(mega) = sim.mega_mut()
+            {
+                mega.type_in(USB, &timed.bytes());
                 continue;
             }
             // An image may have commands of its own.
-            if let (true, Err(error)) = (
-                self.setup.firmware.is_none(),
-                TextCommand::parse(&timed.text),
-            ) {
-                let TimedText { at_s, text, .. } = timed;
-                self.notes.push(format!("at {at_s} s `{text}`: {error}"));
+            let odd = match (timed.port, TextCommand::parse(&timed.text)) {
+                (Port::Usb, _) => Some("without a sketch or an image there is no USB port".into()),
+                (Port::Link, Err(error)) if self.setup.firmware.is_none() => {
+                    Some(error.to_string())
+                }
+                (Port::Link, _) => None,
+            };
+            let odd = odd.map(|odd: String| format!("at {} s `{}`: {odd}", timed.at_s, timed.text));
+            self.notes.extend(odd);
+            if timed.port == Port::Link {
+                sim.send(&timed.bytes());
             }
-            sim.send(line.as_bytes());
         }
     }
 

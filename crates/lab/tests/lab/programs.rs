@@ -35,7 +35,7 @@ fn a_dropped_image_replaces_the_native_program_on_an_emulated_mega() {
     assert_eq!(manifest.program, "idle.hex");
     assert!(manifest.image.is_some());
     robot.advance(5_000).unwrap();
-    assert!(robot.type_in(0, "hello").is_ok());
+    assert!(robot.type_in(0, "hello\n").is_ok());
     // It stays through a reset.
     let choice = robot.scene().unwrap().choice;
     robot.reset(&choice).unwrap();

@@ -1,9 +1,9 @@
-//! Half an L298N with the PWM on its enable pin, and the mean current it sends through a motor.
+//! Half an H bridge with a modulated motor, and the mean current it sends through it.
 //!
-//! While the enable is high the current rises towards `on_a` with the electrical time constant; while it is low the
-//! current falls towards `-off_a` through the diodes and stops at zero. Over a period the winding's flux comes back to
-//! where it was, so the mean current is the mean voltage over the resistance, the voltage counted only while current
-//! flows: `on_a x on-time - off_a x fall-time` (derivation: docs/theory/plant.md).
+//! While the bridge drives, the current rises towards `on_a` with the electrical time constant; in between it falls
+//! towards `-off_a` and stops at zero. Over a period the winding's flux comes back to where it was, so the mean current is
+//! the mean voltage over the resistance, the voltage counted only while current flows: `on_a x on-time - off_a x
+//! fall-time` (derivation: docs/theory/plant.md). What it falls by is the [`Decay`].
 
 use crate::params::Params;
 
@@ -21,11 +21,31 @@ pub enum Bridge {
     Brake(f64),
 }
 
+/// How the current of a motor falls between the pulses of its PWM.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Decay {
+    /// All transistors are off: through the diodes, against the supply, then the motor coasts. PWM on an L298N's enable.
+    #[default]
+    Fast,
+    /// The motor is shorted: slowly, then it brakes. PWM on a direction input under a constant enable.
+    Slow,
+}
+
+/// How the bridge is modulated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Modulation {
+    /// Frequency of the PWM \[Hz\]; that of the parameters where there is none.
+    pub hz: Option<f64>,
+    /// What happens between the pulses.
+    pub decay: Decay,
+}
+
 /// Voltages and time constants of bridge and winding.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Winding {
     pub(crate) drop_v: f64,
     pub(crate) diode_v: f64,
+    brake_v: f64,
     pub(crate) loop_ohm: f64,
     /// Electrical time constant.
     time_constant_s: f64,
@@ -39,6 +59,7 @@ pub(crate) struct Command {
     /// +1 forward, -1 backward, 0 released or braking.
     pub(crate) direction: f64,
     pub(crate) braking: bool,
+    pub(crate) decay: Decay,
     pub(crate) duty: f64,
     /// Electrical time constant in PWM periods.
     pub(crate) periods: f64,
@@ -49,6 +70,7 @@ pub(crate) struct Command {
 pub(super) const RELEASED: Command = Command {
     direction: 0.0,
     braking: false,
+    decay: Decay::Fast,
     duty: 0.0,
     periods: 0.0,
     reached: 0.0,
@@ -60,6 +82,7 @@ impl Winding {
         Self {
             drop_v: params.bridge.drop_v,
             diode_v: params.bridge.diode_v,
+            brake_v: params.bridge.brake_v,
             loop_ohm,
             time_constant_s: params.motor.inductance_h / loop_ohm,
             pwm_hz: params.bridge.pwm_hz,
@@ -67,7 +90,12 @@ impl Winding {
     }
 
     /// The setting for these pins; the same as before costs no exponential.
-    pub(super) fn command(&self, bridge: Bridge, pwm_hz: Option<f64>, before: Command) -> Command {
+    pub(super) fn command(
+        &self,
+        bridge: Bridge,
+        Modulation { hz, decay }: Modulation,
+        before: Command,
+    ) -> Command {
         let (direction, duty) = match bridge {
             Bridge::Forward(duty) => (1.0, duty),
             Bridge::Backward(duty) => (-1.0, duty),
@@ -80,8 +108,8 @@ impl Winding {
             }
             Bridge::Released => return RELEASED,
         };
-        let periods = self.time_constant_s * pwm_hz.unwrap_or(self.pwm_hz);
-        let same = direction == before.direction && duty == before.duty;
+        let periods = self.time_constant_s * hz.unwrap_or(self.pwm_hz);
+        let same = direction == before.direction && duty == before.duty && decay == before.decay;
         if same && periods == before.periods {
             return before;
         }
@@ -90,6 +118,7 @@ impl Winding {
             Command {
                 direction,
                 braking: false,
+                decay,
                 duty,
                 periods,
                 reached: 1.0 - libm::exp(-duty / periods),
@@ -110,12 +139,26 @@ impl Winding {
         }
         let against_v = command.direction * emf_v;
         let on_a = (supply_v - self.drop_v - against_v) / self.loop_ohm;
+        let off = 1.0 - command.duty;
+        let off_v = match command.decay {
+            Decay::Fast => supply_v + 2.0 * self.diode_v,
+            Decay::Slow if self.brake_v > 0.0 => self.brake_v,
+            Decay::Slow => {
+                // Transistors that conduct both ways: the current never stops.
+                let mean_a = on_a * command.duty - against_v / self.loop_ohm * off;
+                return (command.direction * mean_a, mean_a * command.duty);
+            }
+        };
+        let slow = command.decay == Decay::Slow;
         if on_a <= 0.0 {
-            return (0.0, 0.0);
+            return match slow {
+                true => (off * self.braking_current_a(emf_v), 0.0),
+                false => (0.0, 0.0),
+            };
         }
-        // Towards minus this current the winding discharges through the diodes. A motor turned against the bridge
-        // faster than the supply would feed it for ever: the floor keeps the logarithm's argument bounded.
-        let off_a = (supply_v + 2.0 * self.diode_v + against_v) / self.loop_ohm;
+        // Towards minus this current the winding discharges. A motor turned against the bridge faster than the supply
+        // would feed it for ever: the floor keeps the logarithm's argument bounded.
+        let off_a = (off_v + against_v) / self.loop_ohm;
         let off_a = if off_a > 0.05 * on_a {
             off_a
         } else {
@@ -123,20 +166,28 @@ impl Winding {
         };
         let peak_a = on_a * command.reached;
         let fall = command.periods * ln_1p(peak_a / off_a);
-        let off = 1.0 - command.duty;
         if fall < off {
             let mean_a = on_a * command.duty - off_a * fall;
+            if slow {
+                let shorted_a = (off - fall) * self.braking_current_a(emf_v);
+                let drawn_a = on_a * command.duty - command.periods * peak_a;
+                return (command.direction * mean_a + shorted_a, drawn_a);
+            }
             let drawn_a = mean_a + 2.0 * (off_a * fall - command.periods * peak_a);
             (command.direction * mean_a, drawn_a)
         } else {
             let mean_a = on_a * command.duty - off_a * off;
-            (command.direction * mean_a, mean_a * (command.duty - off))
+            let returned = if slow { 0.0 } else { off };
+            (
+                command.direction * mean_a,
+                mean_a * (command.duty - returned),
+            )
         }
     }
 
-    /// Shorted motor: the current flows through one transistor and one diode.
+    /// Shorted motor.
     fn braking_current_a(&self, emf_v: f64) -> f64 {
-        let drop_v = 0.5 * self.drop_v + self.diode_v;
+        let drop_v = self.brake_v;
         if emf_v > drop_v {
             -(emf_v - drop_v) / self.loop_ohm
         } else if emf_v < -drop_v {

@@ -105,7 +105,11 @@ fn a_faster_pwm_leaves_no_time_for_the_current_to_die() {
     let speed = |pwm_hz| {
         let mut state = drivetrain.start();
         for _ in 0..1_000 {
-            drivetrain.set_bridge_at(&mut state, Side::Left, Bridge::Forward(0.7), pwm_hz);
+            let modulation = Modulation {
+                hz: pwm_hz,
+                ..Modulation::default()
+            };
+            drivetrain.set_bridge_at(&mut state, Side::Left, Bridge::Forward(0.7), modulation);
             drivetrain.step(&mut state, 1e-3, [0.0; 2]);
         }
         state.wheels[0].speed_rad_s
@@ -186,7 +190,19 @@ fn more_duty_is_more_current_at_any_speed() {
 /// The closed form against the circuit's differential equation, integrated in steps of a thousandth of a period.
 #[test]
 fn the_mean_current_is_that_of_the_switched_circuit() {
-    let params = Params::default();
+    let diodes = Params::default();
+    let mut transistors = Params::default();
+    (transistors.bridge.drop_v, transistors.bridge.brake_v) = (0.0, 0.0);
+    for (params, decay) in [
+        (diodes, Decay::Fast),
+        (diodes, Decay::Slow),
+        (transistors, Decay::Slow),
+    ] {
+        compare_with_the_circuit(&params, decay);
+    }
+}
+
+fn compare_with_the_circuit(params: &Params, decay: Decay) {
     let (r, l) = (
         params.motor.resistance_ohm + params.bridge.drop_ohm,
         params.motor.inductance_h,
@@ -202,24 +218,37 @@ fn the_mean_current_is_that_of_the_switched_circuit() {
                 for slice in 0..1000 {
                     let on = f64::from(slice) < duty * 1000.0;
                     let on_v = supply_v - params.bridge.drop_v;
-                    let off_v = -supply_v - 2.0 * params.bridge.diode_v;
+                    let off_v = match decay {
+                        Decay::Fast => -supply_v - 2.0 * params.bridge.diode_v,
+                        // The loss is against the current, whose other direction is that of a brake.
+                        Decay::Slow if current_a >= 0.0 => -params.bridge.brake_v,
+                        Decay::Slow => params.bridge.brake_v,
+                    };
                     let volts = if on { on_v } else { off_v } - emf_v;
-                    current_a = f64::max(0.0, current_a + dt_s * (volts - r * current_a) / l);
+                    let next_a = current_a + dt_s * (volts - r * current_a) / l;
+                    let stops = next_a * current_a <= 0.0 && !on;
+                    current_a = match decay {
+                        Decay::Fast => f64::max(0.0, next_a),
+                        // At rest the loss takes up what the motor generates.
+                        Decay::Slow if stops && emf_v.abs() <= params.bridge.brake_v => 0.0,
+                        Decay::Slow => next_a,
+                    };
                     if period == 29 {
                         sum_a += current_a / 1000.0;
                     }
                 }
             }
-            let drivetrain = nominal();
+            let drivetrain = Drivetrain::new(params, Noise::new(1, 0), true);
             let mut state = drivetrain.start();
             state.wheels[1].speed_rad_s = speed_rad_s;
-            drivetrain.set_bridge(&mut state, Side::Right, Bridge::Forward(duty));
+            let modulation = Modulation { hz: None, decay };
+            drivetrain.set_bridge_at(&mut state, Side::Right, Bridge::Forward(duty), modulation);
             drivetrain.step(&mut state, MS, [0.0; 2]);
             let closed_a = state.wheels[1].current_a;
             // In continuous conduction at the border the winding does not start from zero: the closed form's error.
             assert!(
-                (closed_a - sum_a).abs() < 0.01 + 0.01 * sum_a,
-                "duty {duty}, {speed_rad_s}: {closed_a} {sum_a}"
+                (closed_a - sum_a).abs() < 0.01 + 0.01 * sum_a.abs(),
+                "{decay:?}, duty {duty}, {speed_rad_s}: {closed_a} {sum_a}"
             );
         }
     }

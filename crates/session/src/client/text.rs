@@ -30,9 +30,9 @@ impl RobotClient {
         self.terminal.submit(command, mode)
     }
 
-    /// Takes a line that a person typed for a robot that speaks text.
-    pub fn type_in(&mut self, line: &str) {
-        self.terminal.type_in(line);
+    /// Takes what a person typed for a robot that speaks text, with the end of its line.
+    pub fn type_in(&mut self, text: &str) {
+        self.terminal.type_in(text);
     }
 
     /// The port is gone, and the robot with it. Another one may be there when it is back: its protocol is detected

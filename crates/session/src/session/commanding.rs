@@ -156,7 +156,7 @@ impl Session {
         match sent {
             Ok(()) => self.observer.typed(now.target_us, usart, line),
             Err(why) => {
-                let text = format!("{line}: not sent, {why}");
+                let text = format!("{}: not sent, {why}", line.trim_end());
                 self.note(rumbo_log::Level::Warning, text, now);
             }
         }

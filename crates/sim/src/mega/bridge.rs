@@ -1,20 +1,17 @@
-//! Half an L298N as the chip drives it: three lines, each at a level or pulse-width modulated, and what the motor gets.
+//! Half a motor driver as the chip drives it: its lines, each at a level or pulse-width modulated, and what the motor gets.
 //!
 //! A line's share of time high comes from the timer that makes it, if one does. Else it is measured: two rising edges within
 //! [`LONGEST_CYCLES`] are PWM made by a program, and its share is that of the last whole period. A slower wave is no PWM to the
 //! motor, whose current follows within a third of a millisecond: there each edge counts for itself.
 //!
-//! | enable | inputs | motor |
-//! |---|---|---|
-//! | low | any | released |
-//! | high | one high, one low | driven |
-//! | high | alike | shorted: a brake |
-//!
-//! (L298 datasheet, "bidirectional DC motor control".) Modulated inputs count by their shares: driven by the difference.
+//! What the levels of enable and direction inputs make of the motor is a table of each [`Driver`]; modulated inputs count
+//! by their shares of time, as if they were independent of each other.
 
 use super::CYCLES_PER_US;
+use super::pins::DriverInput;
+use crate::drivers::{Direction, Driver, Stage};
 use rumbo_emulator::devices::Pwm;
-use rumbo_plant::drivetrain::Bridge;
+use rumbo_plant::drivetrain::{Bridge, Decay, Modulation};
 
 /// Longest period that counts as PWM: 4 ms, 250 Hz.
 const LONGEST_CYCLES: u64 = 4_000 * CYCLES_PER_US;
@@ -93,14 +90,34 @@ impl Line {
     }
 }
 
-/// The three inputs of one half.
-#[derive(Clone, Copy, Debug, Default)]
+/// The inputs of one half.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct HalfBridge {
-    /// Enable, forward and backward, in this order.
-    pub(super) lines: [Line; 3],
+    driver: &'static Driver,
+    /// Enable, forward, backward and standby, in this order.
+    pub(super) lines: [Line; 4],
+    /// The direction input that is the inverse of the other one.
+    inverse: Option<usize>,
 }
 
 impl HalfBridge {
+    /// A half whose inputs are wired so.
+    pub(super) fn new(driver: &'static Driver, inputs: [DriverInput; 4]) -> Self {
+        let held = |input| Line {
+            high: input == DriverInput::High,
+            ..Line::default()
+        };
+        let unwired = |input: &usize| inputs[*input].pin().is_none();
+        Self {
+            driver,
+            lines: inputs.map(held),
+            inverse: match driver.direction {
+                Direction::Two => None,
+                Direction::One => [2, 1].into_iter().find(unwired),
+            },
+        }
+    }
+
     /// When a wave may be over.
     pub(super) fn expires_cycle(&self) -> Option<u64> {
         self.lines.iter().filter_map(Line::expires_cycle).min()
@@ -116,26 +133,52 @@ impl HalfBridge {
         }
     }
 
-    /// What the motor gets, and the frequency of the modulation [Hz].
-    pub(super) fn state(&self) -> (Bridge, Option<f64>) {
-        let [
-            (enable, enable_period),
-            (forward, forward_period),
-            (backward, backward_period),
-        ] = self.lines.each_ref().map(Line::share);
-        let period = enable_period.or(forward_period).or(backward_period);
-        let pwm_hz = period.map(|cycles| 1e6 * CYCLES_PER_US as f64 / cycles as f64);
-        let share = enable * (forward - backward);
-        let bridge = if enable <= 0.0 {
-            Bridge::Released
-        } else if share > 0.0 {
+    /// What the motor gets, and how it is modulated.
+    pub(super) fn state(&self) -> (Bridge, Modulation) {
+        let shares = self.lines.each_ref().map(Line::share);
+        let period = shares.iter().find_map(|(_, period)| *period);
+        let [enable, mut forward, mut backward, standby] = shares.map(|(share, _)| share);
+        match self.inverse {
+            Some(1) => forward = 1.0 - backward,
+            Some(_) => backward = 1.0 - forward,
+            None => {}
+        }
+        let mut times = [0.0; 4];
+        for (row, enabled) in self.driver.does.iter().zip([1.0 - enable, enable]) {
+            for (index, stage) in row.iter().enumerate() {
+                let of = |bit: usize, share: f64| {
+                    if index >> bit & 1 == 1 {
+                        share
+                    } else {
+                        1.0 - share
+                    }
+                };
+                times[*stage as usize] += enabled * of(0, forward) * of(1, backward);
+            }
+        }
+        let time = |stage: Stage| {
+            if standby > 0.0 {
+                times[stage as usize]
+            } else {
+                0.0
+            }
+        };
+        let share = time(Stage::Forward) - time(Stage::Backward);
+        let bridge = if share > 0.0 {
             Bridge::Forward(share)
         } else if share < 0.0 {
             Bridge::Backward(-share)
+        } else if time(Stage::Brake) > 0.0 {
+            Bridge::Brake(time(Stage::Brake))
         } else {
-            Bridge::Brake(enable)
+            return (Bridge::Released, Modulation::default());
         };
-        (bridge, pwm_hz)
+        let decay = match time(Stage::Brake) > time(Stage::Coast) {
+            true => Decay::Slow,
+            false => Decay::Fast,
+        };
+        let hz = period.map(|cycles| 1e6 * CYCLES_PER_US as f64 / cycles as f64);
+        (bridge, Modulation { hz, decay })
     }
 }
 
@@ -143,49 +186,98 @@ impl HalfBridge {
 mod tests {
     use super::*;
 
-    fn half(enable: bool, forward: bool, backward: bool) -> HalfBridge {
-        let mut half = HalfBridge::default();
-        for (line, high) in half.lines.iter_mut().zip([enable, forward, backward]) {
-            line.set(0, high);
-        }
-        half
+    fn half(driver: &str, levels: [bool; 4]) -> HalfBridge {
+        let inputs = levels.map(|high| {
+            if high {
+                DriverInput::High
+            } else {
+                DriverInput::Low
+            }
+        });
+        HalfBridge::new(Driver::named(driver).unwrap(), inputs)
+    }
+
+    fn pwm(share: f64) -> Option<Pwm> {
+        Some(Pwm {
+            share,
+            period_cycles: Some(32_640),
+        })
     }
 
     #[test]
-    fn the_bridge_does_what_its_truth_table_says() {
-        assert_eq!(half(true, true, false).state().0, Bridge::Forward(1.0));
-        assert_eq!(half(true, false, true).state().0, Bridge::Backward(1.0));
-        assert_eq!(half(true, true, true).state().0, Bridge::Brake(1.0));
-        assert_eq!(half(true, false, false).state().0, Bridge::Brake(1.0));
-        for inputs in [[false, false], [true, false], [false, true], [true, true]] {
+    fn every_driver_does_what_its_truth_table_says() {
+        use Bridge::{Backward, Brake, Forward, Released};
+        let levels = |word: &str| -> [bool; 4] {
+            let mut bits = word.bytes().map(|bit| bit == b'1');
+            std::array::from_fn(|_| bits.next().unwrap())
+        };
+        for (driver, word, does) in [
+            // Enable, forward, backward, standby.
+            ("l298n", "1101", Forward(1.0)),
+            ("l298n", "1011", Backward(1.0)),
+            ("l298n", "1111", Brake(1.0)),
+            ("l298n", "1001", Brake(1.0)),
+            ("l298n", "0101", Released),
+            ("l298n", "0001", Released),
+            ("tb6612", "1101", Forward(1.0)),
+            ("tb6612", "0101", Brake(1.0)),
+            ("tb6612", "1001", Released),
+            ("tb6612", "1111", Brake(1.0)),
+            ("tb6612", "1100", Released),
+            ("drv8833", "1011", Backward(1.0)),
+            ("drv8833", "1001", Released),
+            ("drv8833", "1111", Brake(1.0)),
+            ("drv8833", "1010", Released),
+        ] {
             assert_eq!(
-                half(false, inputs[0], inputs[1]).state(),
-                (Bridge::Released, None)
+                half(driver, levels(word)).state().0,
+                does,
+                "{driver} {word}"
             );
         }
     }
 
     #[test]
+    fn one_direction_input_drives_both_ways_whichever_way_its_high_is() {
+        let pin =
+            |bit| DriverInput::Pin(rumbo_emulator::devices::ports::Pin::new('B', bit).unwrap());
+        let driver = Driver::named("dir-pwm").unwrap();
+        for (inputs, line) in [
+            ([pin(0), pin(1), DriverInput::Low, DriverInput::High], 1),
+            ([pin(0), DriverInput::Low, pin(1), DriverInput::High], 2),
+        ] {
+            let mut half = HalfBridge::new(driver, inputs);
+            half.lines[0].modulate(pwm(0.5));
+            let low = half.state();
+            half.lines[line].set(0, true);
+            let high = half.state();
+            let (forward, backward) = if line == 1 { (high, low) } else { (low, high) };
+            assert_eq!(forward.0, Bridge::Forward(0.5));
+            assert_eq!(backward.0, Bridge::Backward(0.5));
+            assert_eq!(forward.1.decay, Decay::Slow);
+        }
+    }
+
+    #[test]
     fn a_timer_s_pwm_counts_by_its_share_and_frequency_whatever_the_level_is() {
-        let mut half = half(false, false, true);
-        half.lines[0].modulate(Some(Pwm {
-            share: 0.4,
-            period_cycles: Some(32_640),
-        }));
-        let (bridge, hz) = half.state();
+        let mut half = half("l298n", [false, false, true, true]);
+        half.lines[0].modulate(pwm(0.4));
+        let (bridge, modulation) = half.state();
         assert_eq!(bridge, Bridge::Backward(0.4));
-        assert!((hz.unwrap() - 490.2).abs() < 0.01);
+        assert_eq!(modulation.decay, Decay::Fast);
+        assert!((modulation.hz.unwrap() - 490.2).abs() < 0.01);
     }
 
     #[test]
     fn a_program_s_own_pwm_is_measured_over_its_last_period_and_ends_with_its_edges() {
-        let mut half = half(false, true, false);
+        let mut half = half("l298n", [false, true, false, true]);
         for n in 0..3 {
             half.lines[0].set(10_000 + 16_000 * n, true);
             half.lines[0].set(14_000 + 16_000 * n, false);
         }
-        let (bridge, hz) = half.state();
-        assert_eq!((bridge, hz), (Bridge::Forward(0.25), Some(1_000.0)));
+        let (bridge, modulation) = half.state();
+        assert_eq!(bridge, Bridge::Forward(0.25));
+        assert_eq!(modulation.hz, Some(1_000.0));
         let due = half.expires_cycle().unwrap();
         assert_eq!(due, 46_000 + 32_000);
         half.expire(due);
@@ -194,7 +286,7 @@ mod tests {
 
     #[test]
     fn a_slow_wave_is_on_and_off() {
-        let mut half = half(false, true, false);
+        let mut half = half("l298n", [false, true, false, true]);
         for n in 0..3 {
             half.lines[0].set(100_000 * n, true);
             assert_eq!(half.state().0, Bridge::Forward(1.0));
@@ -204,12 +296,13 @@ mod tests {
     }
 
     #[test]
-    fn modulated_inputs_under_a_constant_enable_drive_by_their_difference() {
-        let mut half = half(true, false, true);
-        half.lines[1].modulate(Some(Pwm {
-            share: 0.25,
-            period_cycles: Some(32_640),
-        }));
-        assert_eq!(half.state().0, Bridge::Backward(0.75));
+    fn an_input_modulated_under_a_constant_enable_drives_and_brakes() {
+        let mut half = half("l298n", [true, false, true, true]);
+        half.lines[1].modulate(pwm(0.25));
+        let (bridge, modulation) = half.state();
+        assert_eq!(
+            (bridge, modulation.decay),
+            (Bridge::Backward(0.75), Decay::Slow)
+        );
     }
 }

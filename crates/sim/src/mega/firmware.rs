@@ -1,7 +1,7 @@
 //! A program image: what it is, which language it speaks on its link, and how it is wired.
 
-use super::CYCLES_PER_US;
-use super::pins::Wires;
+use super::pins::{LinkOn, Wires};
+use super::{CYCLES_PER_US, ON_PINS};
 use crate::boards::Board;
 use crate::error::SimError;
 use crate::wiring::Wiring;
@@ -13,8 +13,8 @@ use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
 use rumbo_wire::{Decoder, FromRobot, Message, Received};
 
-/// Rate of the Bluetooth module [baud].
-pub const LINK_BAUD: f64 = 9600.0;
+/// The usual rate of the Bluetooth module [baud].
+const LINK_BAUD: u32 = 9600;
 /// The pin of the LED, on every board.
 const LED: u8 = 13;
 /// Time to wait for HELLO, which our program sends as soon as it runs [us].
@@ -42,13 +42,14 @@ pub struct Firmware {
     wiring: String,
     board: &'static Board,
     wires: Wires,
+    link_baud: u32,
 }
 
 impl Firmware {
     /// An image called `name`, wired so.
     ///
     /// # Errors
-    /// The link's pins are those of no USART.
+    /// The link's pins are those of a USART, exchanged.
     pub fn new(
         name: &str,
         image: Image,
@@ -62,6 +63,7 @@ impl Firmware {
             wiring: wiring.to_owned(),
             board: pins.board,
             wires: Wires::new(wiring, pins)?,
+            link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
         })
     }
 
@@ -109,9 +111,22 @@ impl Firmware {
         &self.wiring
     }
 
-    /// The USART that the Bluetooth module is on, if the wiring has one.
+    /// Whether an encoder's output B is wired.
+    pub(crate) fn needs_direction(&self) -> bool {
+        self.wires.encoders[2..].iter().any(Option::is_some)
+    }
+
+    /// The USART that the Bluetooth module is on, if the wiring has one; [`ON_PINS`] where it is on other pins.
     pub fn link_usart(&self) -> Option<u8> {
-        self.wires.link
+        match self.wires.link? {
+            LinkOn::Usart(usart) => Some(usart),
+            LinkOn::Pins { .. } => Some(ON_PINS),
+        }
+    }
+
+    /// Rate of the Bluetooth module \[baud\].
+    pub fn link_baud(&self) -> u32 {
+        self.link_baud
     }
 
     pub(super) fn wires(&self) -> &Wires {

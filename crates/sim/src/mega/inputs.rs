@@ -16,6 +16,7 @@ use std::collections::VecDeque;
 /// An edge that the plant announces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Edge {
+    /// By the number of its line among [`Wires::encoders`](super::Wires::encoders).
     Encoder(usize, bool),
     Echo(SonarId, bool),
 }
@@ -93,7 +94,12 @@ impl Mega {
         let (wire, level) = match edge {
             Edge::Encoder(index, level) => {
                 self.encoders[index] = level;
-                (Wire::Encoder([Side::Left, Side::Right][index]), level)
+                let Some(side) = [Side::Left, Side::Right].get(index) else {
+                    // No fault befalls an output B.
+                    let pin = self.wires().encoders[index];
+                    return self.put(self.cycle_of(at_us), pin, level);
+                };
+                (Wire::Encoder(*side), level)
             }
             Edge::Echo(sonar, level) => {
                 if !self.echoes.edge(sonar, level, at_us, faults) {
@@ -143,7 +149,12 @@ impl Mega {
 
 fn edge_of(event: Event) -> Option<Edge> {
     match event {
-        Event::Edge { wheel, level, .. } => Some(Edge::Encoder(wheel.index(), level)),
+        Event::Edge {
+            wheel,
+            channel,
+            level,
+            ..
+        } => Some(Edge::Encoder(wheel.index() + 2 * channel as usize, level)),
         Event::EchoRise { sonar, .. } => Some(Edge::Echo(sonar, true)),
         Event::EchoFall { sonar, .. } => Some(Edge::Echo(sonar, false)),
         Event::Contact { .. } => None,

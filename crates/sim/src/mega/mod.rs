@@ -14,6 +14,7 @@
 //! | `inputs` | the edges that the plant announces, scheduled for the chip |
 //! | `outputs` | the chip's outputs as actions on the robot |
 //! | `echo` | echo lines, and sonars that fail |
+//! | `uart` | the Bluetooth module on pins that are no USART's |
 //! | `console` | output of the USARTs, for people |
 //! | `meters` | what instruments at the wired pins show |
 //! | `marks` | when the program reaches some of its functions |
@@ -36,6 +37,7 @@ mod module;
 mod notes;
 mod outputs;
 mod servo;
+mod uart;
 
 use crate::sonar_fault::SonarFaults;
 use crate::wire_fault::WireFaults;
@@ -47,12 +49,12 @@ use firmware::Firmware;
 use inputs::Announced;
 use marks::Marks;
 use meters::Meters;
-use pins::Wires;
+use pins::{LinkOn, Wires};
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::{Cause, Input};
 use rumbo_emulator::verdict::Verdict;
-use rumbo_plant::drivetrain::{Bridge, Side};
+use rumbo_plant::drivetrain::{Bridge, Modulation, Side};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::sonar::SonarId;
 use servo::ServoInput;
@@ -60,6 +62,10 @@ use std::sync::Arc;
 
 /// The USART of the USB port.
 pub const USB: u8 = 0;
+/// In place of a USART: the Bluetooth module on other pins.
+pub const ON_PINS: u8 = 4;
+/// The consoles: of the USARTs, and of the module on other pins.
+pub const CONSOLES: u8 = 5;
 /// The boards' clock is 16 MHz.
 pub const CYCLES_PER_US: u64 = 16;
 /// Battery at which the chip's brown-out detector, set to 2.7 V by the boards' fuses, resets it: the regulator drops 1.1 V.
@@ -78,8 +84,8 @@ const AHEAD_CYCLES: u64 = CYCLES_PER_US;
 /// An action of the chip on the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Action {
-    /// A half of the bridge is driven in another way, at this frequency of the PWM [Hz].
-    Bridge(Side, Bridge, Option<f64>),
+    /// A half of the bridge is driven in another way, with this PWM.
+    Bridge(Side, Bridge, Modulation),
     /// A pulse to the servo: where it is to point [rad], 0 ahead, positive to the left.
     Servo(f64),
     /// A trigger pulse has ended.
@@ -105,16 +111,19 @@ pub struct Mega {
     /// The chip's cycle at the plant's time 0.
     zero_cycle: u64,
     bridges: [HalfBridge; 2],
-    driven: [(Bridge, Option<f64>); 2],
+    driven: [(Bridge, Modulation); 2],
     servo: ServoInput,
     triggers: [Option<u64>; 3],
-    encoders: [bool; 2],
+    /// Levels of the encoders, as [`Wires::encoders`].
+    encoders: [bool; 4],
     echoes: Echoes,
     announced: Announced,
     actions: Vec<Action>,
     /// Bytes that the module has received from the chip, and when [us].
     sent: Vec<(u64, u8)>,
-    consoles: [Console; 4],
+    consoles: [Console; CONSOLES as usize],
+    /// What the module hears on the pin of `link_tx`, where that is no USART's.
+    module: uart::Receiver,
     meters: Meters,
     verdict: Option<Verdict>,
     /// When the program reached the functions of interest.
@@ -132,23 +141,27 @@ pub struct Mega {
 }
 
 impl Mega {
-    /// A board that has just been switched on; `encoders` are the levels of both Hall sensors, left and right.
-    pub(crate) fn new(firmware: Arc<Firmware>, encoders: [bool; 2]) -> Self {
+    /// A board that has just been switched on; `encoders` are the levels of the encoders.
+    pub(crate) fn new(firmware: Arc<Firmware>, encoders: [bool; 4]) -> Self {
         let mut chip = Chip::new(firmware.image());
         chip.watch(&firmware.wires().felt());
+        let Wires {
+            driver, bridges, ..
+        } = *firmware.wires();
         let mut mega = Self {
             chip,
             zero_cycle: 0,
-            bridges: Default::default(),
-            driven: [(Bridge::Released, None); 2],
+            bridges: bridges.map(|inputs| HalfBridge::new(driver, inputs)),
+            driven: [(Bridge::Released, Modulation::default()); 2],
             servo: ServoInput::default(),
             triggers: [None; 3],
-            encoders: [false; 2],
+            encoders: [false; 4],
             echoes: Echoes::default(),
             announced: Announced::default(),
             actions: Vec::new(),
             sent: Vec::new(),
             consoles: Default::default(),
+            module: uart::Receiver::new(firmware.link_baud()),
             meters: Meters::at(firmware.metered()),
             verdict: None,
             marks: Marks::default(),
@@ -172,7 +185,7 @@ impl Mega {
     }
 
     /// The clock of the plant starts over at this cycle: lines are as they are at a start.
-    fn begin(&mut self, cycle: u64, encoders: [bool; 2]) {
+    fn begin(&mut self, cycle: u64, encoders: [bool; 4]) {
         self.zero_cycle = cycle;
         self.look_ahead();
         self.echoes = Echoes::default();
@@ -186,11 +199,11 @@ impl Mega {
     }
 
     /// Restarts the plant's clock; the chip's outputs stay as they are.
-    pub(crate) fn restart_clock(&mut self, encoders: [bool; 2]) {
+    pub(crate) fn restart_clock(&mut self, encoders: [bool; 4]) {
         let cycle = self.chip.cycle();
         self.begin(cycle, encoders);
         for index in 0..2 {
-            self.driven[index] = (Bridge::Released, None);
+            self.driven[index] = (Bridge::Released, Modulation::default());
         }
         self.drive();
     }
@@ -262,12 +275,19 @@ impl Mega {
 
     /// A byte whose last bit reaches the link's USART at this time [us], sent at `baud`.
     pub(crate) fn receive(&mut self, at_us: u64, byte: u8, baud: u32) {
-        let Some(usart) = self.wires().link else {
-            return;
-        };
         let frame = 10 * 1_000_000 * CYCLES_PER_US / u64::from(baud.max(1));
         let begin = self.cycle_of(at_us).saturating_sub(frame);
-        self.chip.input(begin, Input::Serial { usart, byte, baud });
+        match self.wires().link {
+            Some(LinkOn::Usart(usart)) => {
+                self.chip.input(begin, Input::Serial { usart, byte, baud });
+            }
+            Some(LinkOn::Pins { receive, .. }) => {
+                for (cycle, level) in uart::frame(begin, byte, baud) {
+                    self.put(cycle, receive, level);
+                }
+            }
+            None => {}
+        }
     }
 
     /// Drains the bytes that the module has received, each with the time of its last bit [us].

@@ -2,12 +2,13 @@
 
 use super::console::Console;
 use super::firmware::Language;
-use super::{CYCLES_PER_US, Mega, TRIGGER_CYCLES};
+use super::{CONSOLES, CYCLES_PER_US, Mega, TRIGGER_CYCLES};
 use rumbo_emulator::cpu::Standstill;
 use rumbo_emulator::devices::{Cause, Unmodelled};
 
-/// The USARTs as a sketch calls them.
-const NAMES: [&str; 4] = ["Serial (USB)", "Serial1", "Serial2", "Serial3"];
+/// The USARTs as a sketch calls them, and the module on other pins.
+const NAMES: [&str; CONSOLES as usize] =
+    ["Serial (USB)", "Serial1", "Serial2", "Serial3", "its pins"];
 
 /// What a program did that people wonder about.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,8 +17,8 @@ pub(super) struct Oddities {
     short_trigger: Option<u64>,
     brown_outs: u32,
     watchdog_resets: u32,
-    /// A rate at which the Bluetooth module does not understand the chip \[baud\].
-    link_baud: Option<f64>,
+    /// A rate at which the Bluetooth module does not understand the chip, and its own \[baud\].
+    link_baud: Option<[f64; 2]>,
 }
 
 /// Resets by one cause that are more than a program's own way to begin anew.
@@ -32,8 +33,8 @@ impl Oddities {
     }
 
     /// A byte went to the Bluetooth module at a rate that is not its own.
-    pub(super) fn sent_at(&mut self, baud: f64) {
-        self.link_baud = Some(baud);
+    pub(super) fn sent_at(&mut self, baud: f64, own: f64) {
+        self.link_baud = Some([baud, own]);
     }
 
     /// The chip was reset.
@@ -64,10 +65,9 @@ impl Oddities {
                 self.watchdog_resets
             )
         });
-        let garbled = self.link_baud.map(|baud| {
+        let garbled = self.link_baud.map(|[baud, own]| {
             format!(
-                "firmware {name}: it sends over the Bluetooth link at {baud:.0} baud; the module is set to {}, and what it passes on is garbage: give begin() that rate",
-                super::firmware::LINK_BAUD
+                "firmware {name}: it sends over the Bluetooth link at {baud:.0} baud; the module is set to {own:.0}, and what it passes on is garbage: give begin() that rate"
             )
         });
         [short, browned, watched, garbled].into_iter().flatten()
@@ -89,8 +89,19 @@ impl Mega {
         };
         let strange = self.chip.unmodelled().iter().map(line);
         let notes = strange.chain(self.standstill()).chain(self.unsent());
+        let notes = notes.chain(self.misframed());
         let notes = notes.chain(self.oddities.told(self.firmware.name()));
-        notes.chain(self.silence()).collect()
+        notes
+            .chain(self.silence())
+            .chain(self.data_sheet())
+            .collect()
+    }
+
+    /// What of the robot was not identified from recordings.
+    pub fn data_sheet(&self) -> Option<String> {
+        let driver = self.firmware.wires().driver;
+        driver.source?;
+        Some(format!("motor driver: {}", driver.in_words()))
     }
 
     /// Why the program has halted for good, if it has.
@@ -108,6 +119,16 @@ impl Mega {
             Standstill::Loop => format!(
                 "firmware {name}: it stands in a loop of one instruction at {place} with interrupts off: only a reset leads on"
             ),
+        })
+    }
+
+    /// What the module could not read on a pin that is no USART's.
+    fn misframed(&self) -> Option<String> {
+        let (name, baud) = (self.firmware.name(), self.firmware.link_baud());
+        self.module.misframed().then(|| {
+            format!(
+                "firmware {name}: what it sends to the Bluetooth module is not at {baud} baud, and what that passes on is garbage: give begin() that rate, or the wiring link_baud"
+            )
         })
     }
 
@@ -140,7 +161,7 @@ impl Mega {
         if let Some(link) = self.firmware.link_usart().map(usize::from)
             && !spoke(link)
         {
-            let others: Vec<&str> = (0..4)
+            let others: Vec<&str> = (0..NAMES.len())
                 .filter(|usart| spoke(*usart))
                 .map(|usart| NAMES[usart])
                 .collect();
@@ -151,7 +172,7 @@ impl Mega {
             };
             silence.push(format!(
                 "firmware {name}: nothing came over the Bluetooth link, {} in wiring {wiring}, {others}",
-                NAMES[link % 4]
+                NAMES[link % NAMES.len()]
             ));
         }
         silence

@@ -1,7 +1,8 @@
 //! Outputs of the chip's pins and USARTs, as actions on the robot.
 
 use super::bridge::{self, HalfBridge};
-use super::{ACT, Action, CYCLES_PER_US, FIRING_CYCLES, Mega, USB, firmware, module};
+use super::pins::LinkOn;
+use super::{ACT, Action, CYCLES_PER_US, FIRING_CYCLES, Mega, ON_PINS, USB, module};
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Event, Output, Pwm};
 use rumbo_plant::drivetrain::{Bridge, Side};
@@ -29,6 +30,9 @@ impl Mega {
             }
         }
         let cycle = self.chip.cycle();
+        if self.heard().is_some() {
+            self.hear(cycle, None);
+        }
         let late = self.bridges.iter().filter_map(HalfBridge::expires_cycle);
         if late.min().is_some_and(|due| due <= cycle) {
             self.bridges.iter_mut().for_each(|half| half.expire(cycle));
@@ -46,8 +50,9 @@ impl Mega {
 
     fn level(&mut self, cycle: u64, pin: Pin, high: bool) {
         self.meters.set(cycle, pin, high);
-        if let Some(line) = self.line(pin) {
-            line.set(cycle, high);
+        self.each_line(pin, |line| line.set(cycle, high));
+        if self.heard() == Some(pin) {
+            self.hear(cycle, Some(high));
         }
         if self.wires().servo == Some(pin) {
             let angle_rad = self.servo.set(cycle, high);
@@ -73,20 +78,19 @@ impl Mega {
 
     fn modulate(&mut self, cycle: u64, pin: Pin, pwm: Option<Pwm>) {
         self.meters.modulate(cycle, pin, pwm);
-        if let Some(line) = self.line(pin) {
-            line.modulate(pwm);
-        }
+        self.each_line(pin, |line| line.modulate(pwm));
     }
 
-    fn line(&mut self, pin: Pin) -> Option<&mut bridge::Line> {
-        let pins = self.firmware.wires().bridges;
-        for (half, pins) in self.bridges.iter_mut().zip(pins) {
-            let wired = [pins.enable, pins.forward, pins.backward];
-            if let Some(at) = wired.iter().position(|wired| *wired == Some(pin)) {
-                return Some(&mut half.lines[at]);
+    /// Does something to the driver's inputs that are on this pin.
+    fn each_line(&mut self, pin: Pin, mut act: impl FnMut(&mut bridge::Line)) {
+        let wired = self.firmware.wires().bridges;
+        for (half, inputs) in self.bridges.iter_mut().zip(wired) {
+            for (line, input) in half.lines.iter_mut().zip(inputs) {
+                if input.pin() == Some(pin) {
+                    act(line);
+                }
             }
         }
-        None
     }
 
     /// Notes what the bridges do now that they did not before.
@@ -102,11 +106,12 @@ impl Mega {
     }
 
     fn byte_sent(&mut self, cycle: u64, usart: u8, byte: u8, baud: f64) {
-        let is_link = self.wires().link == Some(usart);
-        let passed_on = match is_link && !module::understands(baud, firmware::LINK_BAUD) {
+        let is_link = self.wires().link == Some(LinkOn::Usart(usart));
+        let link_baud = f64::from(self.firmware.link_baud());
+        let passed_on = match is_link && !module::understands(baud, link_baud) {
             true => {
-                self.oddities.sent_at(baud);
-                module::decode(byte, baud, firmware::LINK_BAUD)
+                self.oddities.sent_at(baud, link_baud);
+                module::decode(byte, baud, link_baud)
             }
             false => Some(byte),
         };
@@ -116,10 +121,34 @@ impl Mega {
             console.push(byte);
         }
         if let (true, Some(byte)) = (is_link, passed_on) {
-            let at_us = cycle
-                .saturating_sub(self.zero_cycle)
-                .div_ceil(CYCLES_PER_US);
-            self.sent.push((at_us, byte));
+            self.pass_on(cycle, byte);
+        }
+    }
+
+    /// The module has received a byte.
+    fn pass_on(&mut self, cycle: u64, byte: u8) {
+        let at_us = cycle
+            .saturating_sub(self.zero_cycle)
+            .div_ceil(CYCLES_PER_US);
+        self.sent.push((at_us, byte));
+    }
+
+    /// The module samples the pin of `link_tx`, which is no USART's, up to this cycle; then the pin has this level.
+    fn hear(&mut self, cycle: u64, level: Option<bool>) {
+        if let Some((at, byte)) = self.module.pass(cycle) {
+            self.consoles[usize::from(ON_PINS)].push(byte);
+            self.pass_on(at, byte);
+        }
+        if let Some(level) = level {
+            self.module.set(cycle, level);
+        }
+    }
+
+    /// The pin of `link_tx`, where that is no USART's.
+    fn heard(&self) -> Option<Pin> {
+        match self.wires().link? {
+            LinkOn::Pins { transmit, .. } => transmit,
+            LinkOn::Usart(_) => None,
         }
     }
 }

@@ -1,27 +1,61 @@
 //! The signals of a wiring on the pins of the chip.
 
+use crate::drivers::Driver;
 use crate::error::SimError;
 use crate::wiring::{Divider, Wiring};
 use rumbo_emulator::devices::ports::Pin;
 
-/// Enable and direction inputs of one half of the bridge; what is not wired stays low.
+/// The inputs of one half of the driver.
+pub(super) const INPUTS: [&str; 4] = ["enable", "forward", "backward", "standby"];
+
+/// An input of the driver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct BridgePins {
-    pub(super) enable: Option<Pin>,
-    pub(super) forward: Option<Pin>,
-    pub(super) backward: Option<Pin>,
+pub(super) enum DriverInput {
+    /// Not wired, or held low.
+    #[default]
+    Low,
+    /// Held high.
+    High,
+    /// On this pin.
+    Pin(Pin),
+}
+
+impl DriverInput {
+    pub(super) fn pin(self) -> Option<Pin> {
+        match self {
+            Self::Pin(pin) => Some(pin),
+            Self::Low | Self::High => None,
+        }
+    }
+}
+
+/// Where the Bluetooth module is connected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LinkOn {
+    /// To a USART of the chip.
+    Usart(u8),
+    /// To other pins, on which a program makes a serial port of its own.
+    Pins {
+        /// Where the chip receives.
+        receive: Option<Pin>,
+        /// Where it sends.
+        transmit: Option<Pin>,
+    },
 }
 
 /// A wiring in terms of the chip. Pairs are left and right, triples are left, right and front, as the plant counts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Wires {
-    pub(super) bridges: [BridgePins; 2],
-    pub(super) encoders: [Option<Pin>; 2],
+    pub(super) driver: &'static Driver,
+    /// The inputs of each half, as [`INPUTS`].
+    pub(super) bridges: [[DriverInput; 4]; 2],
+    /// Outputs A of both, then outputs B.
+    pub(super) encoders: [Option<Pin>; 4],
     pub(super) servo: Option<Pin>,
     pub(super) triggers: [Option<Pin>; 3],
     pub(super) echoes: [Option<Pin>; 3],
-    /// The USART that the Bluetooth module is on.
-    pub(super) link: Option<u8>,
+    /// What the Bluetooth module is on.
+    pub(super) link: Option<LinkOn>,
     /// The battery's divider.
     pub(super) battery: Option<Divider>,
     /// Lines that idle high because something sends on them.
@@ -32,17 +66,14 @@ impl Wires {
     /// The wired pins by what they are for: `left_enable`, `front_echo`, `servo`.
     pub(super) fn signals(&self) -> Vec<(String, Pin)> {
         let mut named = Vec::new();
-        for (side, (bridge, encoder)) in ["left", "right"]
-            .into_iter()
-            .zip(self.bridges.iter().zip(self.encoders))
-        {
-            named.extend([
-                (format!("{side}_enable"), bridge.enable),
-                (format!("{side}_forward"), bridge.forward),
-                (format!("{side}_backward"), bridge.backward),
-                (format!("{side}_encoder"), encoder),
-            ]);
+        for (index, side) in ["left", "right"].into_iter().enumerate() {
+            let bridge = self.bridges[index];
+            let inputs = INPUTS[..3].iter().zip(bridge);
+            named.extend(inputs.map(|(input, on)| (format!("{side}_{input}"), on.pin())));
+            named.push((format!("{side}_encoder"), self.encoders[index]));
+            named.push((format!("{side}_encoder_b"), self.encoders[index + 2]));
         }
+        named.push(("standby".to_owned(), self.bridges[0][3].pin()));
         for (index, sonar) in ["left", "right", "front"].into_iter().enumerate() {
             named.push((format!("{sonar}_trigger"), self.triggers[index]));
             named.push((format!("{sonar}_echo"), self.echoes[index]));
@@ -55,23 +86,42 @@ impl Wires {
 
 impl Wires {
     /// # Errors
-    /// The link's pins are those of no USART.
+    /// The link's pins are those of a USART, exchanged.
     pub(super) fn new(name: &str, wiring: &Wiring) -> Result<Self, SimError> {
         let number = |signal: &str| wiring.pins.get(signal).copied();
         let pin = |signal: &str| number(signal).and_then(|number| wiring.board.pin(number));
-        let bridge = |side: &str| BridgePins {
-            enable: pin(&format!("{side}_enable")),
-            forward: pin(&format!("{side}_forward")),
-            backward: pin(&format!("{side}_backward")),
+        let driver = wiring.driver;
+        let input = |signal: &str, otherwise: DriverInput| match wiring.held.get(signal) {
+            Some(true) => DriverInput::High,
+            Some(false) => DriverInput::Low,
+            None => pin(signal).map_or(otherwise, DriverInput::Pin),
+        };
+        let bridge = |side: &str| {
+            let enable = match driver.has_enable {
+                true => input(&format!("{side}_enable"), DriverInput::Low),
+                false => DriverInput::High,
+            };
+            let [forward, backward] = ["forward", "backward"]
+                .map(|way| input(&format!("{side}_{way}"), DriverInput::Low));
+            // A module holds what nobody wires.
+            let standby = input("standby", DriverInput::High);
+            [enable, forward, backward, standby]
         };
         let sonars = ["left", "right", "front"];
         Ok(Self {
+            driver,
             bridges: [bridge("left"), bridge("right")],
-            encoders: [pin("left_encoder"), pin("right_encoder")],
+            encoders: [
+                "left_encoder",
+                "right_encoder",
+                "left_encoder_b",
+                "right_encoder_b",
+            ]
+            .map(pin),
             servo: pin("servo"),
             triggers: sonars.map(|sonar| pin(&format!("{sonar}_trigger"))),
             echoes: sonars.map(|sonar| pin(&format!("{sonar}_echo"))),
-            link: link_usart(name, wiring)?,
+            link: link_on(name, wiring)?,
             battery: wiring.battery,
             receivers: [pin("link_rx"), pin("debug_rx")],
         })
@@ -81,7 +131,7 @@ impl Wires {
     pub(super) fn felt(&self) -> Vec<Pin> {
         let bridges = self.bridges.iter();
         bridges
-            .flat_map(|bridge| [bridge.enable, bridge.forward, bridge.backward])
+            .flat_map(|bridge| bridge.map(DriverInput::pin))
             .chain([self.servo])
             .chain(self.triggers)
             .flatten()
@@ -89,24 +139,35 @@ impl Wires {
     }
 }
 
-/// The USART of a wiring's link, if it has one.
-///
-/// # Errors
-/// The link's pins are those of no USART.
-pub fn link_usart(name: &str, wiring: &Wiring) -> Result<Option<u8>, SimError> {
-    let pin = |signal: &str| wiring.pins.get(signal).copied();
-    let (receive, transmit) = (pin("link_rx"), pin("link_tx"));
+/// What a wiring's link is on, if it has one.
+fn link_on(name: &str, wiring: &Wiring) -> Result<Option<LinkOn>, SimError> {
+    let number = |signal: &str| wiring.pins.get(signal).copied();
+    let (receive, transmit) = (number("link_rx"), number("link_tx"));
     if receive.is_none() && transmit.is_none() {
         return Ok(None);
     }
-    match wiring.board.usart(receive, transmit) {
-        Some(usart) => Ok(Some(usart)),
-        None => Err(SimError::LinkPins {
+    let board = wiring.board;
+    if let Some(usart) = board.usart(receive, transmit) {
+        return Ok(Some(LinkOn::Usart(usart)));
+    }
+    if let Some(usart) = board.usart(transmit, receive) {
+        return Err(SimError::LinkExchanged {
             wiring: name.to_owned(),
-            board: wiring.board,
-            receive,
-            transmit,
-        }),
+            board,
+            usart,
+        });
+    }
+    let pin = |number: Option<u8>| number.and_then(|number| board.pin(number));
+    let (receive, transmit) = (pin(receive), pin(transmit));
+    Ok(Some(LinkOn::Pins { receive, transmit }))
+}
+
+/// The USART of a wiring's link, if it is on one.
+#[must_use]
+pub fn link_usart(wiring: &Wiring) -> Option<u8> {
+    match link_on("", wiring) {
+        Ok(Some(LinkOn::Usart(usart))) => Some(usart),
+        _ => None,
     }
 }
 
@@ -114,14 +175,21 @@ pub fn link_usart(name: &str, wiring: &Wiring) -> Result<Option<u8>, SimError> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_link_on_pins_without_a_usart_is_refused_with_those_that_have_one() {
+    fn link(receive: u8, transmit: u8) -> Result<Option<LinkOn>, SimError> {
         let mut wiring = Wiring::default();
-        wiring.pins.insert("link_rx".into(), 10);
-        wiring.pins.insert("link_tx".into(), 11);
-        let error = Wires::new("mine", &wiring).unwrap_err().to_string();
+        wiring.pins.insert("link_rx".into(), receive);
+        wiring.pins.insert("link_tx".into(), transmit);
+        link_on("mine", &wiring)
+    }
+
+    #[test]
+    fn a_link_is_on_a_usart_or_on_any_other_pins_and_exchanged_pins_are_named() {
+        assert_eq!(link(19, 18), Ok(Some(LinkOn::Usart(1))));
+        assert!(matches!(link(10, 11), Ok(Some(LinkOn::Pins { .. }))));
+        let error = link(18, 19).unwrap_err().to_string();
         assert!(
-            error.contains("wiring mine: link_rx = 10") && error.contains("19 and 18"),
+            error.contains("wiring mine: link_rx and link_tx are exchanged")
+                && error.contains("link_rx = 19"),
             "{error}"
         );
     }

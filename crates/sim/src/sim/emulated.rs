@@ -12,8 +12,8 @@ use rumbo_plant::drivetrain::{Bridge, Side};
 
 /// How far the plant looks ahead, and the grid it keeps to [us].
 const AHEAD_US: u64 = 1_000;
-/// A byte of the link takes ten bits at 9600 baud [us].
-const BYTE_US: u64 = 1_042;
+/// Bits of a byte of the link.
+const BYTE_BITS: u64 = 10;
 
 impl Sim {
     /// Advances chip and plant to this time [us], or to a breakpoint.
@@ -37,7 +37,8 @@ impl Sim {
             let halted = self.lockstep(mega, end_us);
             for (at_us, byte) in mega.take_sent() {
                 // The link counts the byte's own time, which has passed on the chip's line.
-                self.downlink.send(at_us.saturating_sub(BYTE_US), &[byte]);
+                self.downlink
+                    .send(at_us.saturating_sub(self.byte_us()), &[byte]);
             }
             if halted {
                 return;
@@ -45,9 +46,14 @@ impl Sim {
         }
     }
 
+    /// A byte's time on the link [us].
+    fn byte_us(&self) -> u64 {
+        (BYTE_BITS * 1_000_000).div_ceil(u64::from(self.baud))
+    }
+
     /// Bytes whose first bit reaches the chip before this time.
     fn bytes_to(&mut self, mega: &mut Mega, end_us: u64) {
-        while let Some((at_us, byte)) = self.uplink.pop(end_us + BYTE_US) {
+        while let Some((at_us, byte)) = self.uplink.pop(end_us + self.byte_us()) {
             mega.receive(at_us, byte, self.baud);
         }
     }
@@ -106,9 +112,9 @@ impl Sim {
 
     fn act(&mut self, action: Action) {
         match action {
-            Action::Bridge(side, bridge, pwm_hz) => {
+            Action::Bridge(side, bridge, modulation) => {
                 self.plant
-                    .set_bridge_at(&mut self.state, side, bridge, pwm_hz);
+                    .set_bridge_at(&mut self.state, side, bridge, modulation);
                 let mut duty = self.duty;
                 match side {
                     Side::Left => duty.left = duty_of(bridge),

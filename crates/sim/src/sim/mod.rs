@@ -6,7 +6,7 @@
 //! | the report's, native | `baseline` | keeps its own time; [`Sim::order`] hands it commands without a link |
 //! | any image, on an emulated Mega | `emulated` | chip and plant in lockstep |
 //!
-//! Bytes go through [`Link`]s at 9600 baud: the user of a [`Sim`] sees the robot as behind a real port. A clone is a
+//! Bytes go through [`Link`]s at 9600 baud, or at the rate of the wiring's module: the user of a [`Sim`] sees the robot as behind a real port. A clone is a
 //! snapshot, which continues bit for bit the same.
 
 mod baseline;
@@ -111,7 +111,15 @@ impl Sim {
             robot: day,
             wheels_in_air,
         });
+        let plant = match &program {
+            Program::Image(firmware) if firmware.needs_direction() => plant.with_second_channels(),
+            _ => plant,
+        };
         let state = plant.start(start);
+        let mut link = LinkParams::default();
+        if let Program::Image(firmware) = &program {
+            link.baud = firmware.link_baud();
+        }
         let controller = match program {
             Program::Rumbo {
                 parameters,
@@ -136,7 +144,6 @@ impl Sim {
                 Controller::Mega(Box::new(mega))
             }
         };
-        let link = LinkParams::default();
         let noise = Noise::new(seed, day);
         let mut sonar_faults = SonarFaults::default();
         for fault in failing_sonars {

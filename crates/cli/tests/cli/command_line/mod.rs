@@ -4,6 +4,7 @@
 
 mod import;
 mod information;
+mod kits;
 mod observe;
 mod run;
 mod sketch;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 /// A fresh folder; `None` where no compiler is installed.
-fn bench(name: &str) -> Option<PathBuf> {
+pub(super) fn bench(name: &str) -> Option<PathBuf> {
     if let Err(error) = rumbo_sketch::Toolchain::find() {
         assert!(std::env::var_os("CI").is_none(), "{error}");
         return None;
@@ -16,7 +16,7 @@ fn bench(name: &str) -> Option<PathBuf> {
     Some(bench)
 }
 
-fn rumbo(bench: &PathBuf, arguments: &[&str]) -> Output {
+pub(super) fn rumbo(bench: &PathBuf, arguments: &[&str]) -> Output {
     let mut command = program();
     command.current_dir(bench).args(arguments);
     command.env("RUMBO_CACHE", folder().join("sketches"));

@@ -3,6 +3,7 @@
 use super::rig::{image, setup};
 use rumbo_experiment::files::{FileError, Library, Overrides, Port, TimedText};
 use rumbo_experiment::run::run;
+use rumbo_wire::LineEnding;
 use std::path::PathBuf;
 
 #[test]
@@ -37,6 +38,7 @@ fn lines_of_the_command_line_go_out_at_their_time() {
     let at = |at_s, text: &str| TimedText {
         at_s,
         text: text.into(),
+        ending: LineEnding::Lf,
         port: Port::Link,
     };
     setup.texts = vec![at(0.5, "DUTY 120"), at(1.5, "COAST")];
@@ -61,11 +63,12 @@ fn a_line_typed_on_usb_reaches_serial_and_nothing_else() {
     setup.texts = vec![TimedText {
         at_s: 1.0,
         text: "who is there".into(),
+        ending: LineEnding::CrLf,
         port: Port::Usb,
     }];
     let result = run(&setup, 1).unwrap();
     let said = |usart| String::from_utf8(result.trace.console(usart)).unwrap();
-    assert!(said(0).ends_with("who is there\n"), "{}", said(0));
+    assert!(said(0).ends_with("who is there\r\n"), "{}", said(0));
     assert!(!said(2).contains("there"), "{}", said(2));
 }
 
@@ -77,6 +80,7 @@ fn a_program_that_runs_into_erased_flash_ends_the_run_with_that_verdict() {
     setup.texts = vec![TimedText {
         at_s: 1.0,
         text: "CRASH".into(),
+        ending: LineEnding::Lf,
         port: Port::Link,
     }];
     let result = run(&setup, 1).unwrap();

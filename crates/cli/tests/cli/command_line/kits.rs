@@ -1,0 +1,366 @@
+//! Robots with other wirings, drivers and parts than the report's: a sketch as their authors write it, and a robot file.
+
+use super::sketch::{bench, rumbo};
+use crate::support::{stderr, stdout};
+use std::path::PathBuf;
+use std::process::Output;
+
+/// A folder with a robot on a Uno, wired so, in an open world, and a sketch. `None` where no compiler is installed.
+fn kit(name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
+    driven_by("l298n", name, wiring, sketch)
+}
+
+/// The same with another driver.
+fn driven_by(driver: &str, name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
+    let bench = bench(name)?;
+    let robot = format!(
+        "title = \"A car\"\nboard = \"uno\"\ndriver = \"{driver}\"\n[rig.front_single.front]\nx_m = 0.13\n[wiring.car]\n{wiring}"
+    );
+    let scenario = "title = \"On the floor\"\nrobot = \"robot.toml\"\nrig = \"front_single\"\nworld = \"open\"\n\
+                    mode = \"manual\"\nduration_s = 3\n[spread]\nnone = true\n";
+    std::fs::write(bench.join("robot.toml"), robot).unwrap();
+    std::fs::write(bench.join("floor.toml"), scenario).unwrap();
+    std::fs::write(bench.join("car.ino"), sketch).unwrap();
+    Some(bench)
+}
+
+fn drive(bench: &PathBuf, more: &[&str]) -> Output {
+    let run = [
+        "run",
+        "floor.toml",
+        "--sketch",
+        "car.ino",
+        "--out",
+        "out",
+        "--force",
+    ];
+    rumbo(bench, &[&run, more].concat())
+}
+
+/// The last value of a column of the true signals.
+fn last(bench: &PathBuf, column: &str) -> f64 {
+    let csv = std::fs::read_to_string(bench.join("out/floor-1.truth.csv")).unwrap();
+    let mut lines = csv.lines();
+    let at = lines
+        .next()
+        .unwrap()
+        .split(',')
+        .position(|each| each == column);
+    let row: Vec<&str> = lines.last().unwrap().split(',').collect();
+    row[at.unwrap()].parse().unwrap()
+}
+
+const LETTERS: &str = "
+char letter;
+void setup() {
+  Serial.begin(9600);
+  for (int pin = 5; pin <= 8; pin++) pinMode(pin, OUTPUT);
+  digitalWrite(7, HIGH); digitalWrite(8, HIGH);
+}
+void loop() {
+  if (Serial.available()) letter = Serial.read();
+  analogWrite(5, letter == 'F' ? 150 : 0);
+  analogWrite(6, letter == 'F' ? 150 : 0);
+  delay(50);
+}";
+const LETTERS_WIRING: &str = "left_enable = 5\nleft_forward = 7\nright_enable = 6\nright_forward = 8\n\
+                              debug_tx = 1\ndebug_rx = 0\n";
+
+#[test]
+fn a_letter_without_a_line_ending_is_obeyed_until_the_next_one() {
+    let Some(bench) = kit("letters", LETTERS_WIRING, LETTERS) else {
+        return;
+    };
+    let run = drive(&bench, &["--usb", "F@1"]);
+    assert!(
+        last(&bench, "x_m").abs() < 0.02,
+        "LF stops it: {}",
+        stdout(&run)
+    );
+    let run = drive(&bench, &["--usb", "F@1", "--line-ending", "none"]);
+    assert!(
+        last(&bench, "x_m") > 0.3,
+        "{}{}",
+        stdout(&run),
+        stderr(&run)
+    );
+    let again = rumbo(&bench, &["rerun", "out/floor-1.mcap"]);
+    assert!(
+        again.status.success(),
+        "{}{}",
+        stdout(&again),
+        stderr(&again)
+    );
+    // The same in the scenario.
+    let scenario = std::fs::read_to_string(bench.join("floor.toml")).unwrap();
+    let typed = "[[command]]\nat_s = 1\nusb = \"F\"\nline_ending = \"none\"\n";
+    std::fs::write(bench.join("floor.toml"), format!("{scenario}{typed}")).unwrap();
+    drive(&bench, &[]);
+    assert!(last(&bench, "x_m") > 0.3);
+    let wrong = typed.replace("none", "nl");
+    std::fs::write(bench.join("floor.toml"), format!("{scenario}{wrong}")).unwrap();
+    let refused = drive(&bench, &[]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        stderr(&refused).contains("line_ending = \"nl\": known are `none`, `lf`, `cr`, `crlf`"),
+        "{}",
+        stderr(&refused)
+    );
+}
+
+/// Forward for a second and a half, then backward.
+fn to_and_fro(pins: &str, forward: &str, backward: &str) -> String {
+    format!(
+        "const byte pins[] = {{{pins}}};\nvoid setup() {{ for (byte pin : pins) pinMode(pin, OUTPUT); }}\n\
+         void loop() {{ {forward} delay(1500); {backward} delay(100000); }}\n"
+    )
+}
+
+#[test]
+fn an_l298n_whose_jumpers_hold_the_enables_drives_by_pwm_on_its_inputs() {
+    let sketch = to_and_fro(
+        "5, 6, 9, 10",
+        "analogWrite(5, 150); analogWrite(9, 150); analogWrite(6, 0); analogWrite(10, 0);",
+        "analogWrite(5, 0); analogWrite(9, 0); analogWrite(6, 150); analogWrite(10, 150);",
+    );
+    let wiring = "left_enable = \"high\"\nleft_forward = 5\nleft_backward = 6\n\
+                  right_enable = \"high\"\nright_forward = 9\nright_backward = 10\n";
+    there_and_back(kit("jumpers", wiring, &sketch));
+    // As such a file was written before there was a word for the jumper.
+    let Some(bench) = kit(
+        "no_jumpers",
+        &wiring.replace("left_enable = \"high\"\n", ""),
+        &sketch,
+    ) else {
+        return;
+    };
+    let refused = drive(&bench, &[]);
+    assert!(
+        stderr(&refused).contains("[wiring.car] left_enable is missing")
+            && stderr(&refused).contains("\"high\" where a jumper holds it"),
+        "{}",
+        stderr(&refused)
+    );
+}
+
+#[test]
+fn a_driver_with_one_direction_input_drives_both_ways() {
+    // As an mBot has it: one wheel's high is forward, the other's backward.
+    let sketch = to_and_fro(
+        "4, 5, 6, 7",
+        "digitalWrite(7, HIGH); digitalWrite(4, LOW); analogWrite(6, 120); analogWrite(5, 120);",
+        "digitalWrite(7, LOW); digitalWrite(4, HIGH);",
+    );
+    let wiring = "left_enable = 6\nleft_forward = 7\nright_enable = 5\nright_backward = 4\n";
+    there_and_back(driven_by("dir-pwm", "dir_pwm", wiring, &sketch));
+}
+
+#[test]
+fn a_tb6612_drives_when_its_standby_is_high() {
+    let run = "digitalWrite(7, HIGH); digitalWrite(8, LOW); digitalWrite(2, HIGH); digitalWrite(4, LOW); \
+               analogWrite(5, 120); analogWrite(6, 120);";
+    let back =
+        "digitalWrite(7, LOW); digitalWrite(8, HIGH); digitalWrite(2, LOW); digitalWrite(4, HIGH);";
+    let sketch = to_and_fro(
+        "2, 3, 4, 5, 6, 7, 8",
+        &format!("digitalWrite(3, HIGH); {run}"),
+        back,
+    );
+    let wiring = "left_enable = 5\nleft_forward = 7\nleft_backward = 8\nright_enable = 6\nright_forward = 2\n\
+                  right_backward = 4\nstandby = 3\n";
+    there_and_back(driven_by("tb6612", "tb6612", wiring, &sketch));
+    let Some(bench) = driven_by("tb6612", "standby", wiring, &to_and_fro("3", run, back)) else {
+        return;
+    };
+    drive(&bench, &[]);
+    assert_eq!(last(&bench, "x_m"), 0.0);
+}
+
+#[test]
+fn a_drv8833_drives_by_pwm_on_its_inputs_and_has_no_enable() {
+    let sketch = to_and_fro(
+        "5, 6, 9, 10",
+        // The left wheel brakes between the pulses, the right one coasts.
+        "digitalWrite(5, HIGH); analogWrite(6, 105); analogWrite(9, 150);",
+        "analogWrite(5, 105); digitalWrite(6, HIGH); analogWrite(9, 0); analogWrite(10, 150);",
+    );
+    let wiring = "left_forward = 5\nleft_backward = 6\nright_forward = 9\nright_backward = 10\n";
+    let Some(bench) = driven_by("drv8833", "drv8833", wiring, &sketch) else {
+        return;
+    };
+    drive(&bench, &[]);
+    // Nothing brakes the one that coasts.
+    let (left, right) = (last(&bench, "left_rad_s"), last(&bench, "right_rad_s"));
+    assert!(left < -2.0 && right < 1.2 * left, "{left} {right}");
+    let Some(bench) = driven_by(
+        "drv8833",
+        "drv_enable",
+        "left_enable = 3\nleft_forward = 5\n",
+        "",
+    ) else {
+        return;
+    };
+    let refused = stderr(&drive(&bench, &[]));
+    assert!(
+        refused.contains("left_enable: the DRV8833 has no such input"),
+        "{refused}"
+    );
+}
+
+/// It drives forward for half of the run and back in the other half.
+fn there_and_back(bench: Option<PathBuf>) {
+    let Some(bench) = bench else { return };
+    let run = drive(&bench, &[]);
+    let csv = std::fs::read_to_string(bench.join("out/floor-1.truth.csv")).unwrap();
+    let mut lines = csv.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let x = header.iter().position(|each| *each == "x_m").unwrap();
+    let x_m: Vec<f64> = lines
+        .map(|line| line.split(',').nth(x).unwrap().parse().unwrap())
+        .collect();
+    let farthest_m = x_m.iter().copied().fold(0.0, f64::max);
+    let end_m = *x_m.last().unwrap();
+    assert!(
+        farthest_m > 0.3 && end_m < 0.7 * farthest_m,
+        "{farthest_m} {end_m} {}{}",
+        stdout(&run),
+        stderr(&run)
+    );
+}
+
+/// What the sketch printed on USB.
+fn printed(bench: &PathBuf) -> Vec<i64> {
+    let said = std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
+    said.lines()
+        .filter_map(|line| line.trim().parse().ok())
+        .collect()
+}
+
+#[test]
+fn an_encoder_with_two_outputs_counts_up_forward_and_down_backward() {
+    let sketch = "
+volatile long count;
+void edge() { count += digitalRead(4) ? 1 : -1; }
+void setup() {
+  Serial.begin(115200);
+  pinMode(5, OUTPUT); pinMode(7, OUTPUT); pinMode(8, OUTPUT);
+  attachInterrupt(digitalPinToInterrupt(2), edge, RISING);
+  digitalWrite(7, HIGH); analogWrite(5, 200);
+  delay(1000); Serial.println(count);
+  digitalWrite(7, LOW); digitalWrite(8, HIGH);
+  delay(1900); Serial.println(count);
+}
+void loop() {}";
+    let wiring = "left_enable = 5\nleft_forward = 7\nleft_backward = 8\nleft_encoder = 2\nleft_encoder_b = 4\n\
+                  debug_tx = 1\ndebug_rx = 0\n";
+    let Some(bench) = kit("quadrature", wiring, sketch) else {
+        return;
+    };
+    drive(&bench, &[]);
+    let counts = printed(&bench);
+    assert!(counts[0] > 100 && counts[1] < counts[0] - 100, "{counts:?}");
+    // As people copy it: the second output alone.
+    let Some(bench) = kit(
+        "second_alone",
+        &wiring.replace("left_encoder = 2\n", ""),
+        sketch,
+    ) else {
+        return;
+    };
+    let refused = stderr(&drive(&bench, &[]));
+    assert!(
+        refused.contains("give left_encoder, the first one"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn a_disc_of_twenty_slots_counts_twenty_a_turn() {
+    let sketch = "
+volatile long slots;
+void slot() { slots++; }
+void setup() {
+  Serial.begin(115200);
+  attachInterrupt(digitalPinToInterrupt(3), slot, FALLING);
+  pinMode(5, OUTPUT); pinMode(7, OUTPUT);
+  digitalWrite(7, HIGH); analogWrite(5, 200);
+  delay(2900); Serial.println(slots);
+}
+void loop() {}";
+    let wiring =
+        "left_enable = 5\nleft_forward = 7\nleft_encoder = 3\ndebug_tx = 1\ndebug_rx = 0\n";
+    let Some(bench) = kit("slots", wiring, sketch) else {
+        return;
+    };
+    let robot = std::fs::read_to_string(bench.join("robot.toml")).unwrap();
+    let disc = "[plant.encoder]\nslots = 20\n";
+    std::fs::write(bench.join("robot.toml"), format!("{robot}{disc}")).unwrap();
+    drive(&bench, &[]);
+    let turns = mean(&bench, "left_rad_s") * 2.9 / std::f64::consts::TAU;
+    let counted = printed(&bench)[0] as f64 / 20.0;
+    assert!((counted - turns).abs() < 0.1, "{counted} {turns}");
+    let both = format!("{robot}{disc}edges_per_motor_turn = 2\n");
+    std::fs::write(bench.join("robot.toml"), both).unwrap();
+    let refused = stderr(&drive(&bench, &[]));
+    assert!(
+        refused.contains("slots counts a disc on the wheel"),
+        "{refused}"
+    );
+}
+
+/// The mean of a column of the true signals over the first 2.9 s.
+fn mean(bench: &PathBuf, column: &str) -> f64 {
+    let csv = std::fs::read_to_string(bench.join("out/floor-1.truth.csv")).unwrap();
+    let mut lines = csv.lines();
+    let at = lines
+        .next()
+        .unwrap()
+        .split(',')
+        .position(|each| each == column);
+    let cells = lines.map(|line| {
+        line.split(',')
+            .nth(at.unwrap())
+            .unwrap()
+            .parse::<f64>()
+            .unwrap()
+    });
+    let values: Vec<f64> = cells.take(290).collect();
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+#[test]
+fn a_bluetooth_module_on_any_two_pins_is_heard_and_hears_at_its_own_rate() {
+    let sketch = "
+#include <SoftwareSerial.h>
+SoftwareSerial phone(2, 3);
+void setup() { phone.begin(38400); pinMode(5, OUTPUT); pinMode(7, OUTPUT); digitalWrite(7, HIGH); }
+void loop() { if (phone.available() && phone.read() == 'F') { analogWrite(5, 150); phone.println(\"Forward\"); } }";
+    let wiring = "left_enable = 5\nleft_forward = 7\nlink_rx = 2\nlink_tx = 3\nlink_baud = 38400\n";
+    let Some(bench) = kit("bluetooth", wiring, sketch) else {
+        return;
+    };
+    let letter = ["--command", "F@1", "--line-ending", "none"];
+    let run = drive(&bench, &letter);
+    let said =
+        || std::fs::read_to_string(bench.join("out/floor-1-bluetooth.txt")).unwrap_or_default();
+    assert_eq!(said(), "Forward\n", "{}{}", stdout(&run), stderr(&run));
+    assert!(last(&bench, "left_rad_s") > 1.0);
+    assert!(
+        rumbo(&bench, &["rerun", "out/floor-1.mcap"])
+            .status
+            .success()
+    );
+    // The module as it is sold, and a sketch that sends faster.
+    let robot = std::fs::read_to_string(bench.join("robot.toml")).unwrap();
+    std::fs::write(
+        bench.join("robot.toml"),
+        robot.replace("link_baud = 38400\n", ""),
+    )
+    .unwrap();
+    let eager = sketch.replace("digitalWrite(7, HIGH); }", "phone.println(\"Ready\"); }");
+    std::fs::write(bench.join("car.ino"), eager).unwrap();
+    let run = drive(&bench, &letter);
+    assert!(!said().contains("Ready"));
+    let told = stdout(&run) + &stderr(&run);
+    assert!(told.contains("is not at 9600 baud"), "{told}");
+}

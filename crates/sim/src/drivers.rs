@@ -1,0 +1,189 @@
+//! The motor drivers: what their inputs make of a motor, and what they cost of the battery's voltage.
+//!
+//! The L298N is identified with the report's robot; the others are taken from their data sheets and say so
+//! ([`Driver::source`]).
+
+use rumbo_plant::params;
+use std::fmt;
+
+/// What one half of a driver does with its motor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stage {
+    /// All transistors off.
+    Coast,
+    /// Driven forward.
+    Forward,
+    /// Driven backward.
+    Backward,
+    /// Shorted.
+    Brake,
+}
+
+use Stage::{Backward, Brake, Coast, Forward};
+
+/// How a half is told its direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// By two inputs.
+    Two,
+    /// By one, high or low.
+    One,
+}
+
+/// A driver of two motors.
+pub struct Driver {
+    /// As robot files name it: `l298n`.
+    pub name: &'static str,
+    /// As people do.
+    pub title: &'static str,
+    /// Where its numbers are from; nothing where they were identified from recordings.
+    pub source: Option<&'static str>,
+    /// Whether each half has an enable input.
+    pub has_enable: bool,
+    /// Its direction inputs.
+    pub direction: Direction,
+    /// Whether one input, low, switches both halves off.
+    pub has_standby: bool,
+    /// What a half does, by enable (low, high) and by inputs: none high, forward, backward, both.
+    pub(crate) does: [[Stage; 4]; 2],
+    drop_v: f64,
+    drop_ohm: f64,
+    diode_v: f64,
+    brake_v: f64,
+}
+
+/// The L298N, whose losses `[plant.bridge]` has.
+pub static L298N: Driver = Driver {
+    name: "l298n",
+    title: "L298N",
+    source: None,
+    has_enable: true,
+    direction: Direction::Two,
+    has_standby: false,
+    // L298 data sheet, "bidirectional DC motor control".
+    does: [[Coast; 4], [Brake, Forward, Backward, Brake]],
+    drop_v: 1.4,
+    drop_ohm: 0.5,
+    diode_v: 0.9,
+    brake_v: 1.6,
+};
+
+/// The drivers that there are.
+pub static DRIVERS: [&Driver; 5] = [
+    &L298N,
+    &Driver {
+        name: "l293d",
+        title: "L293D",
+        // Saturation 1.4 V above and 1.2 V below at 0.6 A, diodes 1.3 V; a motor is shorted over one of each.
+        source: Some("its data sheet (TI SLRS008)"),
+        drop_v: 2.6,
+        drop_ohm: 0.0,
+        diode_v: 1.3,
+        brake_v: 2.5,
+        ..L298N
+    },
+    &Driver {
+        name: "tb6612",
+        title: "TB6612FNG",
+        // 0.5 ohm above and below together, diodes 1.0 V at 1 A.
+        source: Some("its data sheet (Toshiba TB6612FNG, 2014-10-01)"),
+        has_standby: true,
+        does: [
+            [Coast, Brake, Brake, Brake],
+            [Coast, Forward, Backward, Brake],
+        ],
+        drop_v: 0.0,
+        drop_ohm: 0.5,
+        diode_v: 1.0,
+        brake_v: 0.0,
+        ..L298N
+    },
+    &Driver {
+        name: "drv8833",
+        title: "DRV8833",
+        // 0.36 ohm above and below together; no value for its diodes: silicon's.
+        source: Some("its data sheet (TI SLVSAR1)"),
+        has_enable: false,
+        has_standby: true,
+        does: [[Coast, Forward, Backward, Brake]; 2],
+        drop_v: 0.0,
+        drop_ohm: 0.36,
+        diode_v: 0.8,
+        brake_v: 0.0,
+        ..L298N
+    },
+    &Driver {
+        name: "dir-pwm",
+        title: "driver with a direction and a PWM input",
+        // Most are a TB6612FNG whose second input is the inverse of the first.
+        source: Some("the data sheet of the TB6612FNG"),
+        direction: Direction::One,
+        has_standby: true,
+        does: [[Brake; 4], [Brake, Forward, Backward, Brake]],
+        drop_v: 0.0,
+        drop_ohm: 0.5,
+        diode_v: 1.0,
+        brake_v: 0.0,
+        ..L298N
+    },
+];
+
+impl Driver {
+    /// The driver of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<&'static Driver> {
+        DRIVERS.into_iter().find(|driver| driver.name == name)
+    }
+
+    /// Its losses, in place of the nominal ones.
+    #[must_use]
+    pub fn bridge(&self) -> params::Bridge {
+        params::Bridge {
+            drop_v: self.drop_v,
+            drop_ohm: self.drop_ohm,
+            diode_v: self.diode_v,
+            brake_v: self.brake_v,
+            ..params::Bridge::default()
+        }
+    }
+
+    /// What it is, and that it was not identified, where so.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        match self.source {
+            None => self.title.to_owned(),
+            Some(source) => format!("{}, by {source}, not identified", self.title),
+        }
+    }
+}
+
+/// The report's.
+impl Default for &'static Driver {
+    fn default() -> Self {
+        &L298N
+    }
+}
+
+impl PartialEq for Driver {
+    fn eq(&self, other: &Driver) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Driver {}
+
+impl fmt::Debug for Driver {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(self.name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_report_s_driver_is_the_nominal_one() {
+        assert_eq!(L298N.bridge(), params::Bridge::default());
+    }
+}
