@@ -104,9 +104,13 @@ impl Sim {
         });
     }
 
-    fn act(&mut self, action: Action) {
+    pub(super) fn act(&mut self, action: Action) {
         match action {
             Action::Bridge(side, bridge, pwm_hz) => {
+                let (bridge, pwm_hz) = match self.motors_cut {
+                    true => (Bridge::Released, None),
+                    false => (bridge, pwm_hz),
+                };
                 self.plant
                     .set_bridge_at(&mut self.state, side, bridge, pwm_hz);
                 let mut duty = self.duty;
