@@ -91,9 +91,11 @@ export class CommandPanel {
       button.disabled = armed && button.value !== String(mode);
       button.title = button.disabled ? t('Switch OFF first') : said(own?.about ?? '');
     }
-    setText(this.#armed, fault ? t('fault') : armed ? t('armed') : t('off'));
+    const own = isOwn(state);
+    const cut = state.motors_cut === true;
+    setText(this.#armed, own ? t(cut ? 'motors without supply' : 'motors supplied') : fault ? t('fault') : armed ? t('armed') : t('off'));
     document.body.classList.toggle('armed', armed);
-    this.#armed.className = `chip ${fault ? 'bad' : armed ? 'good' : ''}`;
+    this.#armed.className = `chip ${fault || (own && cut) ? 'bad' : armed || own ? 'good' : ''}`;
     this.#movements.show(entry?.movements ?? false, armed);
     this.#joystick.show(entry?.velocity ?? false, armed);
     const steered = entry?.movements ? this.#movements : entry?.velocity ? this.#joystick : null;
@@ -104,7 +106,7 @@ export class CommandPanel {
       this.#places.layOut(entry);
     }
     this.#showReference(state, entry);
-    if (isOwn(state)) setText(this.#about, t('go to the program as lines of text'));
+    if (own) setText(this.#about, this.#about.title = t('STOP and OFF cut the supply of the motors, ON gives it back; the program gets them as text, too'));
     else if (entry) this.#showAbout(entry, state.robot.rig);
     const scenario = armed || !entry ? null : this.#scenarioOf(entry);
     this.#experiment.hidden = scenario === null;

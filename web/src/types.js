@@ -90,6 +90,7 @@
  * @property {string[]} [alarms] Alarms that need action at once.
  * @property {{number: number} & ({phase: 'running', since_s: number} | {phase: 'done', findings: Findings} | {phase: 'failed', why: string})} [calibration]
  * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', watched: boolean, complaints?: {place: string | null, text: string, line: string | null}[], profile?: Profile}} [program] Of an emulated robot; what the compiler rejects of it; where its time goes, while that is counted.
+ * @property {boolean} [motors_cut] STOP or OFF cut the supply of the motors of a program that may ignore them.
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
  *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number,

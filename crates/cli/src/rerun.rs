@@ -18,6 +18,7 @@ use rumbo_log::{Burst, Kind, Log, Manifest, Row, Said, Sample, Sent};
 use rumbo_sim::mega::CONSOLES;
 use rumbo_sim::{Config, Sim};
 use rumbo_station::log_file;
+use rumbo_wire::text::TextCommand;
 use rumbo_wire::{Decoder, FromRobot, Message, PROTOCOL_VERSION, Received, Telemetry};
 use serde_json::json;
 use std::path::Path;
@@ -281,7 +282,14 @@ fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<V
         // In their order: a line typed to the link's USART goes the same way as the commands.
         while let Some(next) = sent.next_if(|sent| sent.t_us() <= t_us) {
             match next {
-                Sent::Link(burst) => sim.send(&burst.bytes),
+                Sent::Link(burst) => {
+                    sim.send(&burst.bytes);
+                    if log.speaks_text()
+                        && let Some(on) = supplies(&burst.bytes)
+                    {
+                        sim.supply_motors(on);
+                    }
+                }
                 Sent::Typed(line) => {
                     rumbo_lab::type_to(&mut sim, line.usart, &line.bytes);
                 }
@@ -299,6 +307,17 @@ fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<V
     Ok(first_difference(&was, &link, true)
         .or_else(|| first_difference(&had_said, &said, true))
         .unwrap_or(Verdict::Equal))
+}
+
+/// What STOP, OFF or ON among lines of the session did to the supply of the motors.
+fn supplies(bytes: &[u8]) -> Option<bool> {
+    let lines = str::from_utf8(bytes).ok()?.lines().rev();
+    let mut commands = lines.filter_map(|line| TextCommand::parse(line).ok());
+    commands.find_map(|command| match command {
+        TextCommand::On => Some(true),
+        TextCommand::Off => Some(false),
+        _ => None,
+    })
 }
 
 /// Drains the output of the USARTs of an emulated Mega.

@@ -263,6 +263,10 @@ impl Target for FleetRobot {
         }
     }
 
+    fn supply_motors(&mut self, on: bool) {
+        self.sim(|sim| sim.supply_motors(on));
+    }
+
     fn run_program(&mut self, _name: String, _content: Vec<u8>) -> Result<(), TargetError> {
         Err(TargetError::Several)
     }

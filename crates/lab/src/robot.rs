@@ -275,6 +275,10 @@ impl Target for SimulatedRobot {
         Ok(())
     }
 
+    fn supply_motors(&mut self, on: bool) {
+        self.sim.supply_motors(on);
+    }
+
     fn run_program(&mut self, name: String, content: Vec<u8>) -> Result<(), TargetError> {
         self.drop_program(name, content)
     }

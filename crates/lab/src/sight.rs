@@ -18,6 +18,7 @@ pub(crate) fn abilities(sim: &Sim, mode: ModeId) -> Abilities {
         clock: true,
         port: false,
         typing: true,
+        cut_off: text,
         text: text.then_some(mode),
     }
 }

@@ -31,6 +31,9 @@ pub struct State {
     /// The program of an emulated robot.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub program: Option<ProgramState>,
+    /// STOP or OFF cut the supply of the motors of a simulated robot, whose program may ignore them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub motors_cut: bool,
     /// A log is being shown, of this length; `t_s` is where.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub replay: Option<ReplayState>,

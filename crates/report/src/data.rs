@@ -65,6 +65,12 @@ impl Data {
         self.outcomes.get(scenario)
     }
 
+    /// Another program than ours drove the robot: what our controller does is no part of its report.
+    pub(crate) fn is_foreign(&self) -> bool {
+        let mut setups = self.outcomes.values().map(|outcome| &outcome.setup);
+        setups.any(|setup| !setup.takes_parameters())
+    }
+
     /// Our run beside a recorded one, and that one.
     pub(crate) fn beside(&self, scenario: &str) -> Option<(&Outcome, &Recording)> {
         let recording = self.real.runs.get(scenario)?;

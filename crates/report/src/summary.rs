@@ -36,6 +36,7 @@ const HEADER: [Text; 5] = [
     word("here"),
     word("robot-of-the-original-report"),
 ];
+const HOW_FOREIGN: Text = word("foreign-note");
 const HOW_SILENT: Text = word("no-telemetry-note");
 
 /// The report as one HTML page, and each figure's identifier, in order.
@@ -47,6 +48,7 @@ pub fn html(data: &Data, language: Language) -> Result<(String, Vec<String>), Co
     let mut chapters = String::new();
     for experiment in &data.experiments {
         let mut places = Places::new(language);
+        places.section("own", !data.is_foreign());
         (experiment.fill)(&mut places, data);
         chapters += &markdown::chapter(&mut page, experiment.number, experiment.name, &places)?;
     }
@@ -92,6 +94,11 @@ fn front(data: &Data, language: Language, contents: String) -> Places {
     places.section("skipped", !data.real.skipped.is_empty());
     places.block("skipped", skipped(data, language));
     places.block("contents", contents);
+    if data.is_foreign() {
+        places.value("foreign", HOW_FOREIGN.of(language));
+    } else {
+        places.nothing("foreign");
+    }
     if data.outcomes.values().all(Outcome::has_telemetry) {
         places.nothing("no-telemetry");
     } else {

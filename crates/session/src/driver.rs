@@ -163,6 +163,7 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
                     self.note(Level::Warning, format!("profile: refused, {why}"), wall_us);
                 }
             }
+            Ask::Supply(on) => self.target.supply_motors(on),
             Ask::Ghost(standing) => {
                 let done = self.target.restart_ghost(standing);
                 self.session.ghost_restarted(done, now);

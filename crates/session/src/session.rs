@@ -57,6 +57,8 @@ pub enum Ask {
     Program(String, Vec<u8>),
     /// Count the cycles of its program, or no longer.
     Profile(bool),
+    /// Cut the supply of its motors, or give it back.
+    Supply(bool),
     /// Calibrate the robot; then [`Session::calibration_begun`].
     Calibrate,
 }
@@ -107,6 +109,8 @@ pub struct Session {
     velocity_refused_us: Option<u64>,
     /// The robot has been sent its first commands.
     briefed: bool,
+    /// STOP or OFF cut the supply of its motors.
+    motors_cut: bool,
     /// The port is gone and not back yet.
     port_gone: bool,
     link_watch: LinkWatch,
@@ -131,6 +135,7 @@ impl Session {
             held: None,
             velocity_refused_us: None,
             briefed: false,
+            motors_cut: false,
             port_gone: false,
             link_watch: LinkWatch::default(),
             link_events: Vec::new(),
@@ -178,6 +183,7 @@ impl Session {
         self.calibrating = None;
         self.calibration = None;
         self.briefed = false;
+        self.motors_cut = false;
         self.state_noted_us = None;
         self.observer.start_run();
         self.show_scene();
@@ -193,6 +199,7 @@ impl Session {
             Order::Robot(command) => {
                 self.held = None;
                 self.command(command, now);
+                return self.supply(command);
             }
             Order::Hold(command) => self.hold(command, now),
             Order::Velocity(velocity) => self.velocity(velocity, now),
@@ -377,6 +384,7 @@ impl Session {
         State {
             calibration: self.calibration.clone(),
             program: going.program,
+            motors_cut: self.motors_cut,
             ..describe(&around, &mut self.client, &self.observer)
         }
     }

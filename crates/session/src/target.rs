@@ -24,6 +24,8 @@ pub struct Abilities {
     pub port: bool,
     /// Lines can be typed to its USARTs ([`Target::type_in`]).
     pub typing: bool,
+    /// Its program may ignore STOP, and the supply of its motors can be cut ([`Target::supply_motors`]).
+    pub cut_off: bool,
     /// The robot speaks the original's text, and is in this mode at first.
     pub text: Option<ModeId>,
 }
@@ -37,6 +39,7 @@ impl Default for Abilities {
             clock: false,
             port: true,
             typing: false,
+            cut_off: false,
             text: None,
         }
     }
@@ -147,6 +150,9 @@ pub trait Target: Send {
     fn type_in(&mut self, _usart: u8, _text: &str) -> Result<(), TargetError> {
         Err(TargetError::NoTyping)
     }
+
+    /// Cuts the supply of the motors, or gives it back; it is there at a start. Only where [`Abilities::cut_off`] says so.
+    fn supply_motors(&mut self, _on: bool) {}
 
     /// Runs another program, of this file name and content, as soon as it is compiled.
     ///

@@ -50,6 +50,14 @@ pub(crate) fn outcome(outcome: &Outcome, mode: ModeId) -> String {
 pub(crate) const STOP_UNCONFIRMED: &str =
     "ALARM: the robot does not confirm STOP; switch off its battery";
 
+/// STOP or OFF, where the supply of the motors can be cut.
+pub(crate) const MOTORS_CUT: &str =
+    "{}: the motors have no supply, whatever the program does; ON gives it back";
+
+/// ON after that.
+pub(crate) const MOTORS_SUPPLIED: &str =
+    "ON: the motors have their supply again; the program was told, too";
+
 /// An alarm about an anomaly.
 pub(crate) fn alarm(anomaly: Anomaly) -> String {
     format!("ALARM: {}", anomaly.explanation())

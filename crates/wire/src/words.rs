@@ -7,6 +7,17 @@ use rumbo_control::mode::{ModeId, Movement, ReferenceKind};
 use rumbo_control::params::ParamId;
 
 impl Command {
+    /// What a cut-off at the supply of the motors, as an emergency button is, makes of it: STOP and OFF cut (`false`), ON
+    /// closes.
+    #[must_use]
+    pub const fn supplies_motors(&self) -> Option<bool> {
+        match self {
+            Self::Stop | Self::Disarm => Some(false),
+            Self::Arm => Some(true),
+            _ => None,
+        }
+    }
+
     /// The command in words; `mode` gives a reference its unit.
     #[must_use]
     pub fn in_words(&self, mode: ModeId) -> impl fmt::Display {

@@ -157,6 +157,8 @@ export const ROBOT = {
   'the link is full: the robot left out {} telemetry frames': 'el enlace está lleno: el robot omitió {} tramas de telemetría',
   'the link is disturbed: {} damaged frames within 10 s; come nearer, or check the cable':
     'hay perturbaciones en el enlace: {} tramas dañadas en 10 s; acércate o revisa el cable',
+  '{}: the motors have no supply, whatever the program does; ON gives it back': '{}: los motores están sin alimentación, haga lo que haga el programa; ON la devuelve',
+  'ON: the motors have their supply again; the program was told, too': 'ON: los motores vuelven a tener alimentación; también se le ha enviado al programa',
   '{}: sent, text is not acknowledged': '{}: enviado, el texto no se confirma',
   'link lost: nothing received from the robot for a second; trying again': 'enlace perdido: no se recibe nada del robot desde hace un segundo; reintentando',
   'the robot speaks protocol {}, this station {}: flash the robot or update the station': 'el robot habla el protocolo {}, esta estación el {}: graba el robot o actualiza la estación',

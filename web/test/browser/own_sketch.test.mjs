@@ -57,6 +57,22 @@ test('a sketch without telemetry is seen to drive, and what it cannot serve is n
   assert.deepEqual(ports, ['Serial (USB)', 'Serial1 (Bluetooth)']);
 });
 
+test('STOP stops it whatever it does, the page says by what, and ON lets it go on', { skip }, async () => {
+  const chip = page.locator('#armed');
+  const text = readFileSync(file, 'utf8');
+  save('#include <RumboRobot.h>\nRumboRobot robot;\nvoid setup() { robot.begin(); }\nvoid loop() { robot.drive(-80, -80); }\n');
+  await until('true_left_rpm', -300, -20);
+  await page.keyboard.press('Space');
+  await until('true_left_rpm', -0.1, 0.1);
+  assert.equal(await chip.textContent(), 'motors without supply');
+  await page.locator('#events', { hasText: 'STOP: the motors have no supply, whatever the program does' }).waitFor();
+  await page.locator('#on').click();
+  await chip.filter({ hasText: 'motors supplied' }).waitFor();
+  await until('true_left_rpm', -300, -20);
+  save(text);
+  await until('true_left_rpm', 20, 300);
+});
+
 rare('the tab Profile shows where its time goes, and its interrupts', { skip }, async () => {
   await page.getByRole('tab', { name: 'Profile' }).click();
   assert.equal(await page.locator('#profile-functions').isVisible(), false);
@@ -152,6 +168,16 @@ void loop() {
   await until('true_left_pwm', 110, 130);
   await until('true_x_m', 0.1, 9);
   assert.deepEqual(dashboard.complaints, []);
+});
+
+test('sessions, also that in which STOP cut the supply, run again byte for byte', { skip }, () => {
+  // The last one goes on.
+  const sessions = readdirSync(logs).filter((name) => name.endsWith('.mcap')).sort().slice(0, -1);
+  assert.ok(sessions.length >= 3, sessions.join());
+  for (const name of sessions) {
+    const again = spawnSync(program(), ['rerun', join(logs, name)], { encoding: 'utf8' });
+    assert.equal(again.status, 0, again.stdout + again.stderr);
+  }
 });
 
 /** Drops a file on the page. @param {string} name @param {string} text */

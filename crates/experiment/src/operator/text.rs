@@ -51,8 +51,12 @@ impl Terminal {
         }
     }
 
-    /// Sends a command; notes those that the protocol lacks.
+    /// Sends a command; notes those that the protocol lacks. STOP and OFF also cut the supply of the motors, ON gives it
+    /// back: the program may ignore them.
     pub(super) fn write(&mut self, sim: &mut Sim, command: Command) -> Option<String> {
+        if let Some(on) = command.supplies_motors() {
+            sim.supply_motors(on);
+        }
         match command {
             Command::Mode(mode) => self.mode = mode,
             Command::Goal { x_m, y_m } => self.send_to(sim, x_m, y_m),

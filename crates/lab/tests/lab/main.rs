@@ -9,5 +9,6 @@
 mod calibration;
 mod fleet;
 mod programs;
+mod supply;
 mod velocity;
 mod world;

@@ -80,7 +80,11 @@ fn results(places: &mut Places, outcome: &Outcome) {
         variable(language, outcome, LEFT_AXIS, Ink::First, Channel::Left),
         variable(language, outcome, RIGHT_AXIS, Ink::Second, Channel::Right),
     ];
-    parts::timed_within(places, "mode6-variable", panels, Some([3.0, 23.0]));
+    if outcome.setup.takes_parameters() {
+        parts::timed_within(places, "mode6-variable", panels, Some([3.0, 23.0]));
+    } else {
+        places.nothing("mode6-variable");
+    }
     let base_cm = CM * outcome.setup.robot.plant.body.base_m;
     let [.., heading_deg] = outcome.pose();
     let angle = heading_deg

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use rumbo_experiment::files::Library;
+use rumbo_experiment::files::{Library, NativeProgram, Overrides};
 use rumbo_report::real::{NotShown, Real, read};
 use rumbo_report::text::Language;
 use rumbo_report::{Data, Plan, Request, html};
@@ -160,6 +160,55 @@ fn every_experiment_meets_its_limits() {
             "{}: {:?}",
             outcome.result.scenario, outcome.result.failures
         );
+    }
+}
+
+#[test]
+fn the_report_of_another_program_has_no_word_of_our_controller() {
+    let request = Request {
+        only: ["mode1", "mode5", "mode6"].map(str::to_owned).into(),
+        seed: 1,
+        overrides: Overrides {
+            program: NativeProgram::Baseline,
+            ..Overrides::default()
+        },
+        ..Request::default()
+    };
+    let plan = Plan::new(&Library::new(), request).unwrap();
+    let data = plan.run(|_| {}).unwrap();
+    let ours = ["scheme", "law", "variable"];
+    for (language, words, note) in [
+        (
+            Language::English,
+            [
+                "Control scheme",
+                "speed loop",
+                "feedforward",
+                "far and a near part",
+            ],
+            "Another program than Rumbo",
+        ),
+        (
+            Language::Spanish,
+            [
+                "Esquema de control",
+                "lazo de velocidad",
+                "prealimentación",
+                "parte lejana",
+            ],
+            "un programa que no es de Rumbo",
+        ),
+    ] {
+        let (page, figures) = html(&data, language).unwrap();
+        let shown = figures
+            .iter()
+            .find(|name| ours.iter().any(|part| name.ends_with(part)));
+        assert_eq!(shown, None, "{language:?}");
+        for word in words {
+            assert!(!page.contains(word), "{language:?}: {word}");
+            assert!(page.contains(note), "{language:?}");
+        }
+        assert!(html(self::data(), language).unwrap().0.contains(words[0]));
     }
 }
 

@@ -67,6 +67,7 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
         alarms: alarms(around.t_us, client),
         calibration: None,
         program: None,
+        motors_cut: false,
         replay: None,
     }
 }

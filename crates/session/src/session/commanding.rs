@@ -128,9 +128,27 @@ impl Session {
         }
         self.observer.commanded(now.target_us, vec![*command]);
         let said = command.in_words(self.client.mode());
-        let text = format!("{said}: sent, text is not acknowledged");
+        let sent = format!("{said}: sent, text is not acknowledged");
+        let text = match command
+            .supplies_motors()
+            .filter(|_| self.about.abilities.cut_off)
+        {
+            Some(false) => words::MOTORS_CUT.replace("{}", &said.to_string()),
+            Some(true) if self.motors_cut => words::MOTORS_SUPPLIED.to_owned(),
+            _ => sent,
+        };
         self.note(rumbo_log::Level::Info, text, now);
         self.say(now);
+    }
+
+    /// What is to happen to the supply of the motors, where it can be cut.
+    pub(super) fn supply(&mut self, command: Command) -> Option<Ask> {
+        let on = command
+            .supplies_motors()
+            .filter(|_| self.about.abilities.cut_off)?;
+        self.motors_cut = !on;
+        self.state_noted_us = None;
+        Some(Ask::Supply(on))
     }
 
     /// A line that a person typed: for a USART of an emulated chip, or for a robot that speaks text.

@@ -105,6 +105,13 @@ impl Mega {
         }
     }
 
+    /// What the bridges are to do now.
+    pub(crate) fn driven(&self) -> [Action; 2] {
+        let [left, right] = self.driven;
+        [(Side::Left, left), (Side::Right, right)]
+            .map(|(side, (bridge, pwm_hz))| Action::Bridge(side, bridge, pwm_hz))
+    }
+
     fn byte_sent(&mut self, cycle: u64, usart: u8, byte: u8, baud: f64) {
         let is_link = self.wires().link == Some(LinkOn::Usart(usart));
         let link_baud = f64::from(self.firmware.link_baud());

@@ -80,6 +80,8 @@ pub struct Sim {
     outputs_us: (u64, u64, u64),
     /// The chip is without power: its program does not run, and its pins drive nothing.
     off: bool,
+    /// The supply of an emulated program's motors is cut.
+    motors_cut: bool,
     /// What crossed the link, while it is tapped.
     tapped: Option<Vec<Burst>>,
 }
@@ -170,6 +172,7 @@ impl Sim {
             noise,
             outputs_us: (0, 0, 0),
             off: false,
+            motors_cut: false,
             tapped: None,
         })
     }
@@ -450,6 +453,16 @@ impl Sim {
     pub fn switch_off(&mut self) {
         self.off = true;
         self.set_bridges(Wheels::default());
+    }
+
+    /// Cuts the supply of the motors, whatever an emulated program does at its pins, as an emergency button at the battery
+    /// does, or gives it back; the chip keeps its own. Programs that obey STOP by themselves have no such button.
+    pub fn supply_motors(&mut self, on: bool) {
+        self.motors_cut = !on && self.mega().is_some();
+        let asked = self.mega().map(Mega::driven);
+        for action in asked.into_iter().flatten() {
+            self.act(action);
+        }
     }
 
     /// Whether its power was taken away.
