@@ -27,12 +27,15 @@ from ._tune import Tuning, tune
 __version__: str = _rumbo.VERSION
 #: Number of the model: runs are comparable bit for bit only within one.
 MODEL: int = _rumbo.MODEL
+#: A fault in words, by the number that the column and the info ``fault`` have.
+FAULTS: dict[int, str] = dict(_rumbo.FAULTS)
 #: Largest range that the robot's program uses [m]: what it takes a clear range for.
 REACH_M: float = _rumbo.REACH_M
 #: Fastest wheel speed that a robot is commanded, either way [rad/s].
 MAX_WHEEL_RAD_S: float = _rumbo.MAX_WHEEL_RAD_S
 
 __all__ = [
+    "FAULTS",
     "MAX_WHEEL_RAD_S",
     "MODEL",
     "OBSERVED",

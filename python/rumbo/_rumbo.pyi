@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "FAULTS",
     "MAX_WHEEL_RAD_S",
     "MODEL",
     "OBSERVED",
@@ -35,6 +36,7 @@ VERSION: str
 MODEL: int
 OBSERVED: list[str]
 TRUE: list[str]
+FAULTS: list[tuple[int, str]]
 REACH_M: float
 MAX_WHEEL_RAD_S: float
 

@@ -44,6 +44,8 @@ mod _rumbo {
         module.add("MODEL", rumbo_experiment::MODEL)?;
         module.add("OBSERVED", rumbo_experiment::batch::OBSERVED.to_vec())?;
         module.add("TRUE", rumbo_experiment::batch::TRUE.to_vec())?;
+        let faults = rumbo_control::Fault::ALL.map(|fault| (fault as u8, fault.explanation()));
+        module.add("FAULTS", faults.to_vec())?;
         module.add("REACH_M", f64::from(rumbo_control::range::REACH_M))?;
         module.add(
             "MAX_WHEEL_RAD_S",

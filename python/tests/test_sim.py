@@ -99,6 +99,18 @@ def test_columns_share_the_memory_of_their_rows() -> None:
     assert tuple(truth) == rumbo.TRUE and tuple(batch.observe()) == rumbo.OBSERVED
 
 
+def test_the_words_of_a_fault_begin_with_what_a_sound_robot_met() -> None:
+    batch = rumbo.Batch("mode5", world="wall_front", seeds=range(8), driver="caller")
+    batch.begin_wheel_speed()
+    # 12 rad/s, the fastest: 0.39 m/s.
+    _, truth = batch.drive(np.tile([12, 12, 0], (8, 1)), 6.0)
+    numbers = truth[:, rumbo.TRUE.index("fault")].astype(int)
+    assert numbers.all() and (truth[:, rumbo.TRUE.index("contacts")] > 0).all()
+    for index, number in enumerate(numbers):
+        assert rumbo.FAULTS[number] == batch.fault(index)
+        assert rumbo.FAULTS[number].split(": ")[1].startswith(("the robot met something", "something holds the"))
+
+
 def test_renewed_robots_begin_again() -> None:
     batch = rumbo.Batch("mode1", seeds=[1, 2, 3], threads=2)
     batch.step(1)

@@ -463,22 +463,22 @@ impl Fault {
                 "wall lost: nothing within the sonar's reach; face the robot to a wall"
             }
             Fault::LeftEncoderSilent => {
-                "left encoder silent: the wheel is driven but does not turn, or its sensor is cut"
+                "left encoder silent: something holds the left wheel, or its encoder is cut off; free the wheel, then see the wires of the encoder"
             }
             Fault::RightEncoderSilent => {
-                "right encoder silent: the wheel is driven but does not turn, or its sensor is cut"
+                "right encoder silent: something holds the right wheel, or its encoder is cut off; free the wheel, then see the wires of the encoder"
             }
             Fault::BatteryLow => "battery low: charge it",
             Fault::NotFinite => "a value was not a finite number; reset the parameters",
             Fault::Overrun => "a control tick took too long",
             Fault::Blocked => {
-                "blocked: something is in the way or holds both wheels; clear the way or turn the robot, then clear the fault and arm again"
+                "blocked: the robot met something, or something is in its way or holds both wheels; clear the way or turn the robot, then clear the fault and arm again"
             }
             Fault::LeftEncoderImplausible => {
-                "left encoder implausible: it loses edges or picks up noise, or something drags at its wheel; see its wires, its ground, and the gap between sensor and magnet"
+                "left encoder implausible: the robot met something, or something drags at the left wheel; if neither, its encoder loses edges or picks up noise: see its wires, its ground, and the gap between sensor and magnet"
             }
             Fault::RightEncoderImplausible => {
-                "right encoder implausible: it loses edges or picks up noise, or something drags at its wheel; see its wires, its ground, and the gap between sensor and magnet"
+                "right encoder implausible: the robot met something, or something drags at the right wheel; if neither, its encoder loses edges or picks up noise: see its wires, its ground, and the gap between sensor and magnet"
             }
         }
     }

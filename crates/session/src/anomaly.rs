@@ -1,12 +1,13 @@
 //! Watches the robot's messages for what no healthy robot does, whatever the link loses or delays: a clock that runs
-//! back, jumps or runs at another speed, far too many frames, repeated frames.
+//! back, jumps or runs at another speed, far too many frames, repeated frames, a way that is not what its sonar sees.
 //!
 //! A link only delays: two frames may arrive closer together than they were made, never with more of the robot's time
 //! between them than the wait for the first one explains, and a link that is silent for a second is lost, with which
 //! everything here begins again. A restart looks like a clock that ran back until the next status, so what is
 //! suspicious is judged then. Each anomaly is reported again after `AGAIN_US` at the earliest.
 
-use rumbo_wire::RobotTime;
+use crate::ahead::Ahead;
+use rumbo_wire::{RobotTime, Telemetry};
 use std::collections::VecDeque;
 
 /// The same anomaly is not reported again within this time \[us\].
@@ -41,16 +42,19 @@ pub enum Anomaly {
     Flood,
     /// It repeats earlier frames.
     Repeats,
+    /// It does not drive ahead, although its wheels count that it does.
+    Backward,
 }
 
 impl Anomaly {
     /// All of them.
-    pub const ALL: [Anomaly; 5] = [
+    pub const ALL: [Anomaly; 6] = [
         Anomaly::ClockBack,
         Anomaly::ClockJump,
         Anomaly::ClockSpeed,
         Anomaly::Flood,
         Anomaly::Repeats,
+        Anomaly::Backward,
     ];
 
     /// What it is, and what to do.
@@ -72,6 +76,9 @@ impl Anomaly {
             Self::Repeats => {
                 "the robot repeats earlier messages: what is shown may be old; switch it off, and check what is on the link"
             }
+            Self::Backward => {
+                "the wheels count a way ahead, but what is ahead moves away: a motor turns backward, unless something walks away from the robot; stop, and press Check the robot"
+            }
         }
     }
 }
@@ -91,6 +98,7 @@ pub(crate) struct AnomalyDetector {
     last: Option<(i64, i64)>,
     recent: VecDeque<u16>,
     last_status: Option<RobotTime>,
+    ahead: Ahead,
     repeats: u32,
     suspected: Vec<Anomaly>,
     suspected_us: Option<u64>,
@@ -124,8 +132,9 @@ impl AnomalyDetector {
         }
     }
 
-    /// Telemetry with this time arrived.
-    pub(crate) fn telemetry(&mut self, t_ms: u16, now_us: u64) {
+    /// Telemetry arrived.
+    pub(crate) fn telemetry(&mut self, telemetry: &Telemetry, now_us: u64) {
+        let t_ms = telemetry.t_ms;
         if self.recent.contains(&t_ms) {
             self.repeats += 1;
             return self.suspect_repeats(now_us);
@@ -137,6 +146,10 @@ impl AnomalyDetector {
         }
         let step_ms = before.map_or(0, |before| t_ms.wrapping_sub(before).cast_signed());
         self.step(step_ms.into(), now_us);
+        if self.ahead.contradicts(telemetry) {
+            self.ahead = Ahead::default();
+            self.found(Anomaly::Backward, now_us);
+        }
     }
 
     /// A status with this time arrived, of the same start as the one before: what was suspicious was no restart.

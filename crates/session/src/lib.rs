@@ -5,6 +5,7 @@
 //! each of which takes what it needs. The program around the driver, its [`Host`], has the clock and the threads. A
 //! [`Replay`] gives the same events of a log.
 
+mod ahead;
 pub mod anomaly;
 mod board;
 mod catalogue;

@@ -67,5 +67,5 @@ export const GUIDE = {
     'no hay pared junto al robot (izq. {}, der. {}); ponlo a 0,3-0,5 m de una pared, paralelo a ella, con 2,5 m libres delante', 'nothing': 'nada',
   '{} took too long; is the robot held, or its battery empty?': '{} tardó demasiado; ¿está sujeto el robot, o su batería vacía?',
   'only {} m free along the wall; give it at least 1 m, better 2.5 m': 'solo {} m libres junto a la pared; dale al menos 1 m, mejor 2,5 m',
-  'the measurements do not determine {}; is the wall straight and the robot free to move?': 'las mediciones no determinan {}; ¿es recta la pared y se mueve libre el robot?',
+  'the measurements do not determine {}; is the wall straight, is the robot free to move, and do both wheels turn forward? Check the robot tells': 'las mediciones no determinan {}; ¿es recta la pared, se mueve libre el robot y giran adelante las dos ruedas? Comprobar el robot lo dice',
 };

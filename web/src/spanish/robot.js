@@ -84,17 +84,17 @@ export const ROBOT = {
   'sonar stale: no good reading for too long; is something absorbing the echo?':
     'sonar sin lecturas: ninguna buena desde hace demasiado; ¿hay algo que absorbe el eco?',
   'wall lost: nothing within the sonar\'s reach; face the robot to a wall': 'pared perdida: nada al alcance del sonar; pon el robot frente a una pared',
-  'left encoder silent: the wheel is driven but does not turn, or its sensor is cut': 'encoder izquierdo en silencio: la rueda recibe PWM y no gira, o su sensor está cortado',
-  'right encoder silent: the wheel is driven but does not turn, or its sensor is cut': 'encoder derecho en silencio: la rueda recibe PWM y no gira, o su sensor está cortado',
-  'left encoder implausible: it loses edges or picks up noise, or something drags at its wheel; see its wires, its ground, and the gap between sensor and magnet':
-    'encoder izquierdo no creíble: pierde flancos o capta ruido, o algo frena su rueda; comprueba sus cables, su masa y la distancia entre sensor e imán',
-  'right encoder implausible: it loses edges or picks up noise, or something drags at its wheel; see its wires, its ground, and the gap between sensor and magnet':
-    'encoder derecho no creíble: pierde flancos o capta ruido, o algo frena su rueda; comprueba sus cables, su masa y la distancia entre sensor e imán',
+  'left encoder silent: something holds the left wheel, or its encoder is cut off; free the wheel, then see the wires of the encoder': 'encoder izquierdo en silencio: algo retiene la rueda izquierda, o no llega la señal del encoder; libera la rueda y comprueba después los cables del encoder',
+  'right encoder silent: something holds the right wheel, or its encoder is cut off; free the wheel, then see the wires of the encoder': 'encoder derecho en silencio: algo retiene la rueda derecha, o no llega la señal del encoder; libera la rueda y comprueba después los cables del encoder',
+  'left encoder implausible: the robot met something, or something drags at the left wheel; if neither, its encoder loses edges or picks up noise: see its wires, its ground, and the gap between sensor and magnet':
+    'encoder izquierdo no creíble: el robot ha chocado con algo, o algo frena la rueda izquierda; si no, el encoder pierde flancos o capta ruido: comprueba sus cables, su masa y la distancia entre sensor e imán',
+  'right encoder implausible: the robot met something, or something drags at the right wheel; if neither, its encoder loses edges or picks up noise: see its wires, its ground, and the gap between sensor and magnet':
+    'encoder derecho no creíble: el robot ha chocado con algo, o algo frena la rueda derecha; si no, el encoder pierde flancos o capta ruido: comprueba sus cables, su masa y la distancia entre sensor e imán',
   'battery low: charge it': 'batería baja: cárgala',
   'a value was not a finite number; reset the parameters': 'un valor no era un número finito; vuelve a los parámetros de fábrica',
   'a control tick took too long': 'un paso de control tardó demasiado',
-  'blocked: something is in the way or holds both wheels; clear the way or turn the robot, then clear the fault and arm again':
-    'bloqueado: hay algo en el camino o algo retiene las dos ruedas; despéjalo o gira el robot, borra el fallo y arma otra vez',
+  'blocked: the robot met something, or something is in its way or holds both wheels; clear the way or turn the robot, then clear the fault and arm again':
+    'bloqueado: el robot ha chocado con algo, o hay algo en su camino o algo retiene las dos ruedas; despéjalo o gira el robot, borra el fallo y arma otra vez',
   // Refusals, each with its remedy.
   'the value is not a finite number; send a number': 'el valor no es un número finito; envía un número',
   'the value is outside the allowed range; see the limits with `rumbo list`': 'el valor está fuera del rango permitido; mira los límites con `rumbo list`',
@@ -145,6 +145,8 @@ export const ROBOT = {
   'the robot sends far more than it should: switch it off, and flash it again': 'el robot envía muchas más tramas de las debidas: apágalo y grábalo otra vez',
   'the robot repeats earlier messages: what is shown may be old; switch it off, and check what is on the link':
     'el robot repite lo que ya dijo: lo que se muestra puede ser antiguo; apágalo y comprueba qué hay en el enlace',
+  'the wheels count a way ahead, but what is ahead moves away: a motor turns backward, unless something walks away from the robot; stop, and press Check the robot':
+    'las ruedas cuentan un avance, pero lo que hay delante se aleja: un motor gira hacia atrás, a no ser que algo se aleje del robot; para y pulsa Comprobar el robot',
   'refused: this page may watch, and stop the robot': 'rechazado: esta página puede mirar, y parar el robot',
   'refused: another page has control; take it first': 'rechazado: otra página tiene el control; tómalo antes',
   'connected; the robot speaks the original program\'s text: nothing is acknowledged, and it goes on by itself when the link is lost':

@@ -60,7 +60,7 @@ impl fmt::Display for CalibrateError {
             ),
             Self::NotDetermined(what) => write!(
                 f,
-                "the measurements do not determine {what}; is the wall straight and the robot free to move?"
+                "the measurements do not determine {what}; is the wall straight, is the robot free to move, and do both wheels turn forward? Check the robot tells"
             ),
         }
     }

@@ -57,7 +57,7 @@ impl RobotClient {
                     self.still_armed_us.get_or_insert(now_us);
                 }
                 if self.connected {
-                    self.anomalies.telemetry(telemetry.t_ms, now_us);
+                    self.anomalies.telemetry(&telemetry, now_us);
                 }
                 let t_ms = self.clock.session_ms(telemetry.t_ms, now_ms, way_ms);
                 events.push(LinkEvent::Telemetry(t_ms, telemetry));

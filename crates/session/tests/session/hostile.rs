@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::support;
+use rumbo_control::{AgedRange, Range};
 use rumbo_session::Target;
 use rumbo_session::anomaly::Anomaly;
 use rumbo_session::client::{KnownTable, LinkEvent, RobotClient};
@@ -292,4 +293,26 @@ fn a_sound_robot_behind_a_bad_link_is_never_accused() {
             assert!(count(&events, |item| matches!(item, LinkEvent::Telemetry(..))) > 500);
         }
     }
+}
+
+#[test]
+fn a_robot_that_backs_off_while_its_wheels_count_ahead_is_an_alarm() {
+    // The wires of both motors are exchanged, and the wall ahead goes away.
+    let says: Says = |step, asked| {
+        let mut said = by_clock(step, asked, |ms| ms);
+        for message in &mut said {
+            if let FromRobot::Telemetry(telemetry) = message {
+                let way_m = 0.2 * (step * STEP_US) as f32 / 1e6;
+                telemetry.pose.x_m = way_m;
+                telemetry.ranges = [AgedRange {
+                    range: Range::Valid(0.3 + way_m % 2.0),
+                    age_ticks: 0,
+                }; 3];
+            }
+        }
+        said
+    };
+    assert_eq!(odd(&reports(5, says, None), Anomaly::Backward), 1);
+    let events = reports(45, says, None);
+    assert_eq!(odd(&events, Anomaly::Backward), 2, "again after 30 s");
 }

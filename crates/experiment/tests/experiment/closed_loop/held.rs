@@ -51,6 +51,12 @@ fn driven_s(run: &RunResult, since_s: f64, sides: &[Side]) -> f64 {
     0.01 * driven.count() as f64
 }
 
+/// A fault's words begin with what is likeliest of a sound robot, before any wire.
+fn names_what_it_met(fault: Fault) -> bool {
+    let (_, why) = fault.explanation().split_once(": ").unwrap();
+    why.starts_with("the robot met something") || why.starts_with("something holds the")
+}
+
 #[test]
 fn a_robot_that_drives_into_a_wall_lets_go_of_it_and_says_so() {
     let mut setups = Vec::new();
@@ -80,6 +86,7 @@ fn a_robot_that_drives_into_a_wall_lets_go_of_it_and_says_so() {
             // In mode 7 it turns against the wall first, with one wheel only.
             let alone = fault != Fault::Blocked && setup.scenario.mode == ModeId::Waypoints;
             assert!(fault == Fault::Blocked || alone, "{what}: {fault:?}");
+            assert!(names_what_it_met(fault), "{what}: {fault:?}");
         }
     }
 }
@@ -132,6 +139,7 @@ fn a_held_wheel_is_released_in_every_mode_that_drives() {
                 _ => &[Fault::Blocked],
             };
             assert!(named.contains(&fault), "{what}: {fault:?}");
+            assert!(names_what_it_met(fault), "{what}: {fault:?}");
         }
     }
     assert!(longest_s <= RELEASED_S, "{longest_s} s");
