@@ -109,7 +109,7 @@ impl Mega {
     pub(crate) fn driven(&self) -> [Action; 2] {
         let [left, right] = self.driven;
         [(Side::Left, left), (Side::Right, right)]
-            .map(|(side, (bridge, pwm_hz))| Action::Bridge(side, bridge, pwm_hz))
+            .map(|(side, (bridge, modulation))| Action::Bridge(side, bridge, modulation))
     }
 
     fn byte_sent(&mut self, cycle: u64, usart: u8, byte: u8, baud: f64) {

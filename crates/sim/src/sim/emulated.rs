@@ -112,15 +112,11 @@ impl Sim {
 
     pub(super) fn act(&mut self, action: Action) {
         match action {
-<<<<<<< HEAD
             Action::Bridge(side, bridge, modulation) => {
-=======
-            Action::Bridge(side, bridge, pwm_hz) => {
-                let (bridge, pwm_hz) = match self.motors_cut {
-                    true => (Bridge::Released, None),
-                    false => (bridge, pwm_hz),
+                let bridge = match self.motors_cut {
+                    true => Bridge::Released,
+                    false => bridge,
                 };
->>>>>>> w-lab
                 self.plant
                     .set_bridge_at(&mut self.state, side, bridge, modulation);
                 let mut duty = self.duty;
