@@ -11,42 +11,78 @@ use crate::release;
 use crate::test::{Stop, tools, wheel};
 use std::process::Stdio;
 
-/// The part that is not a scenario.
-const LINK: &str = "link";
+/// What is no scenario: its name, and how it is run with so many seeds; true if its requirements were met.
+type Part = (
+    &'static str,
+    fn(&Project, Option<u32>) -> Result<bool, String>,
+);
 
-/// The part that drives the image: a test, made longer.
-const IMAGE: &str = "image";
-/// The part that compares the image with the native robot.
-const MEDIANS: &str = "medians";
-/// Its seeds.
-const MEDIANS_SEEDS: u32 = 20;
-/// Everything that can fail, natively and on the image.
-const FAULTS: &str = "faults";
-/// Seeds of it, and for the image seeds and instants per drive.
+const PARTS: [Part; 12] = [
+    // Frames over a link with faults.
+    ("link", |project, _| {
+        let example = ["rumbo-session", "--example", "link_campaign"];
+        program(project, example, &[])
+    }),
+    // The image under a flood of bytes.
+    ("image", |project, _| soak(project)),
+    // The image beside the native robot.
+    ("medians", |project, seeds| {
+        crate::firmware::run(project)?;
+        tool(project, "medians", &[up_to(20, seeds)])
+    }),
+    ("fuzz", |project, _| {
+        crate::fuzz::campaign(project, Some(FUZZ_SECONDS), &[])
+    }),
+    // A class of a hundred hand-ins, thirty of them hostile.
+    ("grade", |project, _| {
+        tools::arduino_core(project).map_err(said)?;
+        tools::bubblewrap(project).map_err(said)?;
+        let tests = made_longer(project, "grade::", "RUMBO_FULL", "1")?;
+        Ok(tool(project, "grade", &[])? && tests)
+    }),
+    // Simulated robots with known parameters, driven and identified.
+    ("identify", |project, seeds| {
+        made_longer(project, "identify::", "RUMBO_ROBOTS", &up_to(100, seeds))
+    }),
+    // Tuning from gains far off.
+    ("tune", |project, seeds| {
+        tool(project, "tune", &[up_to(10, seeds)])
+    }),
+    // Everything that can fail, natively and on the image.
+    ("faults", faults),
+    // Mode 8 among people who cross its way and among other robots.
+    ("moving", |project, seeds| {
+        let args = match seeds {
+            Some(seeds) => vec!["--seeds".to_owned(), seeds.to_string()],
+            None => vec!["--write".to_owned()],
+        };
+        tool(project, "moving", &args)
+    }),
+    // Sweeps of the Python package on Ray.
+    ("ray", |project, _| {
+        wheel::on_ray(project).map_err(said)?;
+        Ok(true)
+    }),
+    // A policy for mode 9, learned by the example of the Python package.
+    ("python", |project, _| {
+        wheel::learning(project).map_err(said)?;
+        Ok(true)
+    }),
+    // The release on a system with nothing else, and the crates that others can use alone.
+    ("release", |project, _| {
+        release::try_it(project).map_err(said)?;
+        release::try_crates(project)?;
+        Ok(true)
+    }),
+];
+
+/// Seeds of each fault, and for the image seeds and instants per drive.
 const FAULTS_SEEDS: u32 = 50;
 const FAULTS_SEEDS_IMAGE: u32 = 5;
 const FAULTS_INSTANTS_IMAGE: u32 = 2;
-/// Mode 8 among people who cross its way and among other robots.
-const MOVING: &str = "moving";
-/// The fuzz targets.
-const FUZZ: &str = "fuzz";
-/// A class of a hundred hand-ins, thirty of them hostile.
-const GRADE: &str = "grade";
-/// Simulated robots with known parameters, driven and identified.
-const IDENTIFY: &str = "identify";
-const IDENTIFY_ROBOTS: u32 = 100;
-/// Tuning from gains far off.
-const TUNE: &str = "tune";
-const TUNE_STARTS: u32 = 10;
-/// Sweeps of the Python package on Ray.
-const RAY: &str = "ray";
-/// A policy for mode 9, learned by the example of the Python package.
-const PYTHON: &str = "python";
-/// The release on a system with nothing else, and the crates that others can use alone.
-const RELEASE: &str = "release";
-/// Seconds of each.
+/// Seconds of each fuzz target.
 const FUZZ_SECONDS: u32 = 600;
-/// Minutes of [`IMAGE`]: past the wrap of the microseconds at 71.6.
+/// Minutes of the image: past the wrap of the microseconds at 71.6.
 const IMAGE_MINUTES: &str = "75";
 
 /// Seeds of each scenario.
@@ -55,74 +91,23 @@ const SEEDS: u32 = 1000;
 /// Runs the scenarios named in `only` (all if empty); true if all requirements were met.
 pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Result<bool, String> {
     let mut met = true;
-    if only.is_empty() || only.iter().any(|name| name == LINK) {
-        met &= program(
-            project,
-            ["rumbo-session", "--example", "link_campaign"],
-            &[],
-        )?;
+    for (name, part) in PARTS {
+        if only.is_empty() || only.iter().any(|each| each == name) {
+            met &= part(project, seeds)?;
+        }
     }
-    if only.is_empty() || only.iter().any(|name| name == IMAGE) {
-        met &= soak(project)?;
-    }
-    if only.is_empty() || only.iter().any(|name| name == MEDIANS) {
-        crate::firmware::run(project)?;
-        let seeds = seeds.unwrap_or(MEDIANS_SEEDS).min(MEDIANS_SEEDS);
-        met &= tool(project, MEDIANS, &[seeds.to_string()])?;
-    }
-    if only.is_empty() || only.iter().any(|name| name == FUZZ) {
-        met &= crate::fuzz::campaign(project, Some(FUZZ_SECONDS), &[])?;
-    }
-    if only.is_empty() || only.iter().any(|name| name == GRADE) {
-        tools::arduino_core(project).map_err(said)?;
-        tools::bubblewrap(project).map_err(said)?;
-        met &= made_longer(project, "grade::", "RUMBO_FULL", "1")?;
-        met &= tool(project, GRADE, &[])?;
-    }
-    if only.is_empty() || only.iter().any(|name| name == IDENTIFY) {
-        let robots = seeds.unwrap_or(IDENTIFY_ROBOTS).min(IDENTIFY_ROBOTS);
-        met &= made_longer(project, "identify::", "RUMBO_ROBOTS", &robots.to_string())?;
-    }
-    if only.is_empty() || only.iter().any(|name| name == TUNE) {
-        let starts = seeds.unwrap_or(TUNE_STARTS).min(TUNE_STARTS);
-        met &= tool(project, TUNE, &[starts.to_string()])?;
-    }
-    if only.is_empty() || only.iter().any(|name| name == FAULTS) {
-        met &= faults(project, seeds)?;
-    }
-    if only.is_empty() || only.iter().any(|name| name == MOVING) {
-        let args = match seeds {
-            Some(seeds) => vec!["--seeds".to_owned(), seeds.to_string()],
-            None => vec!["--write".to_owned()],
-        };
-        met &= tool(project, MOVING, &args)?;
-    }
-    if only.is_empty() || only.iter().any(|name| name == RAY) {
-        wheel::on_ray(project).map_err(said)?;
-    }
-    if only.is_empty() || only.iter().any(|name| name == PYTHON) {
-        wheel::learning(project).map_err(said)?;
-    }
-    if only.is_empty() || only.iter().any(|name| name == RELEASE) {
-        release::try_it(project).map_err(said)?;
-        release::try_crates(project)?;
-    }
+    let is_scenario = |name: &&String| PARTS.iter().all(|(part, _)| part != name);
     let mut scenarios = vec![seeds.unwrap_or(SEEDS).to_string()];
-    scenarios.extend(
-        only.iter()
-            .filter(|name| {
-                ![
-                    LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, TUNE, FAULTS, MOVING, RAY, PYTHON,
-                    RELEASE,
-                ]
-                .contains(&name.as_str())
-            })
-            .cloned(),
-    );
+    scenarios.extend(only.iter().filter(is_scenario).cloned());
     if only.is_empty() || scenarios.len() > 1 {
         met &= tool(project, "campaign", &scenarios)?;
     }
     Ok(met)
+}
+
+/// As many as were asked for, at most these.
+fn up_to(most: u32, seeds: Option<u32>) -> String {
+    seeds.unwrap_or(most).min(most).to_string()
 }
 
 /// Runs tests of the command line, of which this variable makes one longer; true if they passed.
@@ -167,7 +152,7 @@ fn faults(project: &Project, seeds: Option<u32>) -> Result<bool, String> {
         format!("--image --seeds {image} --instants {FAULTS_INSTANTS_IMAGE} --list{write}"),
     ] {
         let args: Vec<String> = how.split(' ').map(str::to_owned).collect();
-        met &= tool(project, FAULTS, &args)?;
+        met &= tool(project, "faults", &args)?;
     }
     Ok(met)
 }

@@ -42,44 +42,8 @@ impl Heat {
         let (top, height) = (28.0, cell_height * rows as f64);
         let shown = range(self.values.iter().flatten().copied());
         let mut body = String::new();
-        for (row, values) in self.values.iter().enumerate() {
-            let y = top + height - (row + 1) as f64 * cell_height;
-            for (column, value) in values.iter().enumerate() {
-                let x = LEFT + column as f64 * cell_width;
-                let colour = colour(share(*value, shown));
-                put(
-                    &mut body,
-                    format_args!(
-                        "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"{colour}\"/>",
-                        cell_width + 0.3,
-                        cell_height + 0.3
-                    ),
-                );
-            }
-        }
-        let every = |count: usize| count.div_ceil(LABELS).max(1);
-        for (column, label) in self.columns.iter().enumerate().step_by(every(columns)) {
-            let x = LEFT + (column as f64 + 0.5) * cell_width;
-            let label = escape(label);
-            put(
-                &mut body,
-                format_args!(
-                    "<text class=\"m\" x=\"{x:.1}\" y=\"{:.1}\">{label}</text>",
-                    top + height + 16.0
-                ),
-            );
-        }
-        for (row, label) in self.rows.iter().enumerate().step_by(every(rows)) {
-            let y = top + height - (row as f64 + 0.5) * cell_height + 4.0;
-            let label = escape(label);
-            put(
-                &mut body,
-                format_args!(
-                    "<text class=\"e\" x=\"{:.1}\" y=\"{y:.1}\">{label}</text>",
-                    LEFT - 6.0
-                ),
-            );
-        }
+        self.cells(&mut body, [top, height], [cell_width, cell_height], shown);
+        self.labels(&mut body, [top, height], [cell_width, cell_height]);
         let scale_height = height.max(90.0);
         scale(
             &mut body,
@@ -103,6 +67,65 @@ impl Heat {
             ),
         );
         Picture::new(body, WIDTH, bottom + 42.0).inline()
+    }
+
+    /// A rectangle for each value, in its colour.
+    fn cells(
+        &self,
+        body: &mut String,
+        [top, height]: [f64; 2],
+        [cell_width, cell_height]: [f64; 2],
+        shown: [f64; 2],
+    ) {
+        for (row, values) in self.values.iter().enumerate() {
+            let y = top + height - (row + 1) as f64 * cell_height;
+            for (column, value) in values.iter().enumerate() {
+                let x = LEFT + column as f64 * cell_width;
+                let colour = colour(share(*value, shown));
+                put(
+                    body,
+                    format_args!(
+                        "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"{colour}\"/>",
+                        cell_width + 0.3,
+                        cell_height + 0.3
+                    ),
+                );
+            }
+        }
+    }
+
+    /// The labels of columns and rows, as many as there is room for.
+    fn labels(
+        &self,
+        body: &mut String,
+        [top, height]: [f64; 2],
+        [cell_width, cell_height]: [f64; 2],
+    ) {
+        let every = |labels: &[String]| labels.len().div_ceil(LABELS).max(1);
+        let columns = self.columns.iter().enumerate();
+        for (column, label) in columns.step_by(every(&self.columns)) {
+            let x = LEFT + (column as f64 + 0.5) * cell_width;
+            let label = escape(label);
+            put(
+                body,
+                format_args!(
+                    "<text class=\"m\" x=\"{x:.1}\" y=\"{:.1}\">{label}</text>",
+                    top + height + 16.0
+                ),
+            );
+        }
+        let rows = self.rows.iter().enumerate();
+        for (row, label) in rows.step_by(every(&self.rows)) {
+            let y = top + height - (row as f64 + 0.5) * cell_height + 4.0;
+            let label = escape(label);
+            put(
+                body,
+                format_args!(
+                    "<text class=\"e\" x=\"{:.1}\" y=\"{y:.1}\">{label}</text>",
+                    LEFT - 6.0
+                ),
+            );
+        }
     }
 }
 

@@ -37,39 +37,54 @@ impl Parallel {
                 )
             })
             .collect();
-        let gap = (WIDTH - 2.0 * SIDE - SCALE) / (self.axes.len().max(2) - 1) as f64;
-        let x = |axis: usize| SIDE + axis as f64 * gap;
-        let y = |value: f64, range: [f64; 2]| TOP + HEIGHT * (1.0 - share(value, range));
         let mut body = String::new();
         let shown = ranges.get(self.colour).copied().unwrap_or([0.0, 1.0]);
+        self.lines(&mut body, &ranges, shown);
+        self.scales(&mut body, words, &ranges);
+        scale(&mut body, words, [WIDTH - SCALE + 8.0, TOP, HEIGHT], shown);
+        Picture::new(body, WIDTH, TOP + HEIGHT + 12.0).inline()
+    }
+
+    /// Where an axis stands.
+    fn x(&self, axis: usize) -> f64 {
+        let gap = (WIDTH - 2.0 * SIDE - SCALE) / (self.axes.len().max(2) - 1) as f64;
+        SIDE + axis as f64 * gap
+    }
+
+    /// A line for each point.
+    fn lines(&self, body: &mut String, ranges: &[[f64; 2]], shown: [f64; 2]) {
         for point in &self.points {
             let value = point.get(self.colour).copied().unwrap_or(f64::NAN);
             let mut path = String::new();
             let mut drawing = false;
-            for (axis, (value, range)) in point.iter().zip(&ranges).enumerate() {
+            for (axis, (value, range)) in point.iter().zip(ranges).enumerate() {
                 if value.is_finite() {
                     let command = if drawing { 'L' } else { 'M' };
                     put(
                         &mut path,
-                        format_args!("{command}{:.1} {:.1}", x(axis), y(*value, *range)),
+                        format_args!("{command}{:.1} {:.1}", self.x(axis), y(*value, *range)),
                     );
                 }
                 drawing = value.is_finite();
             }
             let colour = colour(share(value, shown));
             put(
-                &mut body,
+                body,
                 format_args!(
                     "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.2\" stroke-opacity=\"0.75\"/>"
                 ),
             );
         }
-        for (axis, (name, range)) in self.axes.iter().zip(&ranges).enumerate() {
-            let x = x(axis);
+    }
+
+    /// The axes with their names and ticks.
+    fn scales(&self, body: &mut String, words: Words<'_>, ranges: &[[f64; 2]]) {
+        for (axis, (name, range)) in self.axes.iter().zip(ranges).enumerate() {
+            let x = self.x(axis);
             // Three rows: long names of neighbours do not meet.
             let row = 12.0 + 14.0 * (axis % 3) as f64;
             put(
-                &mut body,
+                body,
                 format_args!(
                     "<path class=\"a\" d=\"M{x:.1} {TOP}v{HEIGHT}\"/><text class=\"m\" x=\"{x:.1}\" y=\"{row}\">{}</text>",
                     escape(name)
@@ -79,7 +94,7 @@ impl Parallel {
             for value in ticks(*range, every) {
                 let label = tick(words, value, every);
                 put(
-                    &mut body,
+                    body,
                     format_args!(
                         "<text class=\"e h\" x=\"{:.1}\" y=\"{:.1}\">{label}</text>",
                         x - 4.0,
@@ -88,7 +103,9 @@ impl Parallel {
                 );
             }
         }
-        scale(&mut body, words, [WIDTH - SCALE + 8.0, TOP, HEIGHT], shown);
-        Picture::new(body, WIDTH, TOP + HEIGHT + 12.0).inline()
     }
+}
+
+fn y(value: f64, range: [f64; 2]) -> f64 {
+    TOP + HEIGHT * (1.0 - share(value, range))
 }

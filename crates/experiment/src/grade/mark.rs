@@ -108,47 +108,7 @@ impl Mark {
 
     /// The mark from a hand-in's runs, in order of tests and seeds.
     pub(super) fn of(assignment: &Assignment, name: &str, runs: Vec<Run>) -> Self {
-        let worth = |test: usize| {
-            let tests = assignment.tests.iter();
-            let all: f64 = tests.map(|test| test.weight).sum();
-            assignment.tests[test].weight / all
-        };
-        let mut lines = Vec::new();
-        for (number, criterion) in assignment.criteria.iter().enumerate() {
-            for (test, about) in assignment.tests.iter().enumerate() {
-                if !criterion.is_of(test) {
-                    continue;
-                }
-                let of = match criterion.test {
-                    Some(_) => criterion.points,
-                    None => criterion.points * worth(test),
-                };
-                let own = runs.iter().filter(|run| run.test == test);
-                let mut values: Vec<Option<f64>> =
-                    own.map(|run| value(run, &criterion.metric)).collect();
-                values.resize(about.seeds().count(), None);
-                let shares: f64 = values.iter().map(|value| criterion.share(*value)).sum();
-                let points = of * shares / values.len().max(1) as f64;
-                lines.push(Line {
-                    criterion: number,
-                    test,
-                    values,
-                    points,
-                    of,
-                });
-            }
-        }
-        // The rubric's points are scaled to the full mark.
-        let all: f64 = lines.iter().map(|line| line.of).sum();
-        let scale = if all > 0.0 {
-            assignment.points / all
-        } else {
-            0.0
-        };
-        for line in &mut lines {
-            line.points *= scale;
-            line.of *= scale;
-        }
+        let lines = lines(assignment, &runs);
         let touching = runs.iter().filter(|run| touches(run)).count();
         let share = touching as f64 / runs.len().max(1) as f64;
         let penalty = cents(assignment.contact_penalty * share);
@@ -186,6 +146,51 @@ impl Mark {
         }
         mark
     }
+}
+
+/// The lines of the rubric, their points scaled to the full mark.
+fn lines(assignment: &Assignment, runs: &[Run]) -> Vec<Line> {
+    let worth = |test: usize| {
+        let tests = assignment.tests.iter();
+        let all: f64 = tests.map(|test| test.weight).sum();
+        assignment.tests[test].weight / all
+    };
+    let mut lines = Vec::new();
+    for (number, criterion) in assignment.criteria.iter().enumerate() {
+        for (test, about) in assignment.tests.iter().enumerate() {
+            if !criterion.is_of(test) {
+                continue;
+            }
+            let of = match criterion.test {
+                Some(_) => criterion.points,
+                None => criterion.points * worth(test),
+            };
+            let own = runs.iter().filter(|run| run.test == test);
+            let mut values: Vec<Option<f64>> =
+                own.map(|run| value(run, &criterion.metric)).collect();
+            values.resize(about.seeds().count(), None);
+            let shares: f64 = values.iter().map(|value| criterion.share(*value)).sum();
+            let points = of * shares / values.len().max(1) as f64;
+            lines.push(Line {
+                criterion: number,
+                test,
+                values,
+                points,
+                of,
+            });
+        }
+    }
+    let all: f64 = lines.iter().map(|line| line.of).sum();
+    let scale = if all > 0.0 {
+        assignment.points / all
+    } else {
+        0.0
+    };
+    for line in &mut lines {
+        line.points *= scale;
+        line.of *= scale;
+    }
+    lines
 }
 
 /// Texts kept of one kind.

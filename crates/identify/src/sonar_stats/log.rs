@@ -51,15 +51,12 @@ impl SonarLog {
             )
         };
         let header = reader.headers().map_err(bad)?.clone();
-        let names = ["dt_ms", "left_cm", "right_cm", "pwm_a", "pwm_b"];
         let mut columns = [0; 5];
-        for (column, name) in columns.iter_mut().zip(names) {
-            *column = header
-                .iter()
-                .position(|field| field == name)
-                .ok_or_else(|| {
-                    error(1, format!("no column `{name}`: not a log of modes 1 to 4"))
-                })?;
+        for (column, name) in columns.iter_mut().zip(COLUMNS) {
+            let place = header.iter().position(|field| field == name);
+            *column = place.ok_or_else(|| {
+                error(1, format!("no column `{name}`: not a log of modes 1 to 4"))
+            })?;
         }
         let (mut t_s, mut driven, mut left_m, mut right_m) = (vec![], vec![], vec![], vec![]);
         let mut now_s = 0.0;
@@ -67,17 +64,7 @@ impl SonarLog {
         for record in reader.records() {
             let values = record.map_err(bad).and_then(|record| {
                 let line = record.position().map_or(0, csv::Position::line);
-                let mut values = [0.0; 5];
-                for ((value, &column), name) in values.iter_mut().zip(&columns).zip(names) {
-                    let field = record.get(column).unwrap_or_default();
-                    let number = field.parse().ok();
-                    *value = number
-                        .filter(|number: &f64| number.is_finite())
-                        .ok_or_else(|| {
-                            error(line, format!("`{name}` is `{field}`, not a number"))
-                        })?;
-                }
-                Ok(values)
+                values_of(&record, columns).map_err(|cause| error(line, cause))
             });
             match values {
                 Ok([dt_ms, left_cm, right_cm, pwm_a, pwm_b]) => {
@@ -110,4 +97,20 @@ impl SonarLog {
             range_m,
         })
     }
+}
+
+/// What a log of the modes with sonars has.
+const COLUMNS: [&str; 5] = ["dt_ms", "left_cm", "right_cm", "pwm_a", "pwm_b"];
+
+/// The values of these columns of a row, or which one is no number.
+fn values_of(record: &csv::StringRecord, columns: [usize; 5]) -> Result<[f64; 5], String> {
+    let mut values = [0.0; 5];
+    for ((value, column), name) in values.iter_mut().zip(columns).zip(COLUMNS) {
+        let field = record.get(column).unwrap_or_default();
+        let number = field.parse().ok();
+        *value = number
+            .filter(|number: &f64| number.is_finite())
+            .ok_or_else(|| format!("`{name}` is `{field}`, not a number"))?;
+    }
+    Ok(values)
 }

@@ -7,7 +7,7 @@ use crate::judge;
 use crate::places::Places;
 use crate::real::Recording;
 use crate::respond::{Kind, Response, responses};
-use crate::signals::{CM, Outcome};
+use crate::signals::{CM, Outcome, unwrapped};
 use crate::table::{Cell, table};
 use crate::text::{Language, Text, word};
 use rumbo_plot::{Curve, Ink, Panel, Points};
@@ -65,6 +65,35 @@ pub(super) fn recorded<'a>(
     found
 }
 
+/// Panels of x, y and heading over time, ours and those of the recorded robot.
+pub(super) fn poses(
+    language: Language,
+    recording: &Recording,
+    ours: [Points; 3],
+    theirs: [Points; 3],
+) -> Vec<Panel> {
+    let [x, y, heading] = ours;
+    let [their_x, their_y, their_heading] = theirs;
+    let panel =
+        |name: &str, ours, theirs| Panel::new(name, both(language, recording, ours, theirs));
+    vec![
+        panel("x (m)", x, their_x),
+        panel("y (m)", y, their_y),
+        panel(HEADING.of(language), heading, unwrapped(their_heading)).exactly(-190.0, 190.0),
+    ]
+}
+
+/// The points since the start.
+pub(super) fn started(points: Points) -> Points {
+    points.into_iter().filter(|(t_s, _)| *t_s >= 0.0).collect()
+}
+
+/// The way from x and y over time.
+pub(super) fn way(x: &Points, y: &Points) -> Points {
+    x.iter().zip(y).map(|(x, y)| (x.1, y.1)).collect()
+}
+
+const HEADING: Text = word("heading-deg");
 const SETTLING: Text = word("settling-time");
 const OVERSHOOT: Text = word("overshoot");
 const STEADY: Text = word("steady-error");

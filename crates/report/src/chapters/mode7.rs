@@ -10,7 +10,7 @@ use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::judge;
 use crate::places::Places;
 use crate::respond::rms_and_worst;
-use crate::signals::{CM, Outcome, unwrapped};
+use crate::signals::{CM, Outcome};
 use crate::text::{Language, Text, capital, same, word};
 use rumbo_plot::{Curve, Ink, Map, Panel, Points};
 use rumbo_wire::text::Row;
@@ -117,51 +117,25 @@ fn beside(places: &mut Places, data: &Data) {
             _ => None,
         })
     };
-    let [x, y, heading] = ours.pose();
-    let started = |points: &Points| -> Points {
-        points
-            .iter()
-            .copied()
-            .filter(|(t_s, _)| *t_s >= 0.0)
-            .collect()
-    };
-    let (mine, theirs) = (
-        [started(&x), started(&y)],
-        [real(|row| row.x_m), real(|row| row.y_m)],
-    );
-    let way =
-        |[x, y]: &[Points; 2]| -> Points { x.iter().zip(y).map(|(x, y)| (x.1, y.1)).collect() };
+    let mine = ours.pose().map(beside::started);
+    let theirs = [
+        real(|row| row.x_m),
+        real(|row| row.y_m),
+        real(|row| row.heading_deg),
+    ];
+    let rows = [&mine, &theirs].map(|[x, y, _]| figures(x, y));
+    let [our_way, their_way] = [&mine, &theirs].map(|[x, y, _]| beside::way(x, y));
     let mut curves = maps::trajectories(language, ours, SQUARE.to_vec());
     curves.truncate(1);
-    curves.extend(beside::both(language, recording, way(&mine), way(&theirs)));
+    curves.extend(beside::both(language, recording, our_way, their_way));
     let svg = Map {
         curves,
         ..maps::map(language)
     }
     .svg(language);
     places.figure("mode7-real-way", Some(svg));
-    let panels = vec![
-        Panel::new(
-            "x (m)",
-            beside::both(language, recording, mine[0].clone(), theirs[0].clone()),
-        ),
-        Panel::new(
-            "y (m)",
-            beside::both(language, recording, mine[1].clone(), theirs[1].clone()),
-        ),
-        Panel::new(
-            places.text(HEADING_AXIS),
-            beside::both(
-                language,
-                recording,
-                started(&heading),
-                unwrapped(real(|row| row.heading_deg)),
-            ),
-        )
-        .exactly(-190.0, 190.0),
-    ];
+    let panels = beside::poses(language, recording, mine, theirs);
     parts::timed(places, "mode7-real", panels);
-    let rows = [figures(&mine), figures(&theirs)];
     let row = |name: Text, index: usize, unit| {
         let shown = judge::plain(unit);
         let [ours, real] = [0, 1].map(|which| judge::value(language, &shown, rows[which][index]));
@@ -176,7 +150,7 @@ fn beside(places: &mut Places, data: &Data) {
 }
 
 /// Time once round [s], and how far off the square until then, worst and root mean square [cm].
-fn figures([x, y]: &[Points; 2]) -> [f64; 3] {
+fn figures(x: &Points, y: &Points) -> [f64; 3] {
     let (mut corner, mut lap_s, mut off) = (1, f64::NAN, Points::new());
     let square = SQUARE.to_vec();
     for ((t_s, x), (_, y)) in x.iter().zip(y) {

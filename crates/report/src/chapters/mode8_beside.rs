@@ -7,9 +7,8 @@ use crate::data::Data;
 use crate::judge;
 use crate::places::Places;
 use crate::real::Recording;
-use crate::signals::unwrapped;
 use crate::text::{Text, word};
-use rumbo_plot::{Map, Panel, Points};
+use rumbo_plot::{Map, Points};
 use rumbo_wire::text::{MissionRow, Row};
 
 const TIME: Text = word("duration");
@@ -25,20 +24,16 @@ pub(super) fn fill(places: &mut Places, data: &Data, scenario: &str) {
     places.value(&format!("file-{name}"), recording.file.as_str());
     let language = places.language;
     let real = |of: fn(&MissionRow) -> f32| recorded(recording, of);
-    let [x, y, heading] = ours
-        .pose()
-        .map(|points| -> Points { points.into_iter().filter(|(t_s, _)| *t_s >= 0.0).collect() });
-    let theirs = [real(|row| row.x_m), real(|row| row.y_m)];
+    let mine = ours.pose().map(beside::started);
+    let theirs = [
+        real(|row| row.x_m),
+        real(|row| row.y_m),
+        real(|row| row.heading_deg),
+    ];
     if scenario != "mode8-goals" {
-        let path = |x: &Points, y: &Points| -> Points {
-            x.iter().zip(y).map(|(x, y)| (x.1, y.1)).collect()
-        };
-        let curves = beside::both(
-            language,
-            recording,
-            ours.estimated_trajectory(),
-            path(&theirs[0], &theirs[1]),
-        );
+        let their_way = beside::way(&theirs[0], &theirs[1]);
+        let our_way = ours.estimated_trajectory();
+        let curves = beside::both(language, recording, our_way, their_way);
         let map = Map {
             curves,
             ..maps::path_map(places, ours, Points::new())
@@ -48,7 +43,7 @@ pub(super) fn fill(places: &mut Places, data: &Data, scenario: &str) {
     }
     let end_s = ours.end_s().unwrap_or_else(|| ours.duration_s());
     let walked = [
-        length(&x, &y, end_s),
+        length(&mine[0], &mine[1], end_s),
         length(&theirs[0], &theirs[1], f64::INFINITY),
     ];
     let lasted = [
@@ -60,26 +55,7 @@ pub(super) fn fill(places: &mut Places, data: &Data, scenario: &str) {
         .unwrap_or(end_s),
         recording.duration_s(),
     ];
-    let panels = vec![
-        Panel::new(
-            "x (m)",
-            beside::both(language, recording, x, theirs[0].clone()),
-        ),
-        Panel::new(
-            "y (m)",
-            beside::both(language, recording, y, theirs[1].clone()),
-        ),
-        Panel::new(
-            places.text(word("heading-deg")),
-            beside::both(
-                language,
-                recording,
-                heading,
-                unwrapped(real(|row| row.heading_deg)),
-            ),
-        )
-        .exactly(-190.0, 190.0),
-    ];
+    let panels = beside::poses(language, recording, mine, theirs);
     parts::timed(places, &format!("{scenario}-real"), panels);
     let row = |name: Text, values: [f64; 2], unit| {
         let shown = judge::plain(unit);

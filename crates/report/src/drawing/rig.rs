@@ -21,7 +21,6 @@ const ON_SERVO: Text = word("front-on-the-servo");
 /// The drawing.
 pub(crate) fn svg(language: Language, setup: &Setup) -> String {
     let mut sketch = Sketch::new();
-    let body = &setup.robot.plant.body;
     // x ahead is to the right of the page, y to the left of the robot is up.
     let rig = &setup.rig;
     let mounts = [rig.left, rig.right, rig.front].into_iter().flatten();
@@ -35,36 +34,7 @@ pub(crate) fn svg(language: Language, setup: &Setup) -> String {
     let (above, below) = (room(1.0), room(-1.0));
     let height = above + below;
     let place = |x_m: f64, y_m: f64| (230.0 + SCALE * x_m, above - SCALE * y_m);
-    let rear = place(
-        body.centre_ahead_m - 0.5 * body.length_m,
-        0.5 * body.width_m,
-    );
-    sketch.rectangle(rear, (SCALE * body.length_m, SCALE * body.width_m), "b");
-    let radius_m = setup.robot.plant.wheels.left.radius_m;
-    for side in [0.5, -0.5] {
-        let (x, y) = place(-radius_m, side * body.base_m);
-        sketch.rectangle((x, y - 6.0), (2.0 * SCALE * radius_m, 12.0), "o");
-    }
-    sketch.line(
-        &[
-            place(0.0, 0.5 * body.base_m),
-            place(0.0, -0.5 * body.base_m),
-        ],
-        "l",
-    );
-    sketch.arrow(&[place(0.0, 0.0), place(0.06, 0.0)]);
-    sketch.text(
-        (place(0.06, 0.0).0 + 3.0, place(0.0, 0.0).1 + 4.0),
-        "x",
-        Anchor::Start,
-    );
-    sketch.arrow(&[place(0.0, 0.0), place(0.0, 0.035)]);
-    sketch.text(
-        (place(0.0, 0.0).0 - 5.0, place(0.0, 0.027).1),
-        "y",
-        Anchor::End,
-    );
-
+    chassis(&mut sketch, setup, place);
     let pair =
         rig.front.is_none() && rig.left.map(|m| m.angle_rad) == rig.right.map(|m| m.angle_rad);
     let names = if pair && beside {
@@ -94,6 +64,29 @@ pub(crate) fn svg(language: Language, setup: &Setup) -> String {
     }
     dimensions(&mut sketch, language, setup, place);
     sketch.finish(WIDTH, height)
+}
+
+/// Body, wheels with their axle, and the axes of its frame.
+fn chassis(sketch: &mut Sketch, setup: &Setup, place: impl Fn(f64, f64) -> (f64, f64)) {
+    let body = &setup.robot.plant.body;
+    let rear = place(
+        body.centre_ahead_m - 0.5 * body.length_m,
+        0.5 * body.width_m,
+    );
+    sketch.rectangle(rear, (SCALE * body.length_m, SCALE * body.width_m), "b");
+    let radius_m = setup.robot.plant.wheels.left.radius_m;
+    for side in [0.5, -0.5] {
+        let (x, y) = place(-radius_m, side * body.base_m);
+        sketch.rectangle((x, y - 6.0), (2.0 * SCALE * radius_m, 12.0), "o");
+    }
+    let axle = [0.5, -0.5].map(|side| place(0.0, side * body.base_m));
+    sketch.line(&axle, "l");
+    let origin = place(0.0, 0.0);
+    let ahead = place(0.06, 0.0);
+    sketch.arrow(&[origin, ahead]);
+    sketch.text((ahead.0 + 3.0, origin.1 + 4.0), "x", Anchor::Start);
+    sketch.arrow(&[origin, place(0.0, 0.035)]);
+    sketch.text((origin.0 - 5.0, place(0.0, 0.027).1), "y", Anchor::End);
 }
 
 fn sonar(sketch: &mut Sketch, at: (f64, f64), mount: &Mount, half_rad: f64, name: &str) {

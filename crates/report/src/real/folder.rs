@@ -15,26 +15,7 @@ pub fn read(
     folder: &Path,
     log: impl Fn(&Path) -> Result<FromLog, NotShown>,
 ) -> Result<Real, RealError> {
-    let unreadable = |error: std::io::Error| {
-        RealError(format!(
-            "{}: cannot be read ({error}); give --real a folder with recorded runs",
-            folder.display()
-        ))
-    };
-    let mut files: Vec<PathBuf> = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
-        let path = entry.map_err(unreadable)?.path();
-        if is_a(&path, "csv") || is_a(&path, "mcap") {
-            files.push(path);
-        }
-    }
-    files.sort();
-    if files.is_empty() {
-        return Err(RealError(format!(
-            "{}: holds no CSV and no log; give --real a folder with recorded runs",
-            folder.display()
-        )));
-    }
+    let files = recordings(folder)?;
     let mut real = Real::default();
     for path in files {
         let file = path
@@ -78,6 +59,28 @@ pub fn read(
         }
     }
     Ok(real)
+}
+
+/// The CSVs and logs of a folder, by their names.
+fn recordings(folder: &Path) -> Result<Vec<PathBuf>, RealError> {
+    let remedy = "give --real a folder with recorded runs";
+    let shown = folder.display();
+    let unreadable =
+        |error: std::io::Error| RealError(format!("{shown}: cannot be read ({error}); {remedy}"));
+    let mut files: Vec<PathBuf> = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        if is_a(&path, "csv") || is_a(&path, "mcap") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    match files.is_empty() {
+        true => Err(RealError(format!(
+            "{shown}: holds no CSV and no log; {remedy}"
+        ))),
+        false => Ok(files),
+    }
 }
 
 fn is_a(path: &Path, ending: &str) -> bool {
