@@ -2,14 +2,54 @@
 
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
+use rumbo_experiment::files::new_robot::JUMPERS;
 use rumbo_experiment::files::{Port, TimedText, check_line, parameters};
 use rumbo_sim::boards::{BOARDS, Board};
+use rumbo_sim::drivers::{DRIVERS, Driver};
+use rumbo_sim::wiring::SIGNALS;
 use rumbo_wire::LineEnding;
 
 /// A board by its name.
 pub(super) fn board(text: &str) -> Result<&'static Board, String> {
     let known = || BOARDS.map(|board| board.name).join(", ");
     Board::named(text).ok_or_else(|| format!("no such board; there are {}", known()))
+}
+
+/// The drivers that a new robot may have.
+pub(crate) fn driver_names() -> String {
+    let names = DRIVERS.iter().flat_map(|driver| {
+        let jumpers = driver.has_enable && driver.source.is_none();
+        let jumpers = jumpers.then(|| format!("{}{JUMPERS}", driver.name));
+        std::iter::once(driver.name.to_owned()).chain(jumpers)
+    });
+    names.collect::<Vec<_>>().join(", ")
+}
+
+/// A driver by its name, and whether jumpers hold its enables.
+pub(crate) fn driver_named(text: &str) -> Result<(&'static Driver, bool), String> {
+    let (name, jumpers) = match text.strip_suffix(JUMPERS) {
+        Some(name) => (name, true),
+        None => (text, false),
+    };
+    Driver::named(name)
+        .filter(|driver| driver.has_enable || !jumpers)
+        .map(|driver| (driver, jumpers))
+        .ok_or_else(|| format!("no such driver; there are {}", driver_names()))
+}
+
+/// A signal and its pin: `left_forward=7`.
+pub(super) fn pin(text: &str) -> Result<(String, String), String> {
+    let (signal, pin) = text
+        .split_once('=')
+        .ok_or("write it as left_forward=7,left_backward=8")?;
+    let (signal, pin) = (signal.trim(), pin.trim());
+    if !SIGNALS.contains(&signal) {
+        return Err(format!(
+            "no signal `{signal}`; there are {}",
+            SIGNALS.join(", ")
+        ));
+    }
+    Ok((signal.to_owned(), pin.to_owned()))
 }
 
 /// Seconds of simulation or of a log per second.

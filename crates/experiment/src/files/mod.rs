@@ -17,6 +17,7 @@ mod library;
 mod mover;
 mod names;
 pub(crate) mod near;
+pub mod new_robot;
 pub mod parameters;
 pub(crate) mod policy;
 pub(crate) mod read;

@@ -53,7 +53,7 @@ pub struct RobotFile {
     pub text: String,
     /// Physics, from `[plant.*]`: nominal values where the file has none.
     pub plant: Params,
-    /// Where the sonars sit, by the name of the rig. At least one. In a pair on one side, `left` is the one in front.
+    /// Where the sonars sit, by the name of the rig; none on a robot without sonars. In a pair on one side, `left` is the one in front.
     pub rigs: BTreeMap<String, Rig>,
     /// Which signal is on which pin, by the name of the wiring.
     pub wirings: BTreeMap<String, Wiring>,
@@ -105,9 +105,6 @@ impl RobotFile {
             }
         }
         let rigs = named(&root.table("rig"), read_rig);
-        if rigs.is_empty() {
-            root.complain_here("has no rig: add a table [rig.NAME.front] (or left, right) with x_m, y_m, angle_deg");
-        }
         let wirings = named(&root.table("wiring"), |table| {
             read_wiring(table, board, driver)
         });
@@ -236,8 +233,12 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
                 continue;
             }
         };
-        // One pin may feed several inputs of the driver.
-        let clashes = |other: &str| !(is_driver_input(signal) && is_driver_input(other));
+        // One pin may feed several inputs of the driver, and some sonars have one line for both.
+        let clashes = |other: &str| {
+            let inputs = is_driver_input(signal) && is_driver_input(other);
+            let sonar = signal.strip_suffix("_echo");
+            !inputs && (sonar.is_none() || sonar != other.strip_suffix("_trigger"))
+        };
         let mut taken = wiring.pins.iter().filter(|(_, pin)| **pin == number);
         if let Some((other, _)) = taken.find(|(other, _)| clashes(other)) {
             let remedy = format!("{other} is on that pin already: give each signal its own");

@@ -12,6 +12,7 @@ use rumbo_emulator::devices::ports::Pin;
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
 use rumbo_wire::{Decoder, FromRobot, Message, Received};
+use std::collections::BTreeMap;
 
 /// The usual rate of the Bluetooth module [baud].
 const LINK_BAUD: u32 = 9600;
@@ -43,6 +44,8 @@ pub struct Firmware {
     board: &'static Board,
     wires: Wires,
     link_baud: u32,
+    /// The board's pin of each signal.
+    pins: BTreeMap<String, u8>,
 }
 
 impl Firmware {
@@ -63,6 +66,7 @@ impl Firmware {
             wiring: wiring.to_owned(),
             board: pins.board,
             wires: Wires::new(wiring, pins)?,
+            pins: pins.pins.clone(),
             link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
         })
     }
@@ -109,6 +113,16 @@ impl Firmware {
     /// Name of the wiring.
     pub fn wiring(&self) -> &str {
         &self.wiring
+    }
+
+    /// The board's number of the pin that a signal is on.
+    pub(super) fn number_of(&self, signal: &str) -> Option<u8> {
+        self.pins.get(signal).copied()
+    }
+
+    /// The same as the board calls it.
+    pub(super) fn pin_of(&self, signal: &str) -> Option<String> {
+        Some(self.board.shown(self.number_of(signal)?))
     }
 
     /// Whether an encoder's output B is wired.

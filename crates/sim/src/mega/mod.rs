@@ -18,6 +18,7 @@
 //! | `console` | output of the USARTs, for people |
 //! | `meters` | what instruments at the wired pins show |
 //! | `marks` | when the program reaches some of its functions |
+//! | `wheels` | what the program did with each motor |
 //! | `notes` | oddities of a program, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
 //!
@@ -38,6 +39,7 @@ mod notes;
 mod outputs;
 mod servo;
 mod uart;
+mod wheels;
 
 use crate::sonar_fault::SonarFaults;
 use crate::wire_fault::WireFaults;
@@ -59,6 +61,7 @@ use rumbo_plant::noise::Noise;
 use rumbo_plant::sonar::SonarId;
 use servo::ServoInput;
 use std::sync::Arc;
+use wheels::Driven;
 
 /// The USART of the USB port.
 pub const USB: u8 = 0;
@@ -128,8 +131,8 @@ pub struct Mega {
     verdict: Option<Verdict>,
     /// When the program reached the functions of interest.
     marks: Marks,
-    /// A motor was driven.
-    has_driven: bool,
+    /// How the motors were driven.
+    driven_ways: Driven,
     /// What its program did that a note tells.
     oddities: notes::Oddities,
     /// What its outputs have cost so far.
@@ -165,7 +168,7 @@ impl Mega {
             meters: Meters::at(firmware.metered()),
             verdict: None,
             marks: Marks::default(),
-            has_driven: false,
+            driven_ways: Driven::default(),
             oddities: notes::Oddities::default(),
             toil: 0,
             stepping: false,
