@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
 use rumbo_experiment::files::new_robot::JUMPERS;
-use rumbo_experiment::files::{Port, TimedText, check_line, parameters};
+use rumbo_experiment::files::{Port, TimedText, check_line, parameters, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Driver};
 use rumbo_sim::wiring::SIGNALS;
@@ -85,6 +85,23 @@ pub(super) fn timed_text(text: &str) -> Result<TimedText, Failure> {
 pub(super) fn usb_text(text: &str) -> Result<TimedText, Failure> {
     let port = Port::Usb;
     timed_text(text).map(|timed| TimedText { port, ..timed })
+}
+
+/// A part and when it is pressed, or put to a value: `start@2`, `speed=0.7@3`.
+pub(super) fn press(text: &str) -> Result<Vec<TimedText>, Failure> {
+    let wrong = || {
+        Failure::input("write it as NAME@SECONDS, or NAME=VALUE@SECONDS with a value from 0 to 1")
+    };
+    let TimedText { at_s, text, .. } = timed_text(text).map_err(|_| wrong())?;
+    let Some((name, value)) = text.split_once('=') else {
+        return Ok(pressed(&text, None, at_s));
+    };
+    let value = value
+        .trim()
+        .parse()
+        .ok()
+        .filter(|value| (0.0..=1.0).contains(value));
+    Ok(pressed(name.trim(), Some(value.ok_or_else(wrong)?), at_s))
 }
 
 /// What ends typed lines.

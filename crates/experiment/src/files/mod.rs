@@ -47,6 +47,6 @@ pub use robot::{FirmwareCaps, RobotFile};
 pub use scenario::{Bounds, ScenarioFile, Spread, Start};
 pub use setup::{NativeProgram, Overrides, Setup, goal_seen_from};
 pub use start::fleet_around;
-pub use typed::{Port, TimedText, check_line};
+pub use typed::{Port, TimedText, check_line, pressed};
 pub use word::WordError;
 pub use world::{Arena, WorldFile};

@@ -1,7 +1,7 @@
 //! A scenario with everything it names, and the overrides of the command line.
 
 use super::error::{FileError, did_you_mean};
-use super::fit::{has_its_goal, has_its_sonars};
+use super::fit::{has_its_goal, has_its_parts, has_its_sonars};
 use super::kept::Calibrations;
 use super::near::{near, near_or_all};
 use super::read::Allowed;
@@ -194,6 +194,12 @@ impl Library {
             firmware::beside(firmware, policy.as_ref()).map(Arc::new)
         };
         let firmware = overrides.firmware.as_ref().map(load).transpose()?;
+        let parts = firmware
+            .as_ref()
+            .map(|firmware| firmware.parts())
+            .unwrap_or_default();
+        has_its_parts(&whose, &scenario.texts, parts)?;
+        has_its_parts(&whose, &overrides.texts, parts)?;
         let mut texts = [&scenario.texts[..], &overrides.texts].concat();
         texts.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
         Ok(Setup {

@@ -4,7 +4,7 @@ use super::pins::{LinkOn, Wires};
 use super::{CYCLES_PER_US, ON_PINS};
 use crate::boards::Board;
 use crate::error::SimError;
-use crate::wiring::Wiring;
+use crate::wiring::{Part, Wiring};
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::ports::Drive;
@@ -46,6 +46,7 @@ pub struct Firmware {
     link_baud: u32,
     /// The board's pin of each signal.
     pins: BTreeMap<String, u8>,
+    parts: Vec<Part>,
 }
 
 impl Firmware {
@@ -67,6 +68,7 @@ impl Firmware {
             board: pins.board,
             wires: Wires::new(wiring, pins)?,
             pins: pins.pins.clone(),
+            parts: pins.parts.clone(),
             link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
         })
     }
@@ -102,7 +104,17 @@ impl Firmware {
     /// The pins worth an instrument: the wired ones, and the board's LED.
     pub(super) fn metered(&self) -> Vec<(String, Pin)> {
         let led = self.board.pin(LED).map(|pin| ("led".to_owned(), pin));
-        self.wires.signals().into_iter().chain(led).collect()
+        let parts = self.parts.iter().filter_map(|part| {
+            let name = format!("{}_{}", part.name, part.kind.name());
+            Some((name, self.board.pin(part.pin)?))
+        });
+        let wired = self.wires.signals().into_iter();
+        wired.chain(led).chain(parts).collect()
+    }
+
+    /// What else is at its pins.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
     }
 
     /// What it speaks on its link.

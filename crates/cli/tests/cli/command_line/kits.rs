@@ -592,3 +592,102 @@ void loop() {
         "{said}"
     );
 }
+
+#[test]
+fn a_button_starts_the_robot_a_knob_sets_its_speed_and_a_buzzer_sounds() {
+    let sketch = "
+void setup() {
+  pinMode(8, INPUT_PULLUP); pinMode(4, INPUT);
+  for (int pin = 5; pin <= 7; pin++) pinMode(pin, OUTPUT);
+  while (digitalRead(8) == HIGH) {}
+  tone(11, 440);
+  digitalWrite(7, HIGH);
+}
+void loop() {
+  int speed = analogRead(A0) / 4;
+  analogWrite(5, digitalRead(4) ? speed : 0);
+  digitalWrite(12, digitalRead(4));
+}";
+    let parts = "left_enable = 5\nleft_forward = 7\nparts.start = { button = 8 }\nparts.speed = { potentiometer = \"A0\" }\n\
+                 parts.go = { switch = 4, to = \"5v\" }\nparts.horn = { buzzer = 11 }\nparts.lamp = { led = 12 }\n";
+    let Some(bench) = kit("parts", parts, sketch) else {
+        return;
+    };
+    let speed = |presses: &[&str]| {
+        let presses: Vec<&str> = presses
+            .iter()
+            .flat_map(|press| ["--press", press])
+            .collect();
+        let run = drive(&bench, &presses);
+        assert!(run.status.success(), "{}", stderr(&run));
+        last(&bench, "left_rad_s")
+    };
+    assert_eq!(speed(&[]), 0.0, "it waits for its button");
+    assert_eq!(speed(&["start@0.5"]), 0.0, "and for its switch");
+    let half = speed(&["start@0.5", "go=1@0.6"]);
+    let full = speed(&["start@0.5", "go=1@0.6", "speed=1@0.7"]);
+    assert!(half > 2.0 && full > 1.2 * half, "{half} {full}");
+    assert!(
+        rumbo(&bench, &["rerun", "out/floor-1.mcap"])
+            .status
+            .success()
+    );
+    let export = rumbo(&bench, &["export", "out/floor-1.mcap", "--format", "csv"]);
+    assert!(export.status.success(), "{}", stderr(&export));
+    let csv = std::fs::read_to_string(bench.join("floor-1.instruments.csv")).unwrap();
+    let header: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
+    let row: Vec<&str> = csv.lines().last().unwrap().split(',').collect();
+    let value = |name: &str| -> f64 {
+        let at = header.iter().position(|each| *each == name);
+        row[at.unwrap_or_else(|| panic!("{header:?}"))]
+            .parse()
+            .unwrap()
+    };
+    assert!(
+        (value("horn_hz") - 440.0).abs() < 20.0,
+        "{}",
+        value("horn_hz")
+    );
+    assert_eq!(value("pin_lamp_led"), 1.0);
+    // The same in the scenario.
+    let scenario = std::fs::read_to_string(bench.join("floor.toml")).unwrap();
+    let pressed = "[[command]]\nat_s = 0.5\npress = \"start\"\n[[command]]\nat_s = 0.6\npress = \"go\"\nto = 1\n";
+    std::fs::write(bench.join("floor.toml"), format!("{scenario}{pressed}")).unwrap();
+    assert_eq!(speed(&[]), half);
+    let unknown = stderr(&drive(&bench, &["--press", "begin@1"]));
+    assert!(
+        unknown.contains("`begin` is to be pressed") && unknown.contains("there are"),
+        "{unknown}"
+    );
+}
+
+#[test]
+fn a_part_on_a_taken_pin_or_one_that_cannot_measure_is_named() {
+    let refused = |name: &str, parts: &str| {
+        let wiring = format!("left_enable = 5\nleft_forward = 7\n{parts}\n");
+        kit(name, &wiring, "void setup() {}\nvoid loop() {}\n")
+            .map(|bench| stderr(&drive(&bench, &[])))
+    };
+    for (name, parts, why) in [
+        (
+            "taken",
+            "parts.start = { button = 7 }",
+            "left_forward is on that pin already",
+        ),
+        (
+            "digital",
+            "parts.speed = { potentiometer = 8 }",
+            "must be an analogue input of the Arduino Uno",
+        ),
+        (
+            "nothing",
+            "parts.start = { pin = 8 }",
+            "needs one of button, switch, potentiometer, led, buzzer",
+        ),
+    ] {
+        let Some(said) = refused(name, parts) else {
+            return;
+        };
+        assert!(said.contains(why), "{said}");
+    }
+}
