@@ -27,6 +27,7 @@ import { ParameterTable } from './parameters.js';
 import { PlotDialog } from './plot_dialog.js';
 import { Plots } from './plots.js';
 import { ProfilePanel } from './profile.js';
+import { PartsPanel } from './parts.js';
 import { ProgramPanel, isOwn } from './program.js';
 import { Recordings } from './recordings.js';
 import { ReplayBar } from './replay.js';
@@ -141,6 +142,7 @@ const events = new EventList((t_s) => {
   if (replay.shown) replay.seek(t_s);
 });
 const consoles = new Consoles(send, (usart) => store.readings.printedBy(usart).length > 0, (usart) => plots.showPrinted(usart));
+const parts = new PartsPanel(send);
 const program = new ProgramPanel(send, complain, showRecording, (files) => openScenario(files, askLab, complain));
 listen(askLab, () => simulated?.choice ?? null);
 /** The run that the consoles are of. @type {number | null} */
@@ -270,6 +272,7 @@ function receive(message) {
       if (simulated && !isEmbedded && !isOwn(state) && !state.replay && !document.body.classList.contains('viewer')) tour.offer();
       tour.show(state);
       program.show(state);
+      parts.show(state.program?.parts ?? [], (signal) => store.readings.truth.columns.get(signal)?.at(-1) ?? null);
       profile.show(state);
       document.body.classList.toggle('own', isOwn(state));
       if (isOwn(state)) consoles.offerPorts(state.program?.link_usart ?? null);

@@ -89,8 +89,8 @@
  * @property {string} [refused] The last order, if it was refused or dropped, and why.
  * @property {string[]} [alarms] Alarms that need action at once.
  * @property {{number: number} & ({phase: 'running', since_s: number} | {phase: 'done', findings: Findings} | {phase: 'failed', why: string})} [calibration]
- * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', watched: boolean, complaints?: {place: string | null, text: string, line: string | null}[], profile?: Profile}} [program] Of an emulated robot; what the compiler rejects of it; where its time goes, while that is counted.
  * @property {boolean} [motors_cut] STOP or OFF cut the supply of the motors of a program that may ignore them.
+ * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', watched: boolean, parts?: Part[], complaints?: {place: string | null, text: string, line: string | null}[], profile?: Profile}} [program] Of an emulated robot; what the compiler rejects of it; where its time goes, while that is counted.
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
  *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number,
@@ -116,6 +116,7 @@
  *
  * @typedef {{ticket: number, model: import('./world_shapes.js').World | null, toml: string, problem: string | null, driven: boolean}} EditedWorld A world to edit: what its file holds, its text, what is wrong with it.
  *
+ * @typedef {{name: string, kind: 'button' | 'switch' | 'potentiometer' | 'led' | 'buzzer', percent: number}} Part Something at a pin of an emulated robot.
  * @typedef {{usart: number, text: string}} ConsoleText Output of a USART of an emulated chip.
  *
  * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[], robots?: string[], robot: number}

@@ -15,12 +15,15 @@ use mcap::{Attachment, WriteOptions};
 use rumbo_experiment::files::bounded::{LONGEST_RECORDING, read_at_most};
 use rumbo_identify::dialect;
 use rumbo_log::CSV;
+use rumbo_station::log_file;
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
+/// Topics that a message names.
+const TOPICS: usize = 5;
 /// Media type of a recording with skipped lines.
 const AS_IT_WAS: &str = "application/octet-stream";
 
@@ -33,9 +36,12 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
         ))
     })?;
     if bytes.starts_with(mcap::MAGIC) {
-        return Err(Failure::Input(format!(
-            "{shown}: is a log already; `rumbo replay` shows it"
-        )));
+        let replayed = log_file::read_replay(&args.file).is_ok();
+        let what = match replayed {
+            true => "is a log already; `rumbo replay` shows it".into(),
+            false => foreign(&bytes),
+        };
+        return Err(Failure::Input(format!("{shown}: {what}")));
     }
     if bytes.is_empty() {
         return Err(Failure::Input(format!(
@@ -60,6 +66,33 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
         std::fs::write(place, &log).map_err(|error| place::unwritable(&out, &error))
     })?;
     summary(&recording, &out, args.json)
+}
+
+/// What a log of another program holds, and what to do with it.
+fn foreign(bytes: &[u8]) -> String {
+    let summary = mcap::Summary::read(bytes).ok().flatten();
+    let channels = summary.map(|summary| summary.channels).unwrap_or_default();
+    let mut topics: Vec<String> = channels
+        .values()
+        .map(|channel| match &channel.schema {
+            Some(schema) => format!("{} ({})", channel.topic, schema.name),
+            None => channel.topic.clone(),
+        })
+        .collect();
+    topics.sort();
+    let more = match topics.len().saturating_sub(TOPICS) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    topics.truncate(TOPICS);
+    let topics = match topics.is_empty() {
+        true => String::new(),
+        false => format!(", with {}{more}", topics.join(", ")),
+    };
+    format!(
+        "is an MCAP log of another program{topics}: Foxglove and PlotJuggler show it; import takes a CSV with the columns of \
+         the original program (docs/logs.md), which PlotJuggler can export"
+    )
 }
 
 /// The log's bytes.

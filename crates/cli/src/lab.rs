@@ -66,7 +66,8 @@ fn simulated(args: &mut LabArgs) -> Result<SimulatedRobot, Failure> {
     }
     #[cfg(unix)]
     if args.usb_pty {
-        robot.plug_in(Box::new(crate::pty::UsbPort::offer()?));
+        let board = robot.chip_board().unwrap_or_default();
+        robot.plug_in(Box::new(crate::pty::UsbPort::offer(board.title)?));
     }
     Ok(robot)
 }

@@ -3,6 +3,7 @@
 use crate::args::{ListArgs, Topic};
 use crate::failure::Failure;
 use crate::logs;
+use crate::new_robot;
 use crate::output::{self, figure};
 use rumbo_control::mode::{ModeId, Reference, ReferenceKind};
 use rumbo_control::params::ParamId;
@@ -17,6 +18,20 @@ const NAMES: usize = 60;
 
 /// Lists one topic, or gives an overview; as JSON, all but the plant's numbers.
 pub(crate) fn list(args: &ListArgs) -> Result<(), Failure> {
+    if let (Some(topic), Some(name)) = (args.topic, &args.name) {
+        let kind = match topic {
+            Topic::Robots => Kind::Robot,
+            Topic::Worlds => Kind::World,
+            Topic::Scenarios => Kind::Scenario,
+            Topic::Policies => Kind::Policy,
+            _ => {
+                return Err(Failure::input(
+                    "only robots, worlds, scenarios and policies are files: leave the name out",
+                ));
+            }
+        };
+        return new_robot::print(kind, name);
+    }
     let library = Library::new();
     let topics = match args.topic {
         Some(topic) => vec![topic],
@@ -40,6 +55,11 @@ pub(crate) fn list(args: &ListArgs) -> Result<(), Failure> {
         } else {
             output::line(name(topic))?;
             output::table(&entries.iter().map(row).collect::<Vec<_>>())?;
+            if topic == Topic::Robots {
+                output::line(
+                    "rumbo list robots NAME prints the file of one; rumbo new robot NAME --like ROBOT begins one with it",
+                )?;
+            }
             if topic == Topic::Logs {
                 output::line(&logs::total(&entries))?;
             }

@@ -29,6 +29,7 @@ mod logs;
 mod manifest;
 mod manual;
 mod mark;
+mod new_robot;
 mod observe;
 mod output;
 mod place;
@@ -66,7 +67,8 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Import(args)) => import::import(&args),
         Some(Command::List(args)) => list::list(&args),
         Some(Command::New(args)) => match args.what {
-            NewKind::Sketch => sketch::begin(&args.folder, args.board),
+            NewKind::Sketch => sketch::begin(&args.folder, args.board.unwrap_or_default()),
+            NewKind::Robot => new_robot::begin(&args),
         },
         Some(Command::Completions(args)) => manual::completions(&args),
         Some(Command::Manual(args)) => manual::manual(&args),

@@ -33,6 +33,11 @@ fn typed(manifest: &Manifest) -> Vec<TimedText> {
     };
     let mut texts = lines(&manifest.texts, Port::Link);
     texts.extend(lines(&manifest.usb_texts, Port::Usb));
+    let parts = lines(&manifest.part_texts, Port::Parts).into_iter();
+    texts.extend(parts.map(|text| TimedText {
+        ending: LineEnding::None,
+        ..text
+    }));
     texts
 }
 
@@ -52,6 +57,7 @@ fn check_ranges(log: &Path, manifest: &Manifest) -> Result<(), Failure> {
     for (key, texts) in [
         ("texts", &manifest.texts),
         ("usb_texts", &manifest.usb_texts),
+        ("part_texts", &manifest.part_texts),
     ] {
         if texts.len() > MOST_TEXTS {
             let range = format!("at most {MOST_TEXTS} lines");

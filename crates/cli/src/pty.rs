@@ -56,11 +56,11 @@ pub(crate) struct UsbPort {
 }
 
 impl UsbPort {
-    /// Opens it and prints its name.
-    pub(crate) fn offer() -> Result<Self, Failure> {
+    /// Opens it and prints its name and whose it is.
+    pub(crate) fn offer(board: &str) -> Result<Self, Failure> {
         // The session's thread does not wait.
         let pty = open(Duration::ZERO)?;
-        output::aside(&format!("Serial (USB) of the Mega: {}", pty.path()));
+        output::aside(&format!("Serial (USB) of the {board}: {}", pty.path()));
         Ok(Self {
             pty,
             bytes: Vec::new(),

@@ -23,8 +23,9 @@ use std::sync::atomic::Ordering;
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let ending = args.line_ending;
     let texts = args.commands.iter().chain(&args.usb).cloned();
+    let texts = texts.map(|text| TimedText { ending, ..text });
     let overrides = Overrides {
-        texts: texts.map(|text| TimedText { ending, ..text }).collect(),
+        texts: texts.chain(args.press.iter().flatten().cloned()).collect(),
         ..args
             .setting
             .overrides(args.program, &args.image, &args.parameters)

@@ -24,6 +24,9 @@ use std::fs::File;
 use std::io::{self, BufWriter};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// A sketch that misses more limits than this was made for something else.
+const MANY: usize = 2;
+
 /// The file of a run's waveforms.
 pub(crate) type Waves = Waveform<BufWriter<File>>;
 
@@ -233,6 +236,16 @@ impl<'a> Run<'a> {
         // What its program could no longer do is not judged: the verdict suffices.
         if whole.ended.is_none() {
             whole.failures.extend(missed(self.setup, &whole));
+        }
+        let own =
+            scenario.has_mode && self.setup.firmware.is_some() && !self.setup.takes_parameters();
+        if own && whole.failures.len() > MANY {
+            whole.notes.push(format!(
+                "scenario {} judges mode {}; a sketch that does something else runs in a scenario without mode and limits, \
+                 for instance `rumbo run free`",
+                scenario.name,
+                scenario.mode.name()
+            ));
         }
         whole.pass = whole.failures.is_empty();
         whole

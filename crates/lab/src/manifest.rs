@@ -58,10 +58,12 @@ pub fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manife
         parameters: overrides.parameters.clone(),
         texts: lines(&overrides.texts, Port::Link),
         usb_texts: lines(&overrides.texts, Port::Usb),
+        part_texts: lines(&overrides.texts, Port::Parts),
         // One for all of a command.
         line_ending: overrides
             .texts
-            .first()
+            .iter()
+            .find(|timed| timed.port != Port::Parts)
             .map(|timed| timed.ending.name().to_owned()),
         files,
         ..Manifest::default()

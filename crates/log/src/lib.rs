@@ -63,8 +63,8 @@ pub use scene::{
 pub use signals::{Cell, EARLIER_MS, Row, SIGNALS, Sample, Signal, Spread};
 pub use state::{
     CalibrationPhase, CalibrationState, Complaint, End, Finding, Findings, FunctionShare,
-    InterruptShare, LinkState, ProgramPhase, ProgramProfile, ProgramState, ReplayState, RobotState,
-    State, Task,
+    InterruptShare, LinkState, PartState, ProgramPhase, ProgramProfile, ProgramState, ReplayState,
+    RobotState, State, Task,
 };
 pub use summary::Summary;
 pub use writer::LogWriter;

@@ -59,6 +59,9 @@ pub struct Manifest {
     /// Lines typed on the USB port of an emulated Mega, with their times \[s\].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub usb_texts: Vec<(f64, String)>,
+    /// What was done with buttons, switches and potentiometers, `name=value`, with its times \[s\].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub part_texts: Vec<(f64, String)>,
     /// What was sent behind each of those lines, by name; LF where it is missing.
     pub line_ending: Option<String>,
     /// What the robot's EEPROM held at the start, as hexadecimal digits; `None` where it was erased.

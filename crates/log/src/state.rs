@@ -51,12 +51,26 @@ pub struct ProgramState {
     /// It starts again when its file is saved.
     #[serde(default)]
     pub watched: bool,
+    /// What else is at its pins.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<PartState>,
     /// What the compiler rejects; then the robot stands still.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub complaints: Vec<Complaint>,
     /// Where its time goes, while that is measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProgramProfile>,
+}
+
+/// Something at a pin that a person works or looks at.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PartState {
+    /// Its name in the robot file.
+    pub name: String,
+    /// `button`, `switch`, `potentiometer`, `led`, `buzzer`.
+    pub kind: String,
+    /// How far it is pressed, closed or turned up \[%\].
+    pub percent: u8,
 }
 
 /// Where the time of a program goes; all times in cycles of its clock.

@@ -26,6 +26,10 @@ pub struct Board {
     pub last_analogue: u8,
     /// Pins with PWM, on which `analogWrite()` does more than switch.
     pub pwm: &'static [u8],
+    /// Those that lose it while the Servo library drives servos.
+    pub servo_takes: &'static [u8],
+    /// Pins on which SoftwareSerial can receive; all where there are none.
+    listening: &'static [u8],
     /// Pins with an interrupt for `attachInterrupt()`.
     pub interrupts: &'static [u8],
     /// Whether our own control program fits into its chip.
@@ -50,6 +54,10 @@ pub static MEGA: Board = Board {
     first_analogue: 54,
     last_analogue: 69,
     pwm: &[2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 44, 45, 46],
+    servo_takes: &[44, 45, 46],
+    listening: &[
+        10, 11, 12, 13, 14, 15, 50, 51, 52, 53, 62, 63, 64, 65, 66, 67, 68, 69,
+    ],
     interrupts: &[2, 3, 18, 19, 20, 21],
     runs_rumbo: true,
 };
@@ -68,6 +76,8 @@ pub static UNO: Board = Board {
     first_analogue: 14,
     last_analogue: 19,
     pwm: &[3, 5, 6, 9, 10, 11],
+    servo_takes: &[9, 10],
+    listening: &[],
     interrupts: &[2, 3],
     // Its state alone takes more than the 2 KB of SRAM.
     runs_rumbo: false,
@@ -118,6 +128,13 @@ impl Board {
             None => number,
         };
         (number <= self.last_pin()).then_some(number)
+    }
+
+    /// Whether SoftwareSerial can receive on a pin, or a USART does.
+    #[must_use]
+    pub fn listens(&self, number: u8) -> bool {
+        let usart = self.usarts.iter().any(|[receive, _]| *receive == number);
+        usart || self.listening.is_empty() || self.listening.contains(&number)
     }
 
     /// A pin for people: `5`, `A3`.

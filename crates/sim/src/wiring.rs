@@ -41,10 +41,69 @@ pub struct Wiring {
     pub pins: BTreeMap<String, u8>,
     /// Inputs of the driver that are held high or low instead, as by a jumper.
     pub held: BTreeMap<String, bool>,
+    /// What else is at pins: what a person works, and what shows something.
+    pub parts: Vec<Part>,
     /// Rate of the Bluetooth module, where it is not the usual one \[baud\].
     pub link_baud: Option<u32>,
     /// The divider that brings the battery's voltage to an analogue input, where there is one.
     pub battery: Option<Divider>,
+}
+
+/// Something at a pin that a person works or looks at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// What the robot file calls it.
+    pub name: String,
+    /// What it is.
+    pub kind: PartKind,
+    /// The board's pin.
+    pub pin: u8,
+    /// A button or switch closes to 5 V, over a resistor to GND, instead of to GND.
+    pub to_supply: bool,
+}
+
+/// What a part is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartKind {
+    /// Closed while it is pressed.
+    Button,
+    /// Stays closed or open.
+    Switch,
+    /// A voltage from 0 to 5 V.
+    Potentiometer,
+    /// A light.
+    Led,
+    /// A sound.
+    Buzzer,
+}
+
+impl PartKind {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Button,
+        Self::Switch,
+        Self::Potentiometer,
+        Self::Led,
+        Self::Buzzer,
+    ];
+
+    /// Its key in robot files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Button => "button",
+            Self::Switch => "switch",
+            Self::Potentiometer => "potentiometer",
+            Self::Led => "led",
+            Self::Buzzer => "buzzer",
+        }
+    }
+
+    /// Whether a person works it.
+    #[must_use]
+    pub const fn is_worked(self) -> bool {
+        matches!(self, Self::Button | Self::Switch | Self::Potentiometer)
+    }
 }
 
 /// The inputs of the motor driver, which may be held at a level, and of which several may be on one pin.

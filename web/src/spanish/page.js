@@ -259,7 +259,7 @@ export const PAGE = {
   'latest': 'espera', 'Most cycles from the request to the first instruction': 'Más ciclos desde la petición hasta la primera instrucción',
   // Consoles, parameters, events.
   'Consoles': 'Consolas', 'what the emulated chip sends': 'lo que envía el chip emulado', 'Text of the USART': 'Texto de la USART', 'Line to send': 'Línea que enviar', 'Send': 'Enviar',
-  'Send the line, with the chosen ending, to this USART': 'Envía la línea, con el final elegido, a esta USART', 'Line ending': 'Final de línea', 'No line ending': 'Sin final de línea', 'LF': 'LF', 'CR': 'CR', 'CR LF': 'CR LF',
+  'Send the line, with the chosen ending, to this USART': 'Envía la línea, con el final elegido, a esta USART', 'Line ending': 'Final de línea', 'Parts at the pins': 'Piezas en los pines', 'Held down, the button is pressed': 'Mientras se mantiene, el botón está pulsado', 'No line ending': 'Sin final de línea', 'LF': 'LF', 'CR': 'CR', 'CR LF': 'CR LF',
   'Parameters': 'Parámetros', 'all modes': 'todos los modos', 'the robot': 'el robot', 'other modes': 'otros modos', 'Defaults': 'De fábrica', 'Save on the robot': 'Guardar en el robot', 'The robot starts with these values from now on': 'El robot arranca con estos valores a partir de ahora',
   'Set every parameter to its default; save to make that last': 'Pone cada parámetro en su valor de fábrica; guárdalos para que dure',
   'name': 'nombre', 'value': 'valor', 'unit': 'unidad', 'range': 'rango', 'default': 'de fábrica', '{} in {}': '{} en {}', 'no unit': 'sin unidad',

@@ -17,11 +17,13 @@ pub(crate) use runs::{
 };
 
 pub(crate) use studies::{SweepArgs, TuneArgs};
+pub(crate) use values::{driver_named, driver_names};
 
 use crate::failure::Failure;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use rumbo_sim::boards::Board;
+use rumbo_sim::drivers::Driver;
 use std::path::PathBuf;
 
 /// Rumbo: the lab of a small robot. Without a subcommand, `lab`.
@@ -125,17 +127,29 @@ Examples:
   rumbo new sketch my_sketch
   rumbo run mode1 --sketch my_sketch              drive it
   rumbo new sketch small --board uno
-  rumbo run mode1 --robot uno --sketch small      the robot with an Arduino Uno")]
+  rumbo run mode1 --robot uno --sketch small      the robot with an Arduino Uno
+  rumbo new robot my_car --board uno --driver l298n-jumpers --pins left_forward=5,left_backward=6,right_forward=9,right_backward=10
+  rumbo new robot my_car --like kit_elegoo_v3
+  rumbo run free --robot my_car.toml --sketch my_sketch")]
 pub(crate) struct NewArgs {
     /// What to begin
     #[arg(value_enum)]
     pub(crate) what: NewKind,
-    /// Folder to make; its sketch has the same name, as the Arduino IDE wants it
+    /// Folder of the sketch to make, which has the same name, as the Arduino IDE wants it; or file of the robot
     #[arg(value_name = "NAME")]
     pub(crate) folder: PathBuf,
-    /// Board that the sketch is for: mega or uno
-    #[arg(long, value_name = "BOARD", default_value = "mega", value_parser = values::board)]
-    pub(crate) board: &'static Board,
+    /// Board: mega, uno or nano; a sketch's is a mega where it is left out
+    #[arg(long, value_name = "BOARD", value_parser = values::board)]
+    pub(crate) board: Option<&'static Board>,
+    /// Driver of the robot's motors: l298n, l298n-jumpers, l293d, tb6612, drv8833 or dir-pwm
+    #[arg(long, value_name = "DRIVER", value_parser = values::driver_named)]
+    pub(crate) driver: Option<(&'static Driver, bool)>,
+    /// Pins of the robot's parts, e.g. left_forward=7,servo=9,front_echo=A1
+    #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
+    pub(crate) pins: Vec<(String, String)>,
+    /// Begin with the file of this robot (`rumbo list robots`)
+    #[arg(long, value_name = "ROBOT", conflicts_with_all = ["board", "driver", "pins"])]
+    pub(crate) like: Option<String>,
 }
 
 /// What can be begun.
@@ -143,6 +157,8 @@ pub(crate) struct NewArgs {
 pub(crate) enum NewKind {
     /// An Arduino sketch
     Sketch,
+    /// A robot file; what no option says is asked for at a terminal
+    Robot,
 }
 
 /// Options of `rumbo list`.
@@ -153,10 +169,14 @@ Examples:
   rumbo list modes
   rumbo list parameters
   rumbo list logs
-  rumbo list scenarios --json")]
+  rumbo list scenarios --json
+  rumbo list robots kit_elegoo_v3     its file")]
 pub(crate) struct ListArgs {
     /// One topic only
     pub(crate) topic: Option<Topic>,
+    /// Of robots, worlds, scenarios and policies: print the file of this one
+    #[arg(value_name = "NAME")]
+    pub(crate) name: Option<String>,
     /// As one JSON object
     #[arg(long)]
     pub(crate) json: bool,

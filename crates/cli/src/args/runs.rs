@@ -1,7 +1,7 @@
 //! Options of the commands that run experiments and fit numbers: `run`, `experiments`, `identify`, `calibrate`.
 
 use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, ProgramName, SeedArgs, SettingArgs};
-use super::values::{line_ending, timed_text, usb_text};
+use super::values::{line_ending, press, timed_text, usb_text};
 use clap::{Args, ValueEnum};
 use rumbo_experiment::files::TimedText;
 use rumbo_wire::LineEnding;
@@ -60,6 +60,10 @@ pub(crate) struct RunArgs {
     /// Line of text typed on the board's USB port (Serial) at a time, e.g. 'go@2'; may be repeated
     #[arg(long, value_name = "TEXT@SECONDS", value_parser = usb_text, requires = "image")]
     pub(crate) usb: Vec<TimedText>,
+    /// Button pressed at a time, or switch or potentiometer put to a value from 0 to 1, e.g. 'start@2', 'speed=0.7@3'; may be
+    /// repeated
+    #[arg(long, value_name = "NAME@SECONDS", value_parser = press, requires = "image")]
+    pub(crate) press: Vec<Vec<TimedText>>,
     /// What is sent behind each of these lines, as in the Serial Monitor: none, for single letters, lf, cr or crlf
     #[arg(long, value_name = "ENDING", value_parser = line_ending, default_value = "lf")]
     pub(crate) line_ending: LineEnding,

@@ -2,14 +2,54 @@
 
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
-use rumbo_experiment::files::{Port, TimedText, check_line, parameters};
+use rumbo_experiment::files::new_robot::JUMPERS;
+use rumbo_experiment::files::{Port, TimedText, check_line, parameters, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
+use rumbo_sim::drivers::{DRIVERS, Driver};
+use rumbo_sim::wiring::SIGNALS;
 use rumbo_wire::LineEnding;
 
 /// A board by its name.
 pub(super) fn board(text: &str) -> Result<&'static Board, String> {
     let known = || BOARDS.map(|board| board.name).join(", ");
     Board::named(text).ok_or_else(|| format!("no such board; there are {}", known()))
+}
+
+/// The drivers that a new robot may have.
+pub(crate) fn driver_names() -> String {
+    let names = DRIVERS.iter().flat_map(|driver| {
+        let jumpers = driver.has_enable && driver.source.is_none();
+        let jumpers = jumpers.then(|| format!("{}{JUMPERS}", driver.name));
+        std::iter::once(driver.name.to_owned()).chain(jumpers)
+    });
+    names.collect::<Vec<_>>().join(", ")
+}
+
+/// A driver by its name, and whether jumpers hold its enables.
+pub(crate) fn driver_named(text: &str) -> Result<(&'static Driver, bool), String> {
+    let (name, jumpers) = match text.strip_suffix(JUMPERS) {
+        Some(name) => (name, true),
+        None => (text, false),
+    };
+    Driver::named(name)
+        .filter(|driver| driver.has_enable || !jumpers)
+        .map(|driver| (driver, jumpers))
+        .ok_or_else(|| format!("no such driver; there are {}", driver_names()))
+}
+
+/// A signal and its pin: `left_forward=7`.
+pub(super) fn pin(text: &str) -> Result<(String, String), String> {
+    let (signal, pin) = text
+        .split_once('=')
+        .ok_or("write it as left_forward=7,left_backward=8")?;
+    let (signal, pin) = (signal.trim(), pin.trim());
+    if !SIGNALS.contains(&signal) {
+        return Err(format!(
+            "no signal `{signal}`; there are {}",
+            SIGNALS.join(", ")
+        ));
+    }
+    Ok((signal.to_owned(), pin.to_owned()))
 }
 
 /// Seconds of simulation or of a log per second.
@@ -45,6 +85,23 @@ pub(super) fn timed_text(text: &str) -> Result<TimedText, Failure> {
 pub(super) fn usb_text(text: &str) -> Result<TimedText, Failure> {
     let port = Port::Usb;
     timed_text(text).map(|timed| TimedText { port, ..timed })
+}
+
+/// A part and when it is pressed, or put to a value: `start@2`, `speed=0.7@3`.
+pub(super) fn press(text: &str) -> Result<Vec<TimedText>, Failure> {
+    let wrong = || {
+        Failure::input("write it as NAME@SECONDS, or NAME=VALUE@SECONDS with a value from 0 to 1")
+    };
+    let TimedText { at_s, text, .. } = timed_text(text).map_err(|_| wrong())?;
+    let Some((name, value)) = text.split_once('=') else {
+        return Ok(pressed(&text, None, at_s));
+    };
+    let value = value
+        .trim()
+        .parse()
+        .ok()
+        .filter(|value| (0.0..=1.0).contains(value));
+    Ok(pressed(name.trim(), Some(value.ok_or_else(wrong)?), at_s))
 }
 
 /// What ends typed lines.

@@ -19,6 +19,7 @@
 //! | `move = "turn_left"` with `duty = 0.4` or `speed_rpm = 60` | mode `manual`, a basic movement |
 //! | the same with `duty = 0`, `ramp_to_duty = 0.4`, `ramp_s = 12` | open loop, the duty moves by one count of PWM at a time |
 //! | `parameter = "name"` and `value = 1.5` | set a control parameter |
+//! | `press = "start"`, with `to = 0.7` | press a button, or put a switch or a potentiometer |
 //! | `text = "F"` or `usb = "F"`, `line_ending = "none"` | type a line: [`typed`] |
 
 use super::error::FileError;
@@ -104,6 +105,12 @@ pub(crate) fn read_commands(
                 "must be {earliest_s} or more: commands stand in order of time, after the end of a ramp"
             );
             table.complain("at_s", at.line, &at.value.to_string(), &remedy);
+        }
+        if table.has(typed::PRESS) {
+            texts.extend(typed::read_press(&table, at_s));
+            earliest_s = at_s.max(earliest_s);
+            table.finish();
+            continue;
         }
         if let Some(port) = typed::PORTS.into_iter().find(|(key, _)| table.has(key)) {
             texts.extend(read_typed(&table, at_s, port));
@@ -192,7 +199,7 @@ fn read_command(
                 &COMPANIONS,
                 &route::COMPANIONS,
                 &typed::PORTS.map(|(key, _)| key),
-                &[typed::ENDING],
+                &[typed::ENDING, typed::PRESS, typed::VALUE],
             ]
             .concat();
             for key in &known {

@@ -1,10 +1,11 @@
 //! Whether a scenario, its world and its robot's rig fit together.
 
 use super::error::FileError;
-use super::{ScenarioFile, WorldFile};
+use super::{Port, ScenarioFile, TimedText, WorldFile};
 use rumbo_control::SonarId;
 use rumbo_plant::plant::Rig;
 use rumbo_sim::wire_fault::Wire;
+use rumbo_sim::wiring::Part;
 
 /// Reports a goal that only a random world could provide.
 pub(super) fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileError> {
@@ -15,6 +16,29 @@ pub(super) fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result
     Err(FileError::Setting(format!(
         "scenario {}: its goal is that of the world, and world {} has none; give a world with goal_m or [random], or goal_m in place of goal",
         scenario.name, world.name
+    )))
+}
+
+/// Reports a part that is to be pressed and that the wiring lacks.
+pub(super) fn has_its_parts(
+    whose: &str,
+    texts: &[TimedText],
+    parts: &[Part],
+) -> Result<(), FileError> {
+    let worked = || parts.iter().filter(|part| part.kind.is_worked());
+    let asked = texts.iter().filter(|timed| timed.port == Port::Parts);
+    let mut names = asked.filter_map(|timed| Some(timed.text.split_once('=')?.0));
+    let missing = names.find(|name| !worked().any(|part| part.name == *name));
+    let Some(missing) = missing else {
+        return Ok(());
+    };
+    let known: Vec<&str> = worked().map(|part| part.name.as_str()).collect();
+    let known = match &known[..] {
+        [] => "there are none; the robot file has them, e.g. parts.start = { button = 8 } in its [wiring.NAME], for a sketch".into(),
+        known => format!("there are {}", known.join(", ")),
+    };
+    Err(FileError::Setting(format!(
+        "{whose}: `{missing}` is to be pressed, and the wiring has no button, switch or potentiometer of that name: {known}"
     )))
 }
 

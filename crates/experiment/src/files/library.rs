@@ -13,6 +13,9 @@ static WORLDS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../worlds");
 static SCENARIOS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios");
 static POLICIES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../policies");
 
+/// The names of robots that are sold as kits begin with it.
+const OF_KITS: &str = "kit_";
+
 /// The kinds of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
@@ -64,7 +67,8 @@ impl Kind {
         let mut names: Vec<String> = paths
             .filter_map(|path| Some(path.strip_suffix(".toml")?.to_owned()))
             .collect();
-        names.sort();
+        // Other people's kits come last.
+        names.sort_by_key(|name| (name.starts_with(OF_KITS), name.clone()));
         names
     }
 
@@ -160,6 +164,14 @@ impl Library {
     pub fn policy(&self, name_or_path: &str) -> Result<PolicyFile, FileError> {
         let found = self.find(Kind::Policy, name_or_path)?;
         PolicyFile::parse(&found.name, &found.file, &found.text)
+    }
+
+    /// The text of a file.
+    ///
+    /// # Errors
+    /// An unknown name, or an unreadable path.
+    pub fn text(&self, kind: Kind, name_or_path: &str) -> Result<String, FileError> {
+        Ok(self.find(kind, name_or_path)?.text)
     }
 
     /// The first of our robots that is so.

@@ -10,6 +10,7 @@
 //! [wiring.final]         # signal = pin of the board
 //! front_echo = 3
 //! left_enable = "high"   # an input of the driver that a jumper holds
+//! parts.start = { button = 8 }          # or switch, potentiometer, led, buzzer
 //! battery = { pin = 54, ratio = 2.0 }   # a divider to A0, where one is wired
 //! [parameters]           # control parameters that differ from their defaults
 //! [plant.battery]        # physics; what is left out is nominal
@@ -25,7 +26,7 @@ use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Direction, Driver};
-use rumbo_sim::wiring::{Divider, SIGNALS, Wiring, is_driver_input};
+use rumbo_sim::wiring::{Divider, Part, PartKind, SIGNALS, Wiring, is_driver_input};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Position of a sonar on the body.
@@ -53,7 +54,7 @@ pub struct RobotFile {
     pub text: String,
     /// Physics, from `[plant.*]`: nominal values where the file has none.
     pub plant: Params,
-    /// Where the sonars sit, by the name of the rig. At least one. In a pair on one side, `left` is the one in front.
+    /// Where the sonars sit, by the name of the rig; none on a robot without sonars. In a pair on one side, `left` is the one in front.
     pub rigs: BTreeMap<String, Rig>,
     /// Which signal is on which pin, by the name of the wiring.
     pub wirings: BTreeMap<String, Wiring>,
@@ -105,9 +106,6 @@ impl RobotFile {
             }
         }
         let rigs = named(&root.table("rig"), read_rig);
-        if rigs.is_empty() {
-            root.complain_here("has no rig: add a table [rig.NAME.front] (or left, right) with x_m, y_m, angle_deg");
-        }
         let wirings = named(&root.table("wiring"), |table| {
             read_wiring(table, board, driver)
         });
@@ -226,7 +224,7 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
     let baud = table.number("link_baud", BAUD);
     wiring.link_baud = baud.map(|baud| baud as u32);
     for signal in SIGNALS {
-        let Some((line, wired)) = read_wired(table, signal, board) else {
+        let Some((line, wired)) = read_wired(table, signal, board, false) else {
             continue;
         };
         let number = match wired {
@@ -236,8 +234,12 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
                 continue;
             }
         };
-        // One pin may feed several inputs of the driver.
-        let clashes = |other: &str| !(is_driver_input(signal) && is_driver_input(other));
+        // One pin may feed several inputs of the driver, and some sonars have one line for both.
+        let clashes = |other: &str| {
+            let inputs = is_driver_input(signal) && is_driver_input(other);
+            let sonar = signal.strip_suffix("_echo");
+            !inputs && (sonar.is_none() || sonar != other.strip_suffix("_trigger"))
+        };
         let mut taken = wiring.pins.iter().filter(|(_, pin)| **pin == number);
         if let Some((other, _)) = taken.find(|(other, _)| clashes(other)) {
             let remedy = format!("{other} is on that pin already: give each signal its own");
@@ -245,13 +247,95 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
         }
         wiring.pins.insert(signal.to_owned(), number);
     }
+    read_parts(&table.table("parts"), &mut wiring);
     suits_driver(table, &wiring);
     table.finish();
     wiring
 }
 
+/// The table of parts: `start = { button = 8 }`.
+fn read_parts(table: &Table<'_, '_>, wiring: &mut Wiring) {
+    let board = wiring.board;
+    for key in table.keys() {
+        let (name, line) = (key.value.to_owned(), key.line);
+        let own = table.table(&name);
+        let given: Vec<PartKind> = PartKind::ALL
+            .into_iter()
+            .filter(|kind| own.has(kind.name()))
+            .collect();
+        let [kind] = given[..] else {
+            let kinds = PartKind::ALL.map(PartKind::name).join(", ");
+            own.complain_here(&format!(
+                "needs one of {kinds}, with its pin, e.g. {name} = {{ button = 8 }}"
+            ));
+            continue;
+        };
+        let analogue = kind == PartKind::Potentiometer;
+        let pin = read_pin(&own, kind.name(), board, analogue);
+        let to_supply = own.text("to").is_some_and(|to| {
+            if !["gnd", "5v"].contains(&to.value.as_str())
+                || !matches!(kind, PartKind::Button | PartKind::Switch)
+            {
+                own.complain(
+                    "to",
+                    to.line,
+                    &to.value,
+                    "must be \"gnd\" or \"5v\", of a button or a switch",
+                );
+            }
+            to.value == "5v"
+        });
+        own.finish();
+        let Some(pin) = pin else { continue };
+        let taken = wiring
+            .pins
+            .iter()
+            .find(|(_, taken)| **taken == pin)
+            .map(|(other, _)| other.clone());
+        let part = wiring
+            .parts
+            .iter()
+            .find(|part| part.pin == pin)
+            .map(|part| part.name.clone());
+        if let Some(other) = taken.or(part) {
+            let remedy = format!("{other} is on that pin already: give each its own");
+            table.complain(&name, line, &board.shown(pin), &remedy);
+        }
+        wiring.parts.push(Part {
+            name,
+            kind,
+            pin,
+            to_supply,
+        });
+    }
+    table.finish();
+}
+
+/// A pin of the board, by number or name.
+fn read_pin(table: &Table<'_, '_>, key: &str, board: &Board, analogue: bool) -> Option<u8> {
+    let (line, wired) = read_wired(table, key, board, analogue)?;
+    match wired {
+        Wired::Pin(number) if !analogue || number >= board.first_analogue => Some(number),
+        Wired::Pin(number) => {
+            let remedy = format!(
+                "must be an analogue input of the {}, \"A0\" to \"{}\"",
+                board.title,
+                board.shown(board.last_analogue)
+            );
+            table.complain(key, line, &board.shown(number), &remedy);
+            None
+        }
+        Wired::Held(_) => None,
+    }
+}
+
 /// The pin of a signal, by number or name, or the level that an input of the driver is held at.
-fn read_wired(table: &Table<'_, '_>, signal: &str, board: &Board) -> Option<(usize, Wired)> {
+fn read_wired(
+    table: &Table<'_, '_>,
+    signal: &str,
+    board: &Board,
+    analogue: bool,
+) -> Option<(usize, Wired)> {
     let last = board.last_pin();
     let placed = if table.is_text(signal) {
         let name = table.text(signal)?;
@@ -282,7 +366,7 @@ fn read_wired(table: &Table<'_, '_>, signal: &str, board: &Board) -> Option<(usi
         (pin.line, pin.value as u8)
     };
     let (line, number) = placed;
-    if board.pin(number).is_none() {
+    if board.pin(number).is_none() && !analogue {
         let remedy = format!(
             "is an analogue input only on the {}; take another pin",
             board.title

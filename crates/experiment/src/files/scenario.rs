@@ -4,9 +4,9 @@
 //! title = "Stop at a distance from a wall"
 //! group = "Mode 1"       # in lists of scenarios; may be missing
 //! robot = "memoria"      # a built-in name, or the path of a file beside this one
-//! rig = "front_single"
+//! rig = "front_single"   # may be missing where the robot has one or none
 //! world = "wall_front"
-//! mode = "front_distance"
+//! mode = "front_distance"    # may be missing for a sketch or an image of one's own
 //! duration_s = 9
 //! [start]
 //! x_m = 0
@@ -55,14 +55,16 @@ pub struct ScenarioFile {
     pub text: String,
     /// Name of the robot, or path of its file.
     pub robot: String,
-    /// Name of one of the robot's rigs.
+    /// Name of one of the robot's rigs; empty where the file has none: then the robot's only one.
     pub rig: String,
     /// Name of the world, or path of its file.
     pub world: String,
     /// Name of the policy of mode 9, or path of its file.
     pub policy: Option<String>,
-    /// The mode selected before the first command.
+    /// The mode selected before the first command; 0 where the file has none.
     pub mode: ModeId,
+    /// Whether the file has a mode. One without is for a program of one's own.
+    pub has_mode: bool,
     /// How long it lasts, in s.
     pub duration_s: f64,
     /// Where the robot starts.
@@ -157,7 +159,12 @@ impl ScenarioFile {
         let source = Source::new(file, text);
         let parsed = source.parse()?;
         let root = source.root(&parsed);
-        let mode = read_mode(&root);
+        let given = read_given_mode(&root);
+        let mode = if root.has("mode") {
+            given
+        } else {
+            Some(ModeId::Manual)
+        };
         root.require("duration_s", &DURATION.remedy());
         // A wrong one does not shorten anything else.
         let duration_s = root.number("duration_s", DURATION).unwrap_or(DURATION.max);
@@ -174,17 +181,13 @@ impl ScenarioFile {
             robot: root
                 .required_text("robot", "name of a robot, e.g. \"memoria\"")
                 .value,
-            rig: root
-                .required_text(
-                    "rig",
-                    "name of one of the robot's rigs, e.g. \"front_single\"",
-                )
-                .value,
+            rig: root.text("rig").map(|rig| rig.value).unwrap_or_default(),
             world: root
                 .required_text("world", "name of a world, e.g. \"open\"")
                 .value,
             policy: root.text("policy").map(|policy| policy.value),
             mode: mode.unwrap_or_default(),
+            has_mode: root.has("mode"),
             duration_s,
             start: read_start(&root.table("start")),
             wheels_in_air: root.flag("wheels_in_air").is_some_and(|flag| flag.value),
@@ -204,15 +207,6 @@ impl ScenarioFile {
         source.verdict()?;
         Ok(scenario)
     }
-}
-
-fn read_mode(root: &Table<'_, '_>) -> Option<ModeId> {
-    if !root.has("mode") {
-        root.complain_here(
-            "mode is missing: name or number of a mode, e.g. \"front_distance\" or 1",
-        );
-    }
-    read_given_mode(root)
 }
 
 /// The mode, if one is given.

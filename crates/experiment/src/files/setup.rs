@@ -1,7 +1,7 @@
 //! A scenario with everything it names, and the overrides of the command line.
 
 use super::error::{FileError, did_you_mean};
-use super::fit::{has_its_goal, has_its_sonars};
+use super::fit::{has_its_goal, has_its_parts, has_its_sonars};
 use super::kept::Calibrations;
 use super::near::{near, near_or_all};
 use super::read::Allowed;
@@ -161,7 +161,17 @@ impl Library {
             true => format!("scenario {}", scenario.name),
             false => format!("robot {}", scenario.name),
         };
-        let rig = robot.rigs.get(&scenario.rig).copied().ok_or_else(|| {
+        // A robot of one's own in a scenario for another has its own sonars.
+        if overrides.rig.is_none()
+            && (scenario.rig.is_empty() || overrides.robot.is_some())
+            && !robot.rigs.contains_key(&scenario.rig)
+            && robot.rigs.len() < 2
+        {
+            scenario.rig = robot.rigs.keys().next().cloned().unwrap_or_default();
+        }
+        let sonarless = scenario.rig.is_empty() && robot.rigs.is_empty();
+        let rig = robot.rigs.get(&scenario.rig).copied();
+        let rig = rig.or(sonarless.then(Rig::default)).ok_or_else(|| {
             let near = near_or_all(&scenario.rig, robot.rigs.keys().map(String::as_str));
             match &overrides.rig {
                 Some(name) => FileError::Unknown {
@@ -184,6 +194,12 @@ impl Library {
             firmware::beside(firmware, policy.as_ref()).map(Arc::new)
         };
         let firmware = overrides.firmware.as_ref().map(load).transpose()?;
+        let parts = firmware
+            .as_ref()
+            .map(|firmware| firmware.parts())
+            .unwrap_or_default();
+        has_its_parts(&whose, &scenario.texts, parts)?;
+        has_its_parts(&whose, &overrides.texts, parts)?;
         let mut texts = [&scenario.texts[..], &overrides.texts].concat();
         texts.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
         Ok(Setup {
@@ -314,6 +330,13 @@ impl Setup {
             .map_err(|error| FileError::Setting(format!("world {}: {error}", setup.world.name)))?;
         let program = match (&setup.firmware, setup.program) {
             (Some(firmware), _) => Program::Image(firmware.clone()),
+            (None, _) if !scenario.has_mode => {
+                return Err(FileError::Setting(format!(
+                    "scenario {}: has no mode, so it is for a sketch or an image of one's own; give one, or the scenario a \
+                     mode, e.g. mode = \"front_distance\"",
+                    scenario.name
+                )));
+            }
             (None, NativeProgram::Rumbo) if !setup.robot.board.runs_rumbo => {
                 return Err(setup.needs_a_program());
             }

@@ -9,7 +9,7 @@
 
 use super::error::did_you_mean;
 use super::near::near_or_all;
-use super::read::Table;
+use super::read::{Allowed, Table};
 use rumbo_wire::LineEnding;
 
 /// Where a line of text goes.
@@ -20,10 +20,17 @@ pub enum Port {
     Link,
     /// To an emulated board, over its USB cable.
     Usb,
+    /// To what a person works at the robot: `name=value`.
+    Parts,
 }
 
 /// The keys of a scenario, each with where its line goes.
 pub(super) const PORTS: [(&str, Port); 2] = [("text", Port::Link), ("usb", Port::Usb)];
+/// The key that works a part, and that for its value: pressed for a moment without one.
+pub(super) const PRESS: &str = "press";
+pub(super) const VALUE: &str = "to";
+/// How long a button is pressed [s].
+const PRESSED_S: f64 = 0.2;
 /// The key that goes with them.
 pub(super) const ENDING: &str = "line_ending";
 
@@ -57,6 +64,28 @@ pub fn check_line(text: &str) -> Result<(), &'static str> {
         true => Ok(()),
         false => Err("the text must be one line of ASCII"),
     }
+}
+
+/// What is done with a part: pressed for a moment, or put to a value from 0 to 1.
+#[must_use]
+pub fn pressed(name: &str, value: Option<f64>, at_s: f64) -> Vec<TimedText> {
+    let put = |at_s: f64, value: f64| TimedText {
+        at_s,
+        text: format!("{name}={value}"),
+        ending: LineEnding::None,
+        port: Port::Parts,
+    };
+    match value {
+        Some(value) => vec![put(at_s, value)],
+        None => vec![put(at_s, 1.0), put(at_s + PRESSED_S, 0.0)],
+    }
+}
+
+/// The command that has the key [`PRESS`].
+pub(super) fn read_press(table: &Table<'_, '_>, at_s: f64) -> Vec<TimedText> {
+    let value = table.number(VALUE, Allowed::new(0.0, 1.0, ""));
+    let name = table.text(PRESS);
+    name.map_or_else(Vec::new, |name| pressed(&name.value, value, at_s))
 }
 
 /// The line of a command that has a key of [`PORTS`].

@@ -8,7 +8,8 @@ use rumbo_wire::Command;
 /// Shortest path that has a radius [m]; turning on the spot has none.
 const MOVED_M: f64 = 0.2;
 
-/// Metrics of the movement as a whole, from the first [`Command::Move`] to the end.
+/// Metrics of the movement as a whole, from the first [`Command::Move`] to the end; of a program of one's own that is
+/// told none, from the start.
 pub(super) fn movement(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
     let moves = |command: &Command| matches!(command, Command::Move { .. });
     let Some(from_s) = setup
@@ -17,6 +18,7 @@ pub(super) fn movement(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
         .iter()
         .find(|timed| moves(&timed.command))
         .map(|timed| timed.at_s)
+        .or(setup.firmware.as_ref().map(|_| 0.0))
     else {
         return;
     };

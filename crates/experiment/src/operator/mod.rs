@@ -15,6 +15,7 @@ mod text;
 use crate::files::{FileError, Port, Setup};
 use rumbo_control::mode::ModeId;
 use rumbo_sim::Sim;
+use rumbo_sim::mega::{PARTS, USB};
 use rumbo_sim::trace::TimedMessage;
 use rumbo_wire::text::TextCommand;
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
@@ -29,8 +30,6 @@ const REPEAT_US: u64 = 200_000;
 const PATIENCE_US: u64 = 3_000_000;
 /// Time between two polls of the link before the run [us].
 const BRIEF_STEP_US: u64 = 10_000;
-/// The USART behind the board's USB socket.
-const USB: u8 = 0;
 /// Longest line of the original's telemetry.
 const LINE: usize = 160;
 
@@ -206,15 +205,20 @@ impl<S: Deref<Target = Setup>> Operator<S> {
             && timed.at_s * 1e6 <= sim.now_us() as f64
         {
             self.next_text += 1;
-            if timed.port == Port::Usb
-                && let Some(mega) = sim.mega_mut()
-            {
-                mega.type_in(USB, &timed.bytes());
+            let to = match timed.port {
+                Port::Link => None,
+                Port::Usb => Some(USB),
+                Port::Parts => Some(PARTS),
+            };
+            if let (Some(to), Some(mega)) = (to, sim.mega_mut()) {
+                mega.type_in(to, &timed.bytes());
                 continue;
             }
             // An image may have commands of its own.
             let odd = match (timed.port, TextCommand::parse(&timed.text)) {
-                (Port::Usb, _) => Some("without a sketch or an image there is no USB port".into()),
+                (Port::Usb | Port::Parts, _) => {
+                    Some("without a sketch or an image there is no USB port".into())
+                }
                 (Port::Link, Err(error)) if self.setup.firmware.is_none() => {
                     Some(error.to_string())
                 }

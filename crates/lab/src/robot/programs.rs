@@ -6,9 +6,11 @@ use rumbo_emulator::devices::CLOCK_HZ;
 use rumbo_emulator::observe::profile::Profile;
 use rumbo_experiment::files::FileError;
 use rumbo_log::{
-    Complaint, FunctionShare, InterruptShare, Level, ProgramPhase, ProgramProfile, ProgramState,
+    Complaint, FunctionShare, InterruptShare, Level, PartState, ProgramPhase, ProgramProfile,
+    ProgramState,
 };
 use rumbo_session::{LinkNews, TargetError};
+use rumbo_sim::wiring::Part;
 use std::path::{Path, PathBuf};
 
 /// Most functions that the page lists.
@@ -44,6 +46,14 @@ fn shares(profile: &Profile) -> ProgramProfile {
     }
 }
 
+fn part_state((part, value): (&Part, f64)) -> PartState {
+    PartState {
+        name: part.name.clone(),
+        kind: part.kind.name().to_owned(),
+        percent: (100.0 * value).round() as u8,
+    }
+}
+
 impl SimulatedRobot {
     /// For the page.
     pub(crate) fn program_state(&self) -> Option<ProgramState> {
@@ -54,6 +64,7 @@ impl SimulatedRobot {
                 None => mega.firmware().name().to_owned(),
             },
             link_usart: mega.firmware().link_usart(),
+            parts: mega.parts().map(part_state).collect(),
             watched: program.is_some_and(|program| program.watched),
             phase: program.map(|program| program.phase).unwrap_or_default(),
             complaints: program.map_or_else(Vec::new, |program| program.complaints.clone()),

@@ -27,6 +27,8 @@ struct Wave {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Line {
     high: bool,
+    been_high: bool,
+    been_modulated: bool,
     /// The timer's PWM, if it has the pin.
     timer: Option<Pwm>,
     rise_cycle: Option<u64>,
@@ -41,6 +43,7 @@ impl Line {
             return;
         }
         self.high = high;
+        self.been_high |= high;
         if high {
             self.wave = self.rise_cycle.and_then(|before| {
                 let period_cycles = cycle - before;
@@ -50,6 +53,7 @@ impl Line {
                     period_cycles,
                 })
             });
+            self.been_modulated |= self.wave.is_some();
             self.rise_cycle = Some(cycle);
         }
         self.edge_cycle = cycle;
@@ -58,8 +62,20 @@ impl Line {
     /// A timer takes the line, or lets go of it.
     pub(super) fn modulate(&mut self, pwm: Option<Pwm>) {
         self.timer = pwm;
+        self.been_high |= pwm.is_some_and(|pwm| pwm.share > 0.0);
+        self.been_modulated |= pwm.is_some_and(|pwm| pwm.period_cycles.is_some());
         self.wave = None;
         self.rise_cycle = None;
+    }
+
+    /// Whether it was ever high.
+    pub(super) fn been_high(&self) -> bool {
+        self.been_high
+    }
+
+    /// Whether a PWM was ever on it.
+    pub(super) fn been_modulated(&self) -> bool {
+        self.been_modulated
     }
 
     /// The wave is over if its next edge does not come in time.
@@ -105,6 +121,7 @@ impl HalfBridge {
     pub(super) fn new(driver: &'static Driver, inputs: [DriverInput; 4]) -> Self {
         let held = |input| Line {
             high: input == DriverInput::High,
+            been_high: input == DriverInput::High,
             ..Line::default()
         };
         let unwired = |input: &usize| inputs[*input].pin().is_none();

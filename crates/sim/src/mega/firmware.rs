@@ -4,7 +4,7 @@ use super::pins::{LinkOn, Wires};
 use super::{CYCLES_PER_US, ON_PINS};
 use crate::boards::Board;
 use crate::error::SimError;
-use crate::wiring::Wiring;
+use crate::wiring::{Part, Wiring};
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::ports::Drive;
@@ -12,6 +12,7 @@ use rumbo_emulator::devices::ports::Pin;
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
 use rumbo_wire::{Decoder, FromRobot, Message, Received};
+use std::collections::BTreeMap;
 
 /// The usual rate of the Bluetooth module [baud].
 const LINK_BAUD: u32 = 9600;
@@ -43,6 +44,9 @@ pub struct Firmware {
     board: &'static Board,
     wires: Wires,
     link_baud: u32,
+    /// The board's pin of each signal.
+    pins: BTreeMap<String, u8>,
+    parts: Vec<Part>,
 }
 
 impl Firmware {
@@ -63,6 +67,8 @@ impl Firmware {
             wiring: wiring.to_owned(),
             board: pins.board,
             wires: Wires::new(wiring, pins)?,
+            pins: pins.pins.clone(),
+            parts: pins.parts.clone(),
             link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
         })
     }
@@ -98,7 +104,17 @@ impl Firmware {
     /// The pins worth an instrument: the wired ones, and the board's LED.
     pub(super) fn metered(&self) -> Vec<(String, Pin)> {
         let led = self.board.pin(LED).map(|pin| ("led".to_owned(), pin));
-        self.wires.signals().into_iter().chain(led).collect()
+        let parts = self.parts.iter().filter_map(|part| {
+            let name = format!("{}_{}", part.name, part.kind.name());
+            Some((name, self.board.pin(part.pin)?))
+        });
+        let wired = self.wires.signals().into_iter();
+        wired.chain(led).chain(parts).collect()
+    }
+
+    /// What else is at its pins.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
     }
 
     /// What it speaks on its link.
@@ -109,6 +125,16 @@ impl Firmware {
     /// Name of the wiring.
     pub fn wiring(&self) -> &str {
         &self.wiring
+    }
+
+    /// The board's number of the pin that a signal is on.
+    pub(super) fn number_of(&self, signal: &str) -> Option<u8> {
+        self.pins.get(signal).copied()
+    }
+
+    /// The same as the board calls it.
+    pub(super) fn pin_of(&self, signal: &str) -> Option<String> {
+        Some(self.board.shown(self.number_of(signal)?))
     }
 
     /// Whether an encoder's output B is wired.

@@ -26,6 +26,8 @@ pub(super) struct Meter {
     at_cycle: u64,
     read_cycle: u64,
     edges: u32,
+    /// Of them those that a frequency has been made of.
+    edges_read: u32,
     rise_cycle: u64,
     /// Width of the last pulse, and when it ended.
     pulse: Option<(u64, u64)>,
@@ -42,6 +44,7 @@ impl Meter {
             at_cycle: 0,
             read_cycle: 0,
             edges: 0,
+            edges_read: 0,
             rise_cycle: 0,
             pulse: None,
         }
@@ -76,6 +79,18 @@ impl Meter {
         };
         (self.high_cycles, self.read_cycle) = (0.0, self.at_cycle);
         level
+    }
+
+    /// Frequency of its level since the last reading \[Hz\].
+    fn read_hz(&mut self, cycle: u64) -> f64 {
+        let edges = self.edges.wrapping_sub(self.edges_read);
+        self.edges_read = self.edges;
+        let passed = cycle.saturating_sub(self.read_cycle) as f64 / (1e6 * CYCLES_PER_US as f64);
+        if passed > 0.0 {
+            0.5 * f64::from(edges) / passed
+        } else {
+            0.0
+        }
     }
 
     /// Width of the last pulse, unless it is long ago \[us\].
@@ -116,12 +131,13 @@ impl Meters {
     }
 
     /// What they show, by name: the level of each pin since the last reading (`pin_left_enable`), the edges of the
-    /// encoders so far, the range that the last echo of each sonar gave, infinite without an echo, and the width of the
+    /// encoders so far, the frequency of a buzzer, the range that the last echo of each sonar gave, infinite without an echo, and the width of the
     /// servo's last pulse. Not a number where nothing was measured lately.
     pub(super) fn read(&mut self, cycle: u64) -> Vec<(String, f64)> {
         let mut shown = Vec::new();
         for meter in &mut self.0 {
-            let name = meter.name.as_str();
+            let name = meter.name.clone();
+            let name = name.as_str();
             let pulse_us = meter.pulse_us(cycle).unwrap_or(f64::NAN);
             if let Some(side) = name.strip_suffix("_encoder") {
                 shown.push((format!("{side}_edges"), f64::from(meter.edges)));
@@ -131,6 +147,8 @@ impl Meters {
                     false => pulse_us * M_PER_US,
                 };
                 shown.push((format!("pinged_{sonar}_m"), range_m));
+            } else if let Some(name) = name.strip_suffix("_buzzer") {
+                shown.push((format!("{name}_hz"), meter.read_hz(cycle)));
             } else if name == "servo" {
                 shown.push(("servo_pulse_us".into(), pulse_us));
             }
@@ -195,5 +213,16 @@ mod tests {
             meters.set(MS, pin, level);
         }
         assert_eq!(shown(&mut meters, 2 * MS, "left_edges"), 3.0);
+    }
+
+    #[test]
+    fn a_buzzer_sounds_at_half_of_its_edges() {
+        let (mut meters, pin) = meters("horn_buzzer");
+        meters.read(0);
+        for half in 1..=40 {
+            meters.set(half * MS / 2, pin, half % 2 == 1);
+        }
+        assert_eq!(shown(&mut meters, 20 * MS, "horn_hz"), 1_000.0);
+        assert_eq!(shown(&mut meters, 40 * MS, "horn_hz"), 0.0);
     }
 }

@@ -18,6 +18,8 @@
 //! | `console` | output of the USARTs, for people |
 //! | `meters` | what instruments at the wired pins show |
 //! | `marks` | when the program reaches some of its functions |
+//! | `parts` | buttons, switches and potentiometers |
+//! | `wheels` | what the program did with each motor |
 //! | `notes` | oddities of a program, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
 //!
@@ -36,8 +38,10 @@ mod meters;
 mod module;
 mod notes;
 mod outputs;
+mod parts;
 mod servo;
 mod uart;
+mod wheels;
 
 use crate::sonar_fault::SonarFaults;
 use crate::wire_fault::WireFaults;
@@ -59,6 +63,7 @@ use rumbo_plant::noise::Noise;
 use rumbo_plant::sonar::SonarId;
 use servo::ServoInput;
 use std::sync::Arc;
+use wheels::Driven;
 
 /// The USART of the USB port.
 pub const USB: u8 = 0;
@@ -66,6 +71,8 @@ pub const USB: u8 = 0;
 pub const ON_PINS: u8 = 4;
 /// The consoles: of the USARTs, and of the module on other pins.
 pub const CONSOLES: u8 = 5;
+/// In place of a USART: what a person works at the robot, by lines `name=value`.
+pub const PARTS: u8 = 5;
 /// The boards' clock is 16 MHz.
 pub const CYCLES_PER_US: u64 = 16;
 /// Battery at which the chip's brown-out detector, set to 2.7 V by the boards' fuses, resets it: the regulator drops 1.1 V.
@@ -125,11 +132,13 @@ pub struct Mega {
     /// What the module hears on the pin of `link_tx`, where that is no USART's.
     module: uart::Receiver,
     meters: Meters,
+    /// What has been set of each part.
+    worked: Vec<f64>,
     verdict: Option<Verdict>,
     /// When the program reached the functions of interest.
     marks: Marks,
-    /// A motor was driven.
-    has_driven: bool,
+    /// How the motors were driven.
+    driven_ways: Driven,
     /// What its program did that a note tells.
     oddities: notes::Oddities,
     /// What its outputs have cost so far.
@@ -163,9 +172,10 @@ impl Mega {
             consoles: Default::default(),
             module: uart::Receiver::new(firmware.link_baud()),
             meters: Meters::at(firmware.metered()),
+            worked: Vec::new(),
             verdict: None,
             marks: Marks::default(),
-            has_driven: false,
+            driven_ways: Driven::default(),
             oddities: notes::Oddities::default(),
             toil: 0,
             stepping: false,
@@ -177,6 +187,7 @@ impl Mega {
         for pin in idle.collect::<Vec<_>>() {
             mega.chip.input(0, Input::Pin(pin, Some(true)));
         }
+        mega.set_out_parts();
         // The boot loader's wait is over before the run begins, as when the robot is switched on before the laptop.
         mega.chip.pass_boot_loader(firmware::LONGEST_BOOT);
         mega.chip.take_outputs();
@@ -262,8 +273,12 @@ impl Mega {
         self.meters.read(self.chip.cycle())
     }
 
-    /// Sends bytes to a USART from a terminal that is set to its rate, as the Serial Monitor is.
+    /// Sends bytes to a USART from a terminal that is set to its rate, as the Serial Monitor is; to [`PARTS`] what a person
+    /// does with them.
     pub fn type_in(&mut self, usart: u8, bytes: &[u8]) {
+        if usart == PARTS {
+            return self.work_parts(bytes);
+        }
         let cycle = self.chip.cycle();
         let baud = self.chip.devices().receiving_baud(usart);
         let baud = baud.map_or(UNSET_BAUD, |baud| baud.round() as u32);

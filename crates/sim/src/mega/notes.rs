@@ -152,11 +152,12 @@ impl Mega {
         if self.firmware.language() == Language::Frames || self.verdict.is_some() {
             return silence;
         }
-        if !self.has_driven {
+        if self.is_idle() {
             silence.push(format!(
                 "firmware {name}: it never drove a motor; are its pins those of wiring {wiring}? (docs/emulator.md)"
             ));
         }
+        silence.extend(self.of_wheels());
         let spoke = |usart: usize| self.consoles.get(usart).is_some_and(Console::has_spoken);
         if let Some(link) = self.firmware.link_usart().map(usize::from)
             && !spoke(link)

@@ -5,7 +5,7 @@ use super::pins::LinkOn;
 use super::{ACT, Action, CYCLES_PER_US, FIRING_CYCLES, Mega, ON_PINS, USB, module};
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Event, Output, Pwm};
-use rumbo_plant::drivetrain::{Bridge, Side};
+use rumbo_plant::drivetrain::Side;
 use rumbo_plant::sonar::SonarId;
 
 impl Mega {
@@ -99,7 +99,7 @@ impl Mega {
             let state = self.bridges[index].state();
             if state != self.driven[index] {
                 self.driven[index] = state;
-                self.has_driven |= matches!(state.0, Bridge::Forward(_) | Bridge::Backward(_));
+                self.driven_ways.set(self.chip.cycle(), index, state.0);
                 self.actions.push(Action::Bridge(side, state.0, state.1));
             }
         }

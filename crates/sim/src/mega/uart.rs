@@ -5,6 +5,9 @@ use super::CYCLES_PER_US;
 /// Bits of a frame: start, eight of data, stop.
 const FRAME: u32 = 10;
 
+/// A pulse shorter than this is none of this rate [bits].
+const SHORTEST: f64 = 0.7;
+
 /// Length of a bit [cycles].
 fn bit_cycles(baud: u32) -> f64 {
     1e6 * CYCLES_PER_US as f64 / f64::from(baud.max(1))
@@ -28,8 +31,9 @@ pub(super) fn frame(begin: u64, byte: u8, baud: u32) -> impl Iterator<Item = (u6
 pub(super) struct Receiver {
     baud: u32,
     high: bool,
-    /// A stop bit was low.
+    /// A stop bit was low, or a pulse too short to be a bit.
     misframed: bool,
+    edge: u64,
     /// Where the start bit began, what has been sampled since, and how many bits of it.
     frame: Option<(u64, u8, u32)>,
 }
@@ -41,6 +45,7 @@ impl Receiver {
             baud,
             high: true,
             misframed: false,
+            edge: 0,
             frame: None,
         }
     }
@@ -68,14 +73,20 @@ impl Receiver {
         None
     }
 
-    /// Whether a frame ended where the line was low: its sender has another rate.
+    /// Whether its sender has another rate.
     pub(super) fn misframed(&self) -> bool {
         self.misframed
     }
 
     /// The line's level from this cycle on, after [`Receiver::pass`].
     pub(super) fn set(&mut self, cycle: u64, high: bool) {
-        if self.high && !high && self.frame.is_none() {
+        if high == self.high {
+            return;
+        }
+        let short = (cycle.saturating_sub(self.edge) as f64) < SHORTEST * bit_cycles(self.baud);
+        self.misframed |= short && self.frame.is_some();
+        self.edge = cycle;
+        if !high && self.frame.is_none() {
             self.frame = Some((cycle, 0, 0));
         }
         self.high = high;

@@ -171,3 +171,33 @@ fn a_recording_without_pwm_is_skipped_with_a_note() {
     assert_eq!(alone.status.code(), Some(2));
     assert!(stderr(&alone).contains("give a log of modes 1 to 7"));
 }
+
+#[test]
+fn a_log_of_another_program_is_not_sent_to_replay_which_refuses_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("foreign.mcap");
+    let mut log = mcap::Writer::new(std::fs::File::create(&path).unwrap()).unwrap();
+    let schema = log
+        .add_schema("std_msgs/msg/Float64", "ros2msg", b"float64 data")
+        .unwrap();
+    let channel = log
+        .add_channel(schema, "/left_wheel/speed", "cdr", &Default::default())
+        .unwrap();
+    let header = mcap::records::MessageHeader {
+        channel_id: channel,
+        sequence: 0,
+        log_time: 1,
+        publish_time: 1,
+    };
+    log.write_to_known_channel(&header, &[0; 12]).unwrap();
+    log.finish().unwrap();
+    drop(log);
+    let refused = rumbo(&["import", path.to_str().unwrap()]);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = stderr(&refused);
+    assert!(
+        said.contains("of another program, with /left_wheel/speed (std_msgs/msg/Float64)")
+            && !said.contains("rumbo replay"),
+        "{said}"
+    );
+}

@@ -364,3 +364,330 @@ void loop() { if (phone.available() && phone.read() == 'F') { analogWrite(5, 150
     let told = stdout(&run) + &stderr(&run);
     assert!(told.contains("is not at 9600 baud"), "{told}");
 }
+
+#[test]
+fn a_sketch_of_one_s_own_needs_neither_mode_nor_rig_and_gets_the_metrics_of_its_way() {
+    let sketch = to_and_fro(
+        "5, 6, 7, 8",
+        "digitalWrite(7, HIGH); digitalWrite(8, HIGH); analogWrite(5, 150); analogWrite(6, 150);",
+        "",
+    );
+    let Some(bench) = kit("no_mode", LETTERS_WIRING, &sketch) else {
+        return;
+    };
+    let robot = std::fs::read_to_string(bench.join("robot.toml")).unwrap();
+    let robot = robot.replace("[rig.front_single.front]\nx_m = 0.13\n", "");
+    std::fs::write(bench.join("robot.toml"), robot).unwrap();
+    let scenario =
+        "title = \"On the floor\"\nrobot = \"robot.toml\"\nworld = \"open\"\nduration_s = 3\n";
+    std::fs::write(bench.join("floor.toml"), scenario).unwrap();
+    let run = drive(&bench, &["--json"]);
+    let result: serde_json::Value = serde_json::from_str(&stdout(&run)).unwrap();
+    assert!(
+        result["metrics"]["path_m"].as_f64().unwrap() > 0.3,
+        "{result}"
+    );
+    assert!(run.status.success());
+    let again = rumbo(&bench, &["rerun", "out/floor-1.mcap"]);
+    assert!(
+        again.status.success(),
+        "{}{}",
+        stdout(&again),
+        stderr(&again)
+    );
+    // In a room that is there already, and in an experiment for another program.
+    let own = [
+        "--robot",
+        "robot.toml",
+        "--sketch",
+        "car.ino",
+        "--no-record",
+    ];
+    let free = rumbo(&bench, &[&["run", "free"][..], &own].concat());
+    assert!(free.status.success(), "{}{}", stdout(&free), stderr(&free));
+    let judged = rumbo(&bench, &[&["run", "mode1"][..], &own].concat());
+    let told = stdout(&judged) + &stderr(&judged);
+    assert!(
+        told.contains("scenario mode1 judges mode front_distance"),
+        "{told}"
+    );
+    // Ours has nothing to do there.
+    let refused = rumbo(&bench, &["run", "floor.toml"]);
+    assert!(
+        stderr(&refused).contains("has no mode, so it is for a sketch"),
+        "{}",
+        stderr(&refused)
+    );
+}
+
+#[test]
+fn a_wheel_that_was_never_driven_is_named_with_what_was_missing() {
+    let sketch = to_and_fro(
+        "5, 7, 8, 12",
+        "digitalWrite(7, HIGH); digitalWrite(8, HIGH); analogWrite(12, 200);",
+        "",
+    );
+    let wiring = "left_enable = 5\nleft_forward = 7\nright_enable = 12\nright_forward = 8\n";
+    let Some(bench) = kit("one_wheel", wiring, &sketch) else {
+        return;
+    };
+    let told = |run: Output| stdout(&run) + &stderr(&run);
+    let said = told(drive(&bench, &[]));
+    assert!(
+        said.contains("it never drove the left motor: left_enable (pin 5) was never high"),
+        "{said}"
+    );
+    assert!(
+        said.contains("right_enable is on pin 12, which has no PWM on the Arduino Uno"),
+        "{said}"
+    );
+    assert!(!said.contains("never drove a motor"), "{said}");
+    // One motor's wires exchanged.
+    let sketch = to_and_fro(
+        "5, 6, 7, 8",
+        "digitalWrite(7, HIGH); digitalWrite(8, HIGH); analogWrite(5, 150); analogWrite(6, 150);",
+        "",
+    );
+    let wiring = LETTERS_WIRING.replace("right_forward", "right_backward");
+    let Some(bench) = kit("exchanged", &wiring, &sketch) else {
+        return;
+    };
+    let said = told(drive(&bench, &[]));
+    assert!(
+        said.contains("drove the wheels against each other all the time"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_new_robot_is_checked_told_what_it_looks_like_and_drives() {
+    let Some(bench) = bench("new_robot") else {
+        return;
+    };
+    let new = |name: &str, more: &[&str]| rumbo(&bench, &[&["new", "robot", name], more].concat());
+    let pins = "--pins=left_enable=5,left_forward=7,left_backward=8,right_enable=6,right_forward=11,right_backward=10,\
+                servo=3,front_trigger=A5,front_echo=A4";
+    let made = new("my_car", &["--board", "uno", "--driver", "l298n", pins]);
+    assert!(made.status.success(), "{}", stderr(&made));
+    let said = stdout(&made);
+    assert!(
+        said.contains("those of the robot kit_elegoo_v3: 8 of 9; right_backward is 9 there"),
+        "{said}"
+    );
+    let sketch = to_and_fro(
+        "5, 6, 7, 11",
+        "digitalWrite(7, HIGH); digitalWrite(11, HIGH); analogWrite(5, 150); analogWrite(6, 150);",
+        "",
+    );
+    std::fs::write(bench.join("car.ino"), sketch).unwrap();
+    let run = rumbo(
+        &bench,
+        &[
+            "run",
+            "free",
+            "--robot",
+            "my_car.toml",
+            "--sketch",
+            "car.ino",
+            "--json",
+            "--no-record",
+        ],
+    );
+    let result: serde_json::Value = serde_json::from_str(&stdout(&run)).unwrap();
+    assert!(
+        result["metrics"]["path_m"].as_f64().unwrap() > 0.3,
+        "{result}{}",
+        stderr(&run)
+    );
+    // A file that is there is kept.
+    let again = new("my_car", &["--like", "kit_elegoo_v3"]);
+    assert!(
+        stderr(&again).contains("my_car.toml: is there already"),
+        "{}",
+        stderr(&again)
+    );
+    assert!(new("elegoo", &["--like", "kit_elegoo_v3"]).status.success());
+    let listed = stdout(&rumbo(&bench, &["list", "robots", "kit_elegoo_v3"]));
+    assert_eq!(
+        listed,
+        std::fs::read_to_string(bench.join("elegoo.toml")).unwrap()
+    );
+}
+
+#[test]
+fn a_new_robot_names_what_is_missing_and_what_its_pins_cannot_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path().to_path_buf();
+    let new = |more: &[&str]| rumbo(&folder, &[&["new", "robot", "car"], more].concat());
+    let bare = new(&["--driver", "l298n-jumpers"]);
+    assert_eq!(bare.status.code(), Some(2));
+    assert!(
+        stderr(&bare).contains("missing: --board, --pins; a robot with a l298n-jumpers needs the pins left_forward, left_backward"),
+        "{}",
+        stderr(&bare)
+    );
+    let with = |pins: &str| new(&["--board", "uno", "--driver", "l298n", "--pins", pins]);
+    let twice = with("left_enable=5,left_forward=7,servo=7");
+    assert!(
+        stderr(&twice).contains("left_forward is on that pin already"),
+        "{}",
+        stderr(&twice)
+    );
+    let analogue = new(&[
+        "--board",
+        "nano",
+        "--driver",
+        "dir-pwm",
+        "--pins",
+        "left_enable=5,left_forward=A7",
+    ]);
+    assert!(
+        stderr(&analogue).contains("is an analogue input only on the Arduino Nano"),
+        "{}",
+        stderr(&analogue)
+    );
+    let unable = with(
+        "left_enable=4,left_forward=7,right_enable=9,right_forward=8,servo=11,left_encoder=12",
+    );
+    assert!(unable.status.success(), "{}", stderr(&unable));
+    let notes = stderr(&unable);
+    for note in [
+        "left_enable = 4: no PWM on that pin",
+        "right_enable = 9: no PWM there while the Servo library",
+        "left_encoder = 12: attachInterrupt() has none on that pin, only on 2, 3",
+    ] {
+        assert!(notes.contains(note), "{notes}");
+    }
+}
+
+#[test]
+fn a_sonar_with_one_line_for_trigger_and_echo_measures() {
+    let sketch = "
+void setup() { Serial.begin(115200); }
+void loop() {
+  pinMode(10, OUTPUT); digitalWrite(10, LOW); delayMicroseconds(2);
+  digitalWrite(10, HIGH); delayMicroseconds(10); digitalWrite(10, LOW);
+  pinMode(10, INPUT);
+  Serial.println(pulseIn(10, HIGH, 30000) / 58);
+  delay(100);
+}";
+    let Some(bench) = bench("one_line") else {
+        return;
+    };
+    std::fs::write(bench.join("car.ino"), sketch).unwrap();
+    let run = [
+        "run", "mode1", "--robot", "kit_mbot", "--sketch", "car.ino", "--out", "out",
+    ];
+    rumbo(&bench, &run);
+    let said = std::fs::read_to_string(bench.join("out/mode1-1-usart0.txt")).unwrap();
+    let read: Vec<i64> = said
+        .lines()
+        .filter_map(|line| line.trim().parse().ok())
+        .collect();
+    let mut sorted = read.clone();
+    sorted.sort_unstable();
+    // 1.20 m from the axis to the wall, 11 cm of it before the sonar.
+    assert!(
+        sorted.len() > 20 && (104..114).contains(&sorted[sorted.len() / 2]),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_button_starts_the_robot_a_knob_sets_its_speed_and_a_buzzer_sounds() {
+    let sketch = "
+void setup() {
+  pinMode(8, INPUT_PULLUP); pinMode(4, INPUT);
+  for (int pin = 5; pin <= 7; pin++) pinMode(pin, OUTPUT);
+  while (digitalRead(8) == HIGH) {}
+  tone(11, 440);
+  digitalWrite(7, HIGH);
+}
+void loop() {
+  int speed = analogRead(A0) / 4;
+  analogWrite(5, digitalRead(4) ? speed : 0);
+  digitalWrite(12, digitalRead(4));
+}";
+    let parts = "left_enable = 5\nleft_forward = 7\nparts.start = { button = 8 }\nparts.speed = { potentiometer = \"A0\" }\n\
+                 parts.go = { switch = 4, to = \"5v\" }\nparts.horn = { buzzer = 11 }\nparts.lamp = { led = 12 }\n";
+    let Some(bench) = kit("parts", parts, sketch) else {
+        return;
+    };
+    let speed = |presses: &[&str]| {
+        let presses: Vec<&str> = presses
+            .iter()
+            .flat_map(|press| ["--press", press])
+            .collect();
+        let run = drive(&bench, &presses);
+        assert!(run.status.success(), "{}", stderr(&run));
+        last(&bench, "left_rad_s")
+    };
+    assert_eq!(speed(&[]), 0.0, "it waits for its button");
+    assert_eq!(speed(&["start@0.5"]), 0.0, "and for its switch");
+    let half = speed(&["start@0.5", "go=1@0.6"]);
+    let full = speed(&["start@0.5", "go=1@0.6", "speed=1@0.7"]);
+    assert!(half > 2.0 && full > 1.2 * half, "{half} {full}");
+    assert!(
+        rumbo(&bench, &["rerun", "out/floor-1.mcap"])
+            .status
+            .success()
+    );
+    let export = rumbo(&bench, &["export", "out/floor-1.mcap", "--format", "csv"]);
+    assert!(export.status.success(), "{}", stderr(&export));
+    let csv = std::fs::read_to_string(bench.join("floor-1.instruments.csv")).unwrap();
+    let header: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
+    let row: Vec<&str> = csv.lines().last().unwrap().split(',').collect();
+    let value = |name: &str| -> f64 {
+        let at = header.iter().position(|each| *each == name);
+        row[at.unwrap_or_else(|| panic!("{header:?}"))]
+            .parse()
+            .unwrap()
+    };
+    assert!(
+        (value("horn_hz") - 440.0).abs() < 20.0,
+        "{}",
+        value("horn_hz")
+    );
+    assert_eq!(value("pin_lamp_led"), 1.0);
+    // The same in the scenario.
+    let scenario = std::fs::read_to_string(bench.join("floor.toml")).unwrap();
+    let pressed = "[[command]]\nat_s = 0.5\npress = \"start\"\n[[command]]\nat_s = 0.6\npress = \"go\"\nto = 1\n";
+    std::fs::write(bench.join("floor.toml"), format!("{scenario}{pressed}")).unwrap();
+    assert_eq!(speed(&[]), half);
+    let unknown = stderr(&drive(&bench, &["--press", "begin@1"]));
+    assert!(
+        unknown.contains("`begin` is to be pressed") && unknown.contains("there are"),
+        "{unknown}"
+    );
+}
+
+#[test]
+fn a_part_on_a_taken_pin_or_one_that_cannot_measure_is_named() {
+    let refused = |name: &str, parts: &str| {
+        let wiring = format!("left_enable = 5\nleft_forward = 7\n{parts}\n");
+        kit(name, &wiring, "void setup() {}\nvoid loop() {}\n")
+            .map(|bench| stderr(&drive(&bench, &[])))
+    };
+    for (name, parts, why) in [
+        (
+            "taken",
+            "parts.start = { button = 7 }",
+            "left_forward is on that pin already",
+        ),
+        (
+            "digital",
+            "parts.speed = { potentiometer = 8 }",
+            "must be an analogue input of the Arduino Uno",
+        ),
+        (
+            "nothing",
+            "parts.start = { pin = 8 }",
+            "needs one of button, switch, potentiometer, led, buzzer",
+        ),
+    ] {
+        let Some(said) = refused(name, parts) else {
+            return;
+        };
+        assert!(said.contains(why), "{said}");
+    }
+}

@@ -196,9 +196,18 @@ fn a_program_that_is_not_for_this_robot_gets_a_list_of_what_it_never_did() {
     };
     setup.scenario.duration_s = 1.0;
     let notes = run(&setup, 1).unwrap().notes;
-    let [motors, link] = &notes[..] else {
+    let [motors, left, right, link] = &notes[..] else {
         panic!("{notes:?}");
     };
     assert!(motors.contains("never drove a motor") && motors.contains("wiring final"));
+    for (note, signal) in [
+        (left, "left_enable (pin 6)"),
+        (right, "right_enable (pin 5)"),
+    ] {
+        assert!(
+            note.contains(&format!("motor: {signal} was never high")),
+            "{note}"
+        );
+    }
     assert!(link.contains("Serial2 in wiring final, on no other either"));
 }

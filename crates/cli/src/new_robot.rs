@@ -1,0 +1,186 @@
+//! `rumbo new robot`: a robot file from a board, a driver and pins, asked for at a terminal.
+
+use crate::args::{NewArgs, driver_named, driver_names};
+use crate::failure::Failure;
+use crate::output;
+use crate::place;
+use rumbo_experiment::files::new_robot::{JUMPERS, NewRobot, looks_like, needed, remarks};
+use rumbo_experiment::files::{Kind, Library};
+use rumbo_sim::boards::{BOARDS, Board};
+use rumbo_sim::drivers::DRIVERS;
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+
+/// Signals that are asked for after those of the motors.
+const MORE: [&str; 12] = [
+    "standby",
+    "left_encoder",
+    "left_encoder_b",
+    "right_encoder",
+    "right_encoder_b",
+    "servo",
+    "front_trigger",
+    "front_echo",
+    "link_rx",
+    "link_tx",
+    "debug_rx",
+    "debug_tx",
+];
+
+/// Writes the file, and says what it looks like and what to do next.
+pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
+    let path = match args.folder.extension() {
+        Some(_) => args.folder.clone(),
+        None => args.folder.with_extension("toml"),
+    };
+    let stem = path
+        .file_stem()
+        .map(|stem| stem.to_string_lossy().into_owned());
+    let name = stem.filter(|name| !name.is_empty()).ok_or_else(|| {
+        Failure::Input(format!(
+            "{}: give the robot's name, e.g. my_car",
+            args.folder.display()
+        ))
+    })?;
+    let library = Library::new();
+    let text = match &args.like {
+        Some(like) => library.text(Kind::Robot, like)?,
+        None => {
+            let (text, robot) = made_of(args, name)?.checked()?;
+            let Some(wiring) = robot.wirings.values().next() else {
+                return Err(Failure::input("a robot needs pins"));
+            };
+            for remark in remarks(wiring) {
+                output::note(&remark);
+            }
+            match looks_like(&library, wiring)? {
+                Some(alike) => {
+                    let others = alike
+                        .others
+                        .iter()
+                        .map(|(signal, pin)| format!("{signal} is {pin} there"));
+                    let others: Vec<String> = others.collect();
+                    let others = if others.is_empty() {
+                        String::new()
+                    } else {
+                        format!("; {}", others.join(", "))
+                    };
+                    output::line(&format!(
+                        "its pins are those of the robot {}: {} of {}{others}",
+                        alike.robot, alike.same, alike.of
+                    ))?;
+                }
+                None => output::line("its pins are those of no robot that is known")?,
+            }
+            text
+        }
+    };
+    write(&path, &text)?;
+    let shown = output::shown(&path);
+    output::line(&format!(
+        "{shown}: measure and change it, then `rumbo run free --robot {shown} --sketch FOLDER`"
+    ))
+}
+
+/// An existing file may be somebody's work.
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    if let Some(parent) = path.parent() {
+        place::folder(parent)?;
+    }
+    let file = std::fs::File::create_new(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::AlreadyExists => Failure::Input(format!(
+            "{}: is there already; choose another name",
+            path.display()
+        )),
+        _ => place::unwritable(path, &error),
+    });
+    file?
+        .write_all(text.as_bytes())
+        .map_err(|error| place::unwritable(path, &error))
+}
+
+/// What the robot is made of: by the options, else asked for.
+fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
+    let asks = std::io::stdin().is_terminal() && std::io::stdout().is_terminal();
+    let missing = [
+        args.board.is_none().then_some("--board"),
+        args.driver.is_none().then_some("--driver"),
+        args.pins.is_empty().then_some("--pins"),
+    ];
+    let missing: Vec<&str> = missing.into_iter().flatten().collect();
+    if !missing.is_empty() && !asks {
+        let (driver, jumpers) = args.driver.unwrap_or((DRIVERS[0], false));
+        return Err(Failure::Input(format!(
+            "missing: {}; a robot with a {}{} needs the pins {}, as in --pins left_forward=7,... (boards: {}; drivers: {}), or \
+             give --like with one of {}",
+            missing.join(", "),
+            driver.name,
+            if jumpers { JUMPERS } else { "" },
+            needed(driver, jumpers).join(", "),
+            BOARDS.map(|board| board.name).join(", "),
+            driver_names(),
+            Library::new().list(Kind::Robot).join(", ")
+        )));
+    }
+    let board = match args.board {
+        Some(board) => board,
+        None => ask_until("board (mega, uno, nano)", |text| {
+            Board::named(text).ok_or_else(|| "no such board".into())
+        })?,
+    };
+    let (driver, jumpers) = match args.driver {
+        Some(driver) => driver,
+        None => ask_until(&format!("driver ({})", driver_names()), driver_named)?,
+    };
+    let mut pins = args.pins.clone();
+    if pins.is_empty() {
+        output::line("pins, by number or as A0; nothing where there is none")?;
+        let motors = needed(driver, jumpers);
+        for signal in motors.iter().map(String::as_str).chain(MORE) {
+            if signal == "standby" && !driver.has_standby {
+                continue;
+            }
+            let pin = ask_until(signal, |text| {
+                match text.is_empty() || board.numbered(text).is_some() {
+                    true => Ok(text.to_owned()),
+                    false => Err(format!("no pin of the {}", board.title)),
+                }
+            })?;
+            if !pin.is_empty() {
+                pins.push((signal.to_owned(), pin));
+            }
+        }
+    }
+    Ok(NewRobot {
+        name,
+        board,
+        driver,
+        jumpers,
+        pins,
+    })
+}
+
+/// Asks until the answer is one.
+fn ask_until<T>(question: &str, read: impl Fn(&str) -> Result<T, String>) -> Result<T, Failure> {
+    loop {
+        print!("{question}: ");
+        let mut line = String::new();
+        std::io::stdout().flush().map_err(Failure::input)?;
+        let read_bytes = std::io::stdin()
+            .read_line(&mut line)
+            .map_err(Failure::input)?;
+        if read_bytes == 0 {
+            return Err(Failure::input("the answers ended early"));
+        }
+        match read(line.trim()) {
+            Ok(answer) => return Ok(answer),
+            Err(why) => output::note(&why),
+        }
+    }
+}
+
+/// Prints a built-in file.
+pub(crate) fn print(kind: Kind, name: &str) -> Result<(), Failure> {
+    let text = Library::new().text(kind, name)?;
+    output::lines(text.trim_end())
+}
