@@ -15,7 +15,7 @@ export class StateBand {
   #store;
   #view;
   plot;
-  body = create('div', { className: 'plot-body' });
+  body = create('div', { className: 'plot-body', id: 'band' });
 
   /** @param {import('./store.js').Store} store @param {import('./plots.js').Plots} view */
   constructor(store, view) {

@@ -11,11 +11,13 @@ import { Consoles } from './consoles.js';
 import { create, element, onFrame, setText } from './dom.js';
 import { makeEnlargeable } from './enlarge.js';
 import { EventList } from './events.js';
+import { ExperimentPanel } from './experiment.js';
 import { IDENTITY } from './geometry.js';
 import { Header } from './header.js';
 import { makeHelp } from './help.js';
 import { OWN_PROGRAM } from './layout.js';
 import { LayoutDialog } from './layout_dialog.js';
+import { Lessons } from './lessons.js';
 import { Link } from './link.js';
 import { LinkMeter } from './linkmeter.js';
 import { Machine } from './machine.js';
@@ -34,7 +36,7 @@ import { ReplayBar } from './replay.js';
 import { ReportDialog } from './report_dialog.js';
 import { RobotPort } from './robot_port.js';
 import { listen, offerRobots, openScenario } from './robots.js';
-import { Seat } from './seat.js';
+import { Seat, isOthers } from './seat.js';
 import { Share } from './share.js';
 import { isEmbedded, linkPages } from './site.js';
 import { StateLine, pointerWords } from './stateline.js';
@@ -94,6 +96,7 @@ let unsent_ms = -UNSENT_MS;
 
 /** @param {import('./types.js').Order} order */
 function send(order) {
+  if (isOthers(order)) return header.setScene(follows ? null : simulated);
   if (link.send(order)) return;
   if (order.type !== 'stop' && performance.now() - unsent_ms < UNSENT_MS) return;
   unsent_ms = performance.now();
@@ -149,6 +152,8 @@ listen(askLab, () => simulated?.choice ?? null);
 let consoleRun = null;
 const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);
 const panel = new CommandPanel(send, map);
+const experiment = new ExperimentPanel(send);
+const lessons = new Lessons(send);
 const editor = new WorldEditor(send, map);
 const machine = new Machine(store);
 const meter = new LinkMeter();
@@ -156,7 +161,7 @@ const tabs = new Tabs('tabs', (panel) => meter.show(panel === 'bytes'));
 const profile = new ProfilePanel(send, () => tabs.show('event-panel'));
 tabs.show('event-panel');
 const stateLine = new StateLine(store, send);
-const stepFigures = new StepFigures(store);
+const stepFigures = new StepFigures(store, (figures) => lessons.fill(figures));
 const alarm = new Alarm();
 const pointer = element('pointer', HTMLOutputElement);
 element('ghost-here', HTMLButtonElement).addEventListener('click', () => send({ type: 'restart_ghost' }));
@@ -214,6 +219,14 @@ addEventListener('keydown', (event) => {
   if (event.key === '.') replay.step(1);
 });
 
+// On a telephone one part at a time.
+const views = element('views', HTMLElement);
+views.addEventListener('click', ({ target }) => {
+  if (!(target instanceof HTMLButtonElement)) return;
+  document.querySelector('main')?.setAttribute('data-view', target.value);
+  for (const each of views.querySelectorAll('button')) each.setAttribute('aria-pressed', String(each === target));
+});
+
 const top = element('top', HTMLElement);
 // Dialogs open below it, however many lines it takes.
 new ResizeObserver(() => document.documentElement.style.setProperty('--header', `${top.offsetHeight}px`)).observe(top);
@@ -242,6 +255,7 @@ function receive(message) {
       break;
     case 'scene':
       store.setRun(message.run);
+      lessons.setRun(message.run);
       store.start = message.scene?.start ?? IDENTITY;
       if (message.run !== consoleRun) consoles.clear();
       simulated = message.scene?.of_ghost ? null : message.scene;
@@ -252,6 +266,7 @@ function receive(message) {
       editor.setScene(simulated);
       tune.setScene(simulated);
       panel.setScene(message.scene);
+      experiment.setScene(simulated);
       stateLine.setScene(simulated);
       setBody();
       document.body.classList.toggle('simulated', simulated !== null);
@@ -265,6 +280,9 @@ function receive(message) {
       header.show(state);
       replay.show(state);
       if (state.replay) editor.close();
+      store.limits = state.experiment?.limits ?? null;
+      store.experiment_end_s = state.experiment?.duration_s ?? Infinity;
+      experiment.show(state);
       panel.show(state);
       stateLine.show(state);
       alarm.show(state);
@@ -293,6 +311,7 @@ function receive(message) {
       parameters.show(message.parameters);
       calibration.setParameters(message.parameters);
       tune.setParameters(message.parameters);
+      lessons.setParameters(message.parameters);
       table = message.parameters;
       setBody();
       break;

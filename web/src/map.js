@@ -39,6 +39,8 @@ const [ABOVE_PX, BELOW_PX] = [34, 18];
 const ALONG_M = 0.5;
 /** The view grows in steps of this size [m], so that it does not creep. */
 const GROWTH_M = 0.5;
+/** The robot is at least so large: else the view follows it. Where places are picked, what is around it counts more [px]. */
+const [LARGE_PX, PICKING_PX] = [40, 18];
 const ZOOM_STEP = 1.25;
 const KEY_PAN_PX = 40;
 /** A press that moves no further than this is a click [px]. */
@@ -47,6 +49,9 @@ const CLICK_PX = 4;
 const REACH_PX = { mouse: 8, touch: 18 };
 /** The goal in the robot's frame is drawn separately from this distance on [px]. */
 const APART_PX = 3;
+
+/** The frame of the world, as far as is seen. @param {Pose} frame */
+const isIdentity = ({ x_m, y_m, heading_rad }) => Math.hypot(x_m, y_m) < 0.01 && Math.abs(heading_rad) < 0.01;
 
 export class WorldMap {
   #canvas;
@@ -67,6 +72,9 @@ export class WorldMap {
   #planning = false;
   /** Where the pointer is [px]. @type {Point | null} */
   #pointer = null;
+  /** The view follows the robot; null: where it would be too small otherwise. @type {boolean | null} */
+  #follow = null;
+  #followButton = element('follow', HTMLButtonElement);
   servo_rad = 0;
   /** The place of the route that the robot goes to now, from its origin. @type {Point | null} */
   target = null;
@@ -92,7 +100,7 @@ export class WorldMap {
   /** @param {Scene | null} scene */
   setScene(scene) {
     this.#sketch.scene = scene;
-    this.fit();
+    this.fit(null);
   }
 
   /** The body by the robot's parameters. @param {import('./mounts.js').Body | null} body */
@@ -130,8 +138,9 @@ export class WorldMap {
     this.fit();
   }
 
-  /** Shows everything. */
-  fit() {
+  /** Shows everything, or follows the robot; null: what makes it large enough. @param {boolean | null} [follow] */
+  fit(follow = false) {
+    this.#follow = follow;
     this.#view = null;
     // What a tool changes does not move the view.
     if (this.#tool) this.#view = this.#fitted();
@@ -160,10 +169,11 @@ export class WorldMap {
     ];
   }
 
-  /** The place under the pointer, or that Enter picks, from the robot's origin. @returns {Point | null} */
+  /** The place under the pointer, or that Enter picks, in the world and, where it would be picked, from the robot's origin. @returns {{world: Point, own: Point | null} | null} */
   pointed() {
     const at = this.#pointer ?? (this.#pick && this.#canvas.matches(':focus-visible') ? this.#middle() : null);
-    return at && this.#fromOrigin(this.#toWorld(at));
+    const world = at && this.#toWorld(at);
+    return world && { world, own: this.#pick && !this.#tool && !isIdentity(this.#pickFrame()) ? this.#fromOrigin(world) : null };
   }
 
   /** A place from the robot's origin, on the canvas [px]; for tests. @param {Point} at @returns {Point} */
@@ -182,6 +192,7 @@ export class WorldMap {
       canvas.height = height;
     }
     const view = this.#view ?? this.#fitted();
+    this.#followButton.setAttribute('aria-pressed', String(this.#view === null && this.#follows(this.#whole())));
     const scale = view.px_per_m * ratio;
     sketch.context.setTransform(1, 0, 0, 1, 0, 0);
     sketch.context.clearRect(0, 0, width, height);
@@ -195,6 +206,8 @@ export class WorldMap {
     sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
     sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
     sketch.drawTrail(this.#store.trails.ghost, colours.goal, px);
+    // Goals and routes count from the robot's origin.
+    if (this.#pick && !isIdentity(this.#origin())) sketch.drawAxes(this.#origin(), px);
     this.#drawTask(px);
     const latest = this.#store.latest;
     if (!latest) return;
@@ -288,8 +301,27 @@ export class WorldMap {
     ];
   }
 
-  /** What is around the robot in sight, with room to pick places where that is what a click does. @returns {View} */
+  /** Scale at which the robot has its least size [px/m]. */
+  get #least() {
+    const xs = this.#sketch.scene?.footprint_m.map(([x]) => x) ?? [0, 0.25];
+    return (this.#pick ? PICKING_PX : LARGE_PX) / (Math.max(...xs) - Math.min(...xs));
+  }
+
+  /** @param {View} whole */
+  #follows(whole) {
+    return !this.#tool && (this.#follow ?? whole.px_per_m < this.#least);
+  }
+
+  /** Everything, or what is around the robot. @returns {View} */
   #fitted() {
+    const whole = this.#whole();
+    if (!this.#follows(whole)) return whole;
+    const { x_m, y_m } = this.#robot();
+    return { x_m, y_m, px_per_m: Math.max(whole.px_per_m, this.#least) };
+  }
+
+  /** What is around the robot in sight, with room to pick places where that is what a click does. @returns {View} */
+  #whole() {
     const frame = this.#origin();
     const start = this.#start();
     const robot = this.#robot();
@@ -369,6 +401,7 @@ export class WorldMap {
       act();
     });
     for (const type of ['focus', 'blur']) canvas.addEventListener(type, () => this.#redraw());
+    this.#followButton.addEventListener('click', () => this.fit(this.#followButton.getAttribute('aria-pressed') !== 'true'));
     element('zoom-in', HTMLButtonElement).addEventListener('click', () => this.#zoom(ZOOM_STEP));
     element('zoom-out', HTMLButtonElement).addEventListener('click', () => this.#zoom(1 / ZOOM_STEP));
     // One finger drags as a mouse does.

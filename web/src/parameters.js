@@ -20,7 +20,7 @@ class Line {
     this.input.title = said(parameter.description);
     this.about = create('span', { id: `about-${parameter.name}`, textContent: said(parameter.description) });
     this.note = create('span', { className: 'refused', id: `note-${parameter.name}` });
-    this.input.setAttribute('aria-describedby', `${this.about.id} ${this.note.id}`);
+    this.input.setAttribute('aria-describedby', `${this.about.id} why-${parameter.name}`);
     this.input.setAttribute('aria-label', t('{} in {}', parameter.name, parameter.unit || t('no unit')));
     this.apply = create('button', { type: 'button', textContent: t('Apply'), title: t('Write to the robot (Enter)') });
     this.revert = create('button', { type: 'button', textContent: '↺', title: t('Back to what the robot holds (Escape)') });
@@ -33,6 +33,7 @@ class Line {
       create('td', { className: 'number', textContent: valueWords(parameter, parameter.default) }),
       create('td', { className: 'acts' }, this.apply, this.revert, this.note),
     );
+    this.why = create('tr', { className: 'why' }, create('td', { colSpan: 6, id: `why-${parameter.name}` }));
     const write = () => {
       const value = this.field.read();
       if (Number.isNaN(value)) return;
@@ -74,7 +75,9 @@ class Line {
     this.apply.hidden = this.revert.hidden = this.field.held() === held && !refused;
     const look = parameter.pending ? 'pending' : refused ? 'bad' : this.edited ? 'edited' : '';
     for (const each of ['pending', 'bad', 'edited']) this.row.classList.toggle(each, each === look);
-    setText(this.note, parameter.pending ? t('waiting…') : refused ? t('refused: {}', said(refused)) : parameter.value === null ? t('not read yet') : '');
+    this.why.hidden = !refused || this.row.hidden;
+    setText(/** @type {Element} */ (this.why.firstElementChild), refused ? t('refused: {}', said(refused)) : '');
+    setText(this.note, parameter.pending ? t('waiting…') : refused ? '✗' : parameter.value === null ? t('not read yet') : '');
   }
 }
 
@@ -174,6 +177,7 @@ function rows(title, lines, hidden = false) {
   if (lines.length === 0) return [];
   const made = [create('tr', { className: 'group' }, create('th', { colSpan: 6, textContent: title })), ...lines.map(({ row }) => row)];
   for (const row of made) row.hidden = hidden;
+  for (const { row, why } of lines) made.splice(made.indexOf(row) + 1, 0, why);
   return made;
 }
 

@@ -2,6 +2,7 @@
 /** One plot: its curves, the numbers beside their names, its axis, and the pointer's actions. */
 import uPlot from '../vendor/uplot/uPlot.js';
 import { create, setText } from './dom.js';
+import { drawExperiment } from './experiment.js';
 import { curvesOf, linesOf } from './curves.js';
 import { UNITS } from './signals.js';
 import { t } from './text.js';
@@ -20,8 +21,6 @@ export const FONT = '11px system-ui, sans-serif';
 const EDGE_PX = 22;
 /** More changes of state than this hide the curves; the band shows them still. */
 const MOST_TRANSITIONS = 60;
-/** How far back the number beside a curve's name may be [lines]. */
-const LINES_BACK = 60;
 /** A drag that goes further than this along both axes is a box [px]. */
 const BOX_PX = 25;
 
@@ -128,22 +127,20 @@ export class PlotPanel {
     this.label();
   }
 
-  /** The numbers beside the names: at the cursor, or the newest; and how far from those at the mark. */
+  /** The numbers beside the names: at the pointer, else at the playhead or the newest; and how far from those at the mark. */
   label() {
-    const cursor = this.plot.cursor.idx;
     const data = this.plot.data;
-    const at = cursor ?? shownUntil(data[0] ?? [], this.#store.playhead_s);
     const { mark_s } = this.#view;
+    const at_s = this.#view.pointed_s ?? this.#store.playhead_s;
     this.#chips.forEach(({ chip, value, name, unit }, index) => {
       const { decimals } = UNITS[unit];
       const column = /** @type {(number | null | undefined)[]} */ (data[index + 1] ?? []);
       const unused = !plottedIn(column) && !plottedIn(column, data[0], this.#view.range_s);
       if (chip.hidden !== unused) chip.hidden = unused;
-      // Between two lines of its own table a curve continues.
-      let line = at;
-      while (line > 0 && at - line < LINES_BACK && column[line] === undefined) line -= 1;
-      const now = column[line] ?? column[line - 1] ?? column[line - 2];
-      const then = mark_s === null ? null : this.#store.tableOf(name).at(name, mark_s);
+      // What is drawn may be thinned.
+      const table = this.#store.tableOf(name);
+      const now = table.at(name, at_s);
+      const then = mark_s === null ? null : table.at(name, mark_s);
       const difference = typeof now === 'number' && typeof then === 'number' ? ` Δ ${format(now - then, decimals)}` : '';
       setText(value, `${format(now, decimals)}${difference}`);
     });
@@ -176,7 +173,10 @@ export class PlotPanel {
       hooks: {
         setSelect: [(/** @type {uPlot} */ each) => this.#zoom(each)],
         setCursor: [() => this.#view.label()],
-        drawAxes: [(/** @type {uPlot} */ each) => drawTransitions(each, this.#store, this.#view.range_s)],
+        drawAxes: [(/** @type {uPlot} */ each) => {
+          if (this.#store.limits) drawExperiment(each, this.unit, this.#store, this.#view.range_s);
+          drawTransitions(each, this.#store, this.#view.range_s);
+        }],
         draw: [(/** @type {uPlot} */ each) => {
           drawLine(each, this.#view.mark_s, colours.goal);
           drawLine(each, this.#store.playhead_s, colours.text);
@@ -268,17 +268,6 @@ function drawNothing({ ctx, bbox }) {
   ctx.textBaseline = 'middle';
   ctx.fillText(t('nothing to plot here'), bbox.left + bbox.width / 2, bbox.top + bbox.height / 2);
   ctx.restore();
-}
-
-/** Index of the last line up to the playhead. @param {ArrayLike<number>} times @param {number} playhead_s */
-function shownUntil(times, playhead_s) {
-  let [low, high] = [0, times.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if ((times[middle] ?? Infinity) <= playhead_s) low = middle + 1;
-    else high = middle;
-  }
-  return low - 1;
 }
 
 /** An upright line: the mark, from which differences are counted, or a replay's playhead. @param {uPlot} plot @param {number | null} at_s @param {string} colour */

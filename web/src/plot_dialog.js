@@ -90,7 +90,9 @@ export class PlotDialog {
     this.#boxes = [];
     const groups = units.map((unit) => signals.filter((each) => each.unit === unit).map(({ name, about }) => {
       const box = create('input', { type: 'checkbox', value: name });
-      const label = create('label', {}, box, ` ${about}`);
+      const { store } = this.#plots;
+      const known = store.tableOf(name).columns.get(name)?.some((value) => typeof value === 'number') ?? false;
+      const label = create('label', { className: known ? '' : 'absent', title: known ? '' : t('nothing to plot here') }, box, ` ${about}`);
       this.#boxes.push({ box, label });
       return label;
     }));

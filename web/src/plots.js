@@ -18,6 +18,8 @@ import { format } from './units.js';
 
 /** In place of a window of time: all of a log. */
 const WHOLE = 'whole';
+/** A plot is at least so high: more of them scroll [px]. */
+const LEAST_PX = 110;
 /** Part of the window that an arrow key moves by. */
 const KEY_PAN = 0.1;
 
@@ -167,9 +169,14 @@ export class Plots {
     this.#showTime();
   }
 
-  #showTime() {
+  /** The time at the pointer [s]. */
+  get pointed_s() {
     const { left } = this.#band.plot.cursor;
-    const at_s = left !== undefined && left >= 0 ? this.#band.plot.posToVal(left, 'x') : null;
+    return left !== undefined && left >= 0 ? this.#band.plot.posToVal(left, 'x') : null;
+  }
+
+  #showTime() {
+    const at_s = this.pointed_s;
     const difference = this.mark_s === null ? '' : `Δ ${format((at_s ?? this.range_s[1]) - this.mark_s, 2)} s`;
     setText(this.#time, [at_s === null ? '' : `${format(at_s, 2)} s`, difference, at_s === null ? '' : this.#band.nameAt(at_s)].filter(Boolean).join('  '));
   }
@@ -266,8 +273,8 @@ export class Plots {
     const heads_px = this.#panels.map(({ head }) => head.offsetHeight);
     // A title that has taken another line keeps it: the plots do not jump with the length of a number.
     this.#panels.forEach(({ head }, index) => { head.style.minHeight = `${heads_px[index]}px`; });
-    const free_px = this.#root.clientHeight - BAND_PX - heads_px.reduce((sum, px) => sum + px, 0);
-    for (const { plot, spec } of this.#panels) plot.setSize({ width, height: Math.max(50, Math.floor((free_px * spec.weight) / weights)) });
+    const free_px = this.#root.clientHeight - BAND_PX - heads_px.reduce((sum, px) => sum + px, LEAST_PX * heads_px.length);
+    for (const { plot, spec } of this.#panels) plot.setSize({ width, height: LEAST_PX + Math.max(0, Math.floor((free_px * spec.weight) / weights)) });
     this.#band.plot.setSize({ width, height: BAND_PX });
   }
 

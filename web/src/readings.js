@@ -6,7 +6,7 @@
  *
  * A printed signal is named `serial0:speed`, so that two ports may print the same name.
  */
-import { compose, inverse, near } from './geometry.js';
+import { near } from './geometry.js';
 import { Table } from './table.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
 
@@ -98,10 +98,9 @@ export class Readings {
   /**
    * Takes readings; returns what is true at the end of them, if they tell.
    * @param {ReadingGroup} group
-   * @param {Pose} origin Where the run began, in the world: positions are plotted from there.
    * @returns {Truth[]} One for each reading of ground truth.
    */
-  push({ source, names, rows }, origin) {
+  push({ source, names, rows }) {
     if (typeof source === 'object') {
       const { usart } = source;
       const table = this.#printed.get(usart) ?? new Table([], this.#kept_s);
@@ -133,9 +132,8 @@ export class Readings {
       const [x_m, y_m, heading_rad] = ['true_x_m', 'true_y_m', 'true_heading_rad'].map((name) => number(cell(name)));
       if (typeof x_m !== 'number' || typeof y_m !== 'number' || typeof heading_rad !== 'number') return [];
       const pose = { x_m, y_m, heading_rad };
-      const from = compose(inverse(origin), pose);
-      this.#heading_deg = near(from.heading_rad * DEG_PER_RAD, this.#heading_deg);
-      this.truth.push(t_s, { ...values, true_x_m: from.x_m, true_y_m: from.y_m, true_heading_deg: this.#heading_deg });
+      this.#heading_deg = near(heading_rad * DEG_PER_RAD, this.#heading_deg);
+      this.truth.push(t_s, { ...values, true_heading_deg: this.#heading_deg });
       return [{ t_s, pose, pinged_m: /** @type {[Cell, Cell, Cell]} */ (['left', 'right', 'front'].map((sonar) => cell(`pinged_${sonar}_m`))), servo_rad: number(cell('true_servo_rad')), contact: cell('contact') === 1 }];
     });
   }

@@ -1,6 +1,6 @@
 // @ts-check
 /** Shows who has control where it is not obvious: to viewers, and where several pages are open. */
-import { element, setText } from './dom.js';
+import { create, element, setText } from './dom.js';
 import { t } from './text.js';
 
 /** @typedef {{seat: import('./types.js').Seat, page: number, holder: number | null, pages: number}} Control */
@@ -26,7 +26,28 @@ export class Seat {
     setText(this.#words, words(control));
     this.#row.className = `row ${seat === 'driver' || seat === 'free' ? '' : 'warning'}`;
     document.body.classList.toggle('viewer', seat === 'viewer');
+    document.body.classList.toggle('passenger', seat === 'passenger');
   }
+}
+
+/** What a page may send without control. */
+const FREE = ['stop', 'take_control', 'release_control'];
+/** How long the refusal is shown [ms]. */
+const SHOWN_MS = 2_500;
+
+/** Whether an order is for the page that drives, which this one is not: that is said where it was pressed. @param {import('./types.js').Order} order */
+export function isOthers({ type }) {
+  if (!document.body.classList.contains('passenger') || FREE.includes(type)) return false;
+  document.getElementById('nope')?.remove();
+  const pressed = document.activeElement instanceof HTMLElement && document.activeElement !== document.body ? document.activeElement : element('seat', HTMLDivElement);
+  const { left, bottom } = pressed.getBoundingClientRect();
+  const bubble = create('output', { id: 'nope', textContent: t('refused: another page has control; take it first') });
+  bubble.setAttribute('role', 'alert');
+  document.body.append(bubble);
+  bubble.style.left = `${Math.max(4, Math.min(left, innerWidth - bubble.offsetWidth - 8))}px`;
+  bubble.style.top = `${Math.min(bottom + 4, innerHeight - bubble.offsetHeight - 8)}px`;
+  setTimeout(() => bubble.remove(), SHOWN_MS);
+  return true;
 }
 
 /** @param {Control} control */

@@ -67,6 +67,34 @@ export class Sketch {
     this.#drawScale(step_m, view.px_per_m);
   }
 
+  /** Axes of a frame: x forward, y left. @param {import('./types.js').Pose} frame @param {number} px */
+  drawAxes(frame, px) {
+    const { context } = this;
+    context.save();
+    context.translate(frame.x_m, frame.y_m);
+    context.rotate(frame.heading_rad);
+    context.strokeStyle = context.fillStyle = colours.goal;
+    context.lineWidth = 1.5 * px;
+    context.font = `${11 * px}px system-ui, sans-serif`;
+    for (const [name, x, y] of /** @type {const} */ ([['x', 1, 0], ['y', 0, 1]])) {
+      const long = 34 * px;
+      context.beginPath();
+      context.moveTo(0, 0);
+      context.lineTo(x * long, y * long);
+      context.lineTo(x * long - (4 * x + 3 * y) * px, y * long - (4 * y + 3 * x) * px);
+      context.stroke();
+      context.save();
+      context.translate(x * (long + 9 * px), y * (long + 9 * px));
+      context.rotate(-frame.heading_rad);
+      context.scale(1, -1);
+      context.textAlign = 'center';
+      context.textBaseline = 'middle';
+      context.fillText(name, 0, 0);
+      context.restore();
+    }
+    context.restore();
+  }
+
   /**
    * A bar as long as a square of the grid.
    * @param {number} length_m

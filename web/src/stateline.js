@@ -1,7 +1,7 @@
 // @ts-check
 /** The line with the robot's activity: state, heading, goal and distance, reached or not; or the fault, and a wrong rig. */
 import { create, element, setText } from './dom.js';
-import { compose, inverse, near, wrapped } from './geometry.js';
+import { compose, near, wrapped } from './geometry.js';
 import { inWords } from './places.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S, format } from './units.js';
 import { named, said, t } from './text.js';
@@ -112,7 +112,10 @@ export class StateLine {
     const words = !answers || robot.armed || robot.fault !== null || slow.replay || slow.refused ? [] : [t('ON starts it')];
     const at = latest?.estimated;
     const to = latest?.heading_ref_rad ?? null;
-    if (at && to !== null) words.push(`${t('heading')} ${degrees(at.heading_rad)} → ${format(near(to * DEG_PER_RAD, at.heading_rad * DEG_PER_RAD), 0)}°`);
+    if (at && to !== null) {
+      const [is, wanted] = [at.heading_rad, to].map((angle_rad) => wrapped(latest.origin.heading_rad + angle_rad) * DEG_PER_RAD);
+      words.push(`${t('heading')} ${format(is, 0)}° → ${format(near(wanted ?? 0, is ?? 0), 0)}°`);
+    };
     const kind = mode?.reference?.kind;
     if (kind === 'distance' && left !== 0) words.push(`${t('setpoint')} ${format(left * CM_PER_M)} cm`);
     if (kind === 'speed') words.push(`${t('setpoint')} ${format(left * RPM_PER_RAD_S, 0)} rpm`);
@@ -132,7 +135,7 @@ export class StateLine {
   /** @param {State} slow */
   #showPose({ robot }) {
     const latest = this.#store.latest;
-    const at = latest?.estimated ?? (latest?.truth && compose(inverse(latest.origin), latest.truth));
+    const at = latest?.estimated ? compose(latest.origin, latest.estimated) : latest?.truth;
     if (!latest || !at) return setText(this.#pose, '');
     const lines = [`x ${format(at.x_m, 3)} m   y ${format(at.y_m, 3)} m   ${t('heading')} ${degrees(at.heading_rad)}`];
     const ranges = this.sonars.map((id) => `${t(SONARS[id] ?? '')} ${inReach(latest.ranges_m[id] ?? null)}`);
@@ -157,8 +160,10 @@ function inReach(range_m) {
   return range_m === null ? t('no reading') : range_m === 'clear' ? t('clear|sonar') : `${format(range_m * CM_PER_M)} cm`;
 }
 
-/** For the map's corner: a place. @param {[number, number] | null} at */
+/** For the map's corner: a place, and the same from the robot's origin where that is another frame. @param {ReturnType<import('./map.js').WorldMap['pointed']>} at */
 export function pointerWords(at) {
-  return at ? `x ${format(at[0], 2)}  y ${format(at[1], 2)} m` : '';
+  if (!at) return '';
+  const [world, own] = [at.world, at.own].map((place) => place && `x ${format(place[0], 2)}  y ${format(place[1], 2)} m`);
+  return own ? `${world}\n${t('from the robot\'s origin')} ${own}` : world ?? '';
 }
 

@@ -4,7 +4,7 @@
  * define them (docs/scenarios.md; `step.rs` of the metrics). Ground truth where it is known, else what the robot measures.
  */
 import { create, element, setText } from './dom.js';
-import { response } from './response.js';
+import { response, stage } from './response.js';
 import { t } from './text.js';
 import { format } from './units.js';
 
@@ -20,7 +20,7 @@ const SPEED_BAND_RPM = 3.2;
 
 /** The figures of a step whose worse wheel counts. @param {Response[]} responses @returns {Response} */
 function worst([first, second]) {
-  const none = { rise_s: NaN, overshoot: NaN, settling_s: NaN, steady_error: NaN };
+  const none = { rise_s: NaN, overshoot: NaN, settling_s: NaN, steady_error: NaN, moving: 0 };
   if (!first || !second) return first ?? none;
   const keys = /** @type {(keyof Response)[]} */ (Object.keys(none));
   return /** @type {Response} */ (Object.fromEntries(keys.map((key) => [key, Math.max(first[key], second[key])])));
@@ -67,6 +67,13 @@ function wayLeft(store, step) {
   return { t: x.t, y: x.y.map((x_m, index) => 100 * Math.hypot(goal_x - x_m, goal_y - (y.y[index] ?? 0))) };
 }
 
+/** How far from its setpoint a step has settled, as plotted. @param {Store} store @param {Step} step */
+export function settlingBand(store, step) {
+  if (step.kind === 'wheel_speed') return SPEED_BAND_RPM;
+  const [start = step.reference[0]] = (step.kind === 'goal' ? wayLeft(store, step) : distance(store, step)).y;
+  return DISTANCE_BAND * Math.abs(step.reference[0] - start);
+}
+
 /** The figures of a step so far, and their unit. @param {Store} store @param {Step} step */
 export function figures(store, step) {
   const { from_s, reference: [left, right] } = step;
@@ -86,11 +93,15 @@ export class StepFigures {
   /** @type {Record<string, HTMLElement>} */
   #values = {};
 
-  /** @param {Store} store */
-  constructor(store) {
+  /** The first step of the run is over. */
+  #onFirst;
+
+  /** @param {Store} store @param {(shown: Record<string, string>) => void} onFirst the first step of the run is over, and its figures are these */
+  constructor(store, onFirst) {
     this.#store = store;
+    this.#onFirst = onFirst;
     const terms = { rise_s: t('rise'), overshoot: t('overshoot'), settling_s: t('settling'), steady_error: t('steady error') };
-    const titles = { rise_s: t('From 10 % to 90 % of the step'), overshoot: t('Beyond the setpoint, in the direction of the step'), settling_s: t('Until it stays within 5 % of the step; for speeds, 3.2 rpm'), steady_error: t('Mean error of the last 40 % of the step so far') };
+    const titles = { rise_s: t('From 10 % to 90 % of the step'), overshoot: t('Beyond the setpoint, in the direction of the step'), settling_s: t('Until it stays within 5 % of the step; for speeds, 3.2 rpm'), steady_error: t('Mean error of the last 40 % of the step') };
     for (const key of /** @type {(keyof typeof terms)[]} */ (Object.keys(terms))) {
       const value = create('dd', { textContent: '–' });
       this.#values[key] = value;
@@ -100,19 +111,20 @@ export class StepFigures {
 
   /** @param {import('./types.js').ModeEntry | null} mode */
   show(mode) {
-    const kind = mode?.reference?.kind ?? null;
     // Where there are none their place stays, so that nothing moves when the mode changes.
-    const none = kind === null || kind === 'speed' || mode?.lane === true;
+    const none = !mode?.reference?.commanded || mode.reference.kind === 'speed' || mode.lane === true;
     this.#list.classList.toggle('none', none);
     if (none) return;
     const step = this.#store.step;
-    const now = step && step.mode === mode?.id ? figures(this.#store, step) : null;
-    // On the way there the error is not a steady one.
-    if (now && step?.until_s === Infinity && Number.isNaN(now.overshoot)) now.steady_error = NaN;
+    const now = step && step.mode === mode.id ? figures(this.#store, step) : null;
+    const at = now && step ? stage(now, step, Math.min(step.until_s, this.#store.newest_s)) : 'none';
     for (const [key, value] of Object.entries(this.#values)) {
       const figure = now?.[/** @type {keyof Response} */ (key)] ?? NaN;
-      const unit = key.endsWith('_s') ? 's' : now?.unit ?? '';
-      setText(value, Number.isFinite(figure) ? `${format(figure, key.endsWith('_s') ? 2 : 1)} ${unit}` : '–');
+      const is_time = key.endsWith('_s');
+      const known = Number.isFinite(figure) && !(at === 'stopped' && ['settling_s', 'steady_error'].includes(key));
+      const never = key === 'settling_s' && at !== 'none' ? t(at === 'stopped' ? 'stopped' : 'not settled') : '–';
+      setText(value, at === 'running' ? '…' : known ? `${format(figure, is_time ? 2 : 1)} ${is_time ? 's' : now?.unit}` : never);
     }
+    if (at !== 'running' && at !== 'none' && this.#store.steps.length === 1) this.#onFirst(Object.fromEntries(Object.entries(this.#values).map(([key, { textContent }]) => [key, textContent ?? ''])));
   }
 }

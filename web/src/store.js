@@ -5,10 +5,10 @@
  *
  * A replay has what is before and after its playhead: plots show all of it, the map and the numbers only what has been.
  *
- * Positions are in metres from where the run began, also after the robot has moved its origin, the true ones too; headings
+ * Positions are in metres in the frame of the world, as on the map, also after the robot has moved its origin; headings
  * continue through 180 degrees up to 315.
  */
-import { IDENTITY, compose, inverse, near, place, wrapped } from './geometry.js';
+import { IDENTITY, compose, near, place, wrapped } from './geometry.js';
 import { Readings } from './readings.js';
 import { ROW } from './row.js';
 import { FACTORS } from './signals.js';
@@ -63,6 +63,7 @@ const FARTHEST_DEG = 315;
  * @property {import('./types.js').Reference['kind']} kind
  * @property {[number, number]} reference As plotted: cm, rpm, or m of a goal.
  * @property {boolean} ahead The distance is to a wall ahead.
+ * @property {boolean} [stopped] It ended with the mode, not with another step.
  */
 
 /** @typedef {import('./types.js').Pose} Pose */
@@ -88,6 +89,8 @@ const FARTHEST_DEG = 315;
 
 /** Steps kept: more than a person gives in ten minutes. */
 const STEPS_KEPT = 500;
+/** Two frames of telemetry [s]. */
+const SHORTEST_STEP_S = 0.1;
 /** Samples kept of a replay: what a page gets around the playhead, and as much again. */
 const MOMENTS_KEPT = 30_000;
 /** Points kept of each trail, in the world, one every 2 cm at least. */
@@ -104,6 +107,10 @@ export class Store {
   stretches = [];
   /** The steps of the setpoint. @type {Step[]} */
   steps = [];
+  /** The limits of the experiment whose steps these are; null: they are given by hand. @type {import('./types.js').Limit[] | null} */
+  limits = null;
+  /** Where it ends [s]. */
+  experiment_end_s = Infinity;
   /** Some sample has a ghost. */
   haunted = false;
   /** @type {Latest | null} */
@@ -205,9 +212,8 @@ export class Store {
     const heading_ref_rad = follows && heading ? number(cell('heading_ref_rad')) : null;
     const toPlace = follows && reference?.kind === 'goal';
     // The robot's origin may move with a goal: what is plotted does not jump.
-    const frame = compose(inverse(this.start), origin);
     const [left, right] = [number(cell('reference_left')), number(cell('reference_right'))];
-    const goal = toPlace && left !== null && right !== null ? place(frame, [left, right]) : null;
+    const goal = toPlace && left !== null && right !== null ? place(origin, [left, right]) : null;
 
     /** Signals as plotted, from these columns. @param {typeof ROW} signals @param {(column: string) => string} [of] */
     const plotted = (signals, of = (column) => column) => Object.fromEntries(signals.map(({ name, column, unit }) => [name, scaled(cell(of(column)), FACTORS[unit] ?? 1)]));
@@ -218,7 +224,7 @@ export class Store {
       ...plotted(OTHERS),
       reference_cm: reference?.kind === 'distance' && cell('reference_left') !== 0 ? cm('reference_left') : null,
       range_difference_cm: less(cm('range_left_m'), cm('range_right_m')),
-      ...this.#placeAndHeading(estimated && compose(frame, estimated), truth && compose(inverse(this.start), truth), ghost && compose(inverse(this.start), ghost), heading_ref_rad === null ? null : frame.heading_rad + heading_ref_rad),
+      ...this.#placeAndHeading(estimated && compose(origin, estimated), truth, ghost, heading_ref_rad === null ? null : origin.heading_rad + heading_ref_rad),
       goal_x_m: goal?.[0] ?? null,
       goal_y_m: goal?.[1] ?? null,
     });
@@ -253,7 +259,7 @@ export class Store {
   }
 
   /**
-   * All from where the run began.
+   * All in the frame of the world.
    * @param {Pose | null} estimated
    * @param {Pose | null} truth
    * @param {Pose | null} ghost
@@ -311,17 +317,19 @@ export class Store {
     const factor = kind === 'distance' ? CM_PER_M : kind === 'goal' ? 1 : RPM_PER_RAD_S;
     /** @type {[number, number]} */
     const now = [(left ?? 0) * factor, (right ?? 0) * factor];
-    if (runs && (!in_force || runs.mode !== mode || runs.reference.some((value, index) => value !== now[index]))) runs.until_s = t_s;
+    if (runs && (!in_force || runs.mode !== mode || runs.reference.some((value, index) => value !== now[index]))) Object.assign(runs, { until_s: t_s, stopped: !in_force || runs.mode !== mode });
+    // A frame between two values of a setpoint is no step.
+    if (runs && runs.until_s - runs.from_s < SHORTEST_STEP_S) this.steps.pop();
     if (in_force && (!runs || runs.until_s !== Infinity)) {
       this.steps.push({ from_s: t_s, until_s: Infinity, mode, kind, reference: now, ahead: entry.rigs.some((rig) => rig.startsWith('front_')) });
     }
     if (this.steps.length > STEPS_KEPT) this.steps.shift();
   }
 
-  /** The step that runs, or the last one, as far as it is shown. @returns {Step | null} */
+  /** The step that runs, or the last one, as far as it is shown. @returns {(Step & {runs: boolean}) | null} */
   get step() {
     const last = this.steps.findLast(({ from_s }) => from_s <= this.#playhead_s);
-    return last ? { ...last, until_s: Math.min(last.until_s, this.#playhead_s) } : null;
+    return last && last.until_s > this.#playhead_s ? { ...last, until_s: this.#playhead_s, stopped: false, runs: true } : last ? { ...last, runs: last.until_s === Infinity } : null;
   }
 
   /** The stretch shown now, and the one before. */
@@ -336,7 +344,7 @@ export class Store {
     // Of a program that sends no telemetry nothing else is known.
     const silent = this.silent;
     const origin = silent || before === null ? this.start : before.origin;
-    for (const { t_s, pose, pinged_m, servo_rad, contact } of this.readings.push(group, this.start)) {
+    for (const { t_s, pose, pinged_m, servo_rad, contact } of this.readings.push(group)) {
       // Telemetry has the truth too.
       if (silent) this.#moments.push({ t_s, mode: -1, state: null, armed: false, origin, estimated: null, spread: null, truth: pose, ghost: null, heading_ref_rad: null, ranges_m: pinged_m, servo_rad, contact });
     }

@@ -8,6 +8,8 @@
 
 /** @typedef {(number | null | undefined)[]} Column */
 
+/** How far back a value may be [lines]. */
+const LINES_BACK = 60;
 /** Lines that become two in the coarse copy. */
 const BUCKET = 16;
 
@@ -142,10 +144,12 @@ export class Table extends Lines {
     this.#inBucket = 0;
   }
 
-  /** A signal's value at a time, or the last before it. @param {string} name @param {number} t_s */
+  /** A signal's value at a time, or the last before it; lines without it and two gaps are passed over. @param {string} name @param {number} t_s */
   at(name, t_s) {
     const column = this.columns.get(name) ?? [];
-    const index = Math.min(this.indexAt(t_s), column.length - 1);
-    return column[index] ?? column[index - 1];
+    let line = this.indexAt(t_s);
+    if (this.t[line] !== t_s) line -= 1;
+    for (const end = line - LINES_BACK; line > 0 && line > end && column[line] === undefined; line--);
+    return column[line] ?? column[line - 1] ?? column[line - 2];
   }
 }

@@ -89,6 +89,7 @@
  * @property {string} [refused] The last order, if it was refused or dropped, and why.
  * @property {string[]} [alarms] Alarms that need action at once.
  * @property {{number: number} & ({phase: 'running', since_s: number} | {phase: 'done', findings: Findings} | {phase: 'failed', why: string})} [calibration]
+ * @property {Experiment} [experiment] The scenario that commands the robot, or has done so in this run.
  * @property {boolean} [motors_cut] STOP or OFF cut the supply of the motors of a program that may ignore them.
  * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', watched: boolean, parts?: Part[], complaints?: {place: string | null, text: string, line: string | null}[], profile?: Profile}} [program] Of an emulated robot; what the compiler rejects of it; where its time goes, while that is counted.
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
@@ -97,6 +98,9 @@
  *   clock_offset_ms?: number, clock_fast_ppm?: number}} link When the robot's clock began, in the session's time, and by how much it is fast.
  * @property {{mode: number, armed: boolean, fault: string | null, battery_v: number | null, true_battery_v: number | null,
  *   reference: [number, number], overruns: number, servo_rad: number, rig: string | null, task: Task, foreign: boolean, text?: boolean}} robot `text`: it speaks the original's.
+ *
+ * @typedef {{name: string, min: number | null, max: number | null, value: number | null, kept: boolean}} Limit Of a metric, in its own unit; `value`: null before the end, and where what it measures did not happen.
+ * @typedef {{phase: 'running' | 'passed' | 'failed' | 'stopped', duration_s: number, limits: Limit[], failures?: string[], parameters?: [string, number][]}} Experiment `parameters`: those that are not the scenario's.
  *
  * @typedef {object} Profile Where the time of a program goes, in cycles of its clock.
  * @property {number} cycles
@@ -134,7 +138,7 @@
  *
  * @typedef {'viewer' | 'free' | 'driver' | 'passenger'} Seat Who has control, as far as this page is concerned. Pages have numbers, in the order in which they came.
  *
- * @typedef {{type: 'stop' | 'take_control' | 'release_control' | 'restart_ghost' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'save_params' | 'reset_pose' | 'calibrate'}
+ * @typedef {{type: 'stop' | 'take_control' | 'release_control' | 'restart_ghost' | 'arm' | 'disarm' | 'clear_fault' | 'reset_params' | 'save_params' | 'reset_pose' | 'calibrate' | 'play'}
  *   | {type: 'mode', mode: number}
  *   | {type: 'reference', value: number}
  *   | {type: 'wheel_reference', left: number, right: number}

@@ -5,6 +5,11 @@
 #[cfg(feature = "host")]
 mod batch;
 
+mod player;
+
+pub use player::Player;
+pub(crate) use player::of_seed;
+
 #[cfg(feature = "host")]
 pub use batch::{in_order, run_all, run_all_on, run_each};
 
@@ -22,6 +27,7 @@ use serde::Serialize;
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufWriter};
+use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A sketch that misses more limits than this was made for something else.
@@ -70,9 +76,9 @@ impl RunResult {
 }
 
 /// A robot in a run, its commands, and what is known of it.
-struct Member<'a> {
-    setup: &'a Setup,
-    operator: Operator<&'a Setup>,
+struct Member<S> {
+    setup: S,
+    operator: Operator<S>,
     trace: Trace,
 }
 
@@ -83,7 +89,7 @@ pub struct Run<'a> {
     seed: u64,
     fleet: Fleet,
     /// Its robots, in order.
-    members: Vec<Member<'a>>,
+    members: Vec<Member<&'a Setup>>,
     end_us: u64,
     /// End of the current sample [us].
     sample_us: u64,
@@ -102,21 +108,9 @@ impl<'a> Run<'a> {
         let end_us = (setup.scenario.duration_s * 1e6) as u64;
         let (mut sims, mut members) = (Vec::new(), Vec::new());
         for robot in robots {
-            let mut sim = robot.sim(seed)?;
-            let mut operator = Operator::new(robot);
-            operator.brief(&mut sim)?;
-            sim.tap_link();
-            let mut trace = Trace {
-                parameters: parameters(robot)?,
-                ..Trace::default()
-            };
-            trace.samples.reserve((end_us / SAMPLE_US) as usize + 1);
+            let (sim, member) = Member::new(robot, seed)?;
             sims.push(sim);
-            members.push(Member {
-                setup: robot,
-                operator,
-                trace,
-            });
+            members.push(member);
         }
         let fleet = Fleet::new(sims).map_err(|error| {
             FileError::Setting(format!("scenario {}: {error}", setup.scenario.name))
@@ -226,37 +220,61 @@ impl<'a> Run<'a> {
         let mut robots: Vec<RunResult> = robots
             .map(|(sim, member)| member.result(sim, self.seed))
             .collect();
-        let mut whole = match &mut robots[..] {
+        let whole = match &mut robots[..] {
             [only] => std::mem::take(only),
             _ => together(&self.fleet, robots),
         };
-        let scenario = &self.setup.scenario;
-        whole.scenario.clone_from(&scenario.name);
-        whole.path.clone_from(&scenario.path);
-        // What its program could no longer do is not judged: the verdict suffices.
-        if whole.ended.is_none() {
-            whole.failures.extend(missed(self.setup, &whole));
-        }
-        let own =
-            scenario.has_mode && self.setup.firmware.is_some() && !self.setup.takes_parameters();
-        if own && whole.failures.len() > MANY {
-            whole.notes.push(format!(
-                "scenario {} judges mode {}; a sketch that does something else runs in a scenario without mode and limits, \
-                 for instance `rumbo run free`",
-                scenario.name,
-                scenario.mode.name()
-            ));
-        }
-        whole.pass = whole.failures.is_empty();
-        whole
+        judged(self.setup, whole)
     }
 }
 
-impl Member<'_> {
+/// The result, judged by the limits of its scenario.
+fn judged(setup: &Setup, mut whole: RunResult) -> RunResult {
+    let scenario = &setup.scenario;
+    whole.scenario.clone_from(&scenario.name);
+    whole.path.clone_from(&scenario.path);
+    // What its program could no longer do is not judged: the verdict suffices.
+    if whole.ended.is_none() {
+        whole.failures.extend(missed(setup, &whole));
+    }
+    let own = scenario.has_mode && setup.firmware.is_some() && !setup.takes_parameters();
+    if own && whole.failures.len() > MANY {
+        whole.notes.push(format!(
+            "scenario {} judges mode {}; a sketch that does something else runs in a scenario without mode and limits, \
+             for instance `rumbo run free`",
+            scenario.name,
+            scenario.mode.name()
+        ));
+    }
+    whole.pass = whole.failures.is_empty();
+    whole
+}
+
+impl<S: Deref<Target = Setup> + Clone> Member<S> {
+    /// With its robot at its start.
+    fn new(setup: S, seed: u64) -> Result<(Sim, Self), FileError> {
+        let mut sim = setup.sim(seed)?;
+        let mut operator = Operator::new(setup.clone());
+        operator.brief(&mut sim)?;
+        sim.tap_link();
+        let mut trace = Trace {
+            parameters: parameters(&setup)?,
+            ..Trace::default()
+        };
+        let samples = setup.scenario.duration_s * 1e6 / SAMPLE_US as f64;
+        trace.samples.reserve(samples as usize + 1);
+        let member = Self {
+            setup,
+            operator,
+            trace,
+        };
+        Ok((sim, member))
+    }
+
     /// What became of it, not yet judged by limits.
     fn result(mut self, sim: &mut Sim, seed: u64) -> RunResult {
         self.trace.messages = self.operator.received;
-        self.trace.link = sim.take_tapped();
+        self.trace.link.append(&mut sim.take_tapped());
         let mut failures = self.operator.complaints;
         let ended = sim.verdict();
         failures.extend(ended.clone());
@@ -265,7 +283,7 @@ impl Member<'_> {
         RunResult {
             scenario: self.setup.scenario.name.clone(),
             seed,
-            metrics: metrics::compute(self.setup, sim, &self.trace),
+            metrics: metrics::compute(&self.setup, sim, &self.trace),
             failures,
             notes,
             ended,
@@ -324,7 +342,10 @@ fn missed(setup: &Setup, result: &RunResult) -> Vec<String> {
 }
 
 /// The parameters of a robot before the first command, if it has a table of them.
-pub(crate) fn parameters(setup: &Setup) -> Result<Option<Params>, FileError> {
+///
+/// # Errors
+/// The setup's values do not fit together.
+pub fn parameters(setup: &Setup) -> Result<Option<Params>, FileError> {
     if !setup.takes_parameters() {
         return Ok(None);
     }

@@ -208,6 +208,7 @@ impl Target for FleetRobot {
         Abilities {
             pace: leads,
             reset: leads,
+            play: false,
             ..self.sim(|sim| sight::abilities(sim, mode))
         }
     }

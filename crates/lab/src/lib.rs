@@ -8,6 +8,7 @@ mod calibration;
 mod fleet;
 mod hash;
 pub mod manifest;
+mod play;
 mod prepare;
 mod program;
 mod robot;

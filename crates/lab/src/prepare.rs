@@ -36,7 +36,19 @@ pub(crate) fn prepare(
     choice: Choice,
     memory: &[u8],
 ) -> Result<Prepared, FileError> {
-    let overrides = chosen(overrides, &choice);
+    let (setup, mut manifest) = set_up(library, overrides, image, &choice)?;
+    manifest.remember(memory);
+    ready(library, &setup, choice, memory, manifest)
+}
+
+/// The setup of the page's choice, and its manifest.
+pub(crate) fn set_up(
+    library: &Library,
+    overrides: &Overrides,
+    image: Option<&Held>,
+    choice: &Choice,
+) -> Result<(Setup, Manifest), FileError> {
+    let overrides = chosen(overrides, choice);
     let mut setup: Setup = library.setup(&choice.scenario, &overrides)?;
     let mut manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
     if let Some(held) = image {
@@ -44,8 +56,7 @@ pub(crate) fn prepare(
         manifest.program.clone_from(&held.name);
         manifest.image = Some(held.hash.clone());
     }
-    manifest.remember(memory);
-    ready(library, &setup, choice, memory, manifest)
+    Ok((setup, manifest))
 }
 
 /// Prepares the several robots of the page's choice; `memories` are what their EEPROMs hold, as far as they hold any.

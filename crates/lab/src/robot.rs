@@ -1,14 +1,17 @@
 //! The simulated robot behind the interface of a session's target.
 
+mod playing;
 mod programs;
 
+use crate::play::Experiment;
 use crate::prepare::{Prepared, prepare};
 use crate::program::{Held, Make, OwnProgram};
 use crate::sight;
 use rumbo_control::mode::ModeId;
+use rumbo_control::params::Params;
 use rumbo_emulator::observe::profile::Profile;
 use rumbo_experiment::files::{FileError, Library, Overrides};
-use rumbo_log::{Choice, Level, Manifest, ProgramState, Scene, Truth};
+use rumbo_log::{Burst, Choice, ExperimentState, Level, Manifest, ProgramState, Scene, Truth};
 use rumbo_session::{Abilities, EditedWorld, LinkNews, Shown, Standing, Target, TargetError};
 use rumbo_sim::Sim;
 use rumbo_sim::boards::Board;
@@ -51,6 +54,8 @@ pub struct SimulatedRobot {
     pub(crate) news: VecDeque<LinkNews>,
     pub(crate) scene: Scene,
     first_commands: Vec<Command>,
+    /// Its scenario commands it, or has done so since its start.
+    pub(crate) experiment: Option<Experiment>,
 }
 
 impl SimulatedRobot {
@@ -98,6 +103,7 @@ impl SimulatedRobot {
             news: caveat.into_iter().collect(),
             scene,
             first_commands,
+            experiment: None,
         })
     }
 
@@ -183,6 +189,10 @@ impl Target for SimulatedRobot {
         if let (Some(usb), Some(mega)) = (&mut self.usb, self.sim.mega_mut()) {
             mega.type_in(USB, usb.read());
         }
+        if let Some(experiment) = &mut self.experiment {
+            experiment.pass(&mut self.sim, dt_us);
+            return Ok(());
+        }
         // After a breakpoint, back to the multiples of the step.
         let until_us = (self.sim.now_us() / dt_us.max(1) + 1) * dt_us;
         match &mut self.debugging {
@@ -193,12 +203,46 @@ impl Target for SimulatedRobot {
     }
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), TargetError> {
-        self.sim.send(bytes);
+        if !self.plays() {
+            self.sim.send(bytes);
+        }
         Ok(())
     }
 
     fn receive(&mut self, into: &mut Vec<u8>) {
-        self.sim.receive(into);
+        if let Some(experiment) = &mut self.experiment {
+            experiment.receive(into);
+        }
+        if !self.plays() {
+            self.sim.receive(into);
+        }
+    }
+
+    fn play(&mut self, parameters: &[(u8, f32)]) -> Result<(), TargetError> {
+        if self.program.as_ref().is_some_and(OwnProgram::is_rejected) {
+            return Err(TargetError::NotCompiled);
+        }
+        self.begin_experiment(parameters)
+            .map_err(|error| TargetError::Setup(error.to_string()))
+    }
+
+    fn end_play(&mut self) {
+        if let Some(experiment) = &mut self.experiment {
+            experiment.stop();
+        }
+    }
+
+    fn experiment(&self) -> Option<ExperimentState> {
+        self.experiment.as_ref().map(|each| each.state.clone())
+    }
+
+    fn scripted(&mut self) -> Vec<Burst> {
+        let experiment = self.experiment.as_mut();
+        experiment.map(Experiment::scripted).unwrap_or_default()
+    }
+
+    fn parameters(&self) -> Option<Params> {
+        self.experiment.as_ref()?.parameters
     }
 
     fn baud(&self) -> u32 {
@@ -316,6 +360,11 @@ impl Target for SimulatedRobot {
 }
 
 impl SimulatedRobot {
+    /// Its scenario commands it.
+    fn plays(&self) -> bool {
+        self.experiment.as_ref().is_some_and(Experiment::goes_on)
+    }
+
     /// Counts the cycles of the program at the pins from zero, if they are to be counted.
     fn begin_profile(&mut self) {
         let Some(mega) = self.sim.mega_mut() else {
@@ -331,6 +380,18 @@ impl SimulatedRobot {
         }
     }
 
+    /// Takes another simulation, at its start.
+    pub(crate) fn start_with(&mut self, sim: Sim, manifest: Manifest) {
+        self.sim = sim;
+        if let Some(debugging) = &mut self.debugging {
+            debugging.forget();
+        }
+        self.begin_profile();
+        (self.reading_due_us, self.ended) = (0, false);
+        self.manifest = manifest;
+        self.experiment = None;
+    }
+
     /// Starts again from time 0, as switched off and on again: saved parameters persist.
     pub(crate) fn start_again(&mut self, choice: Choice) -> Result<(), FileError> {
         let memory = self.sim.memory();
@@ -343,15 +404,9 @@ impl SimulatedRobot {
             world_titles,
             ..
         } = std::mem::take(&mut self.scene);
-        self.sim = fresh.sim;
-        if let Some(debugging) = &mut self.debugging {
-            debugging.forget();
-        }
-        self.begin_profile();
+        self.start_with(fresh.sim, fresh.manifest);
         self.mode = fresh.mode;
-        (self.reading_due_us, self.ended) = (0, false);
         self.first_commands = fresh.first_commands;
-        self.manifest = fresh.manifest;
         self.scene = Scene {
             experiments,
             worlds,

@@ -19,6 +19,8 @@ pub(crate) fn abilities(sim: &Sim, mode: ModeId) -> Abilities {
         port: false,
         typing: true,
         cut_off: text,
+        // An image with our frames gets its parameters before its run begins, unseen.
+        play: text || firmware.is_none(),
         text: text.then_some(mode),
     }
 }

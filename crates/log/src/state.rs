@@ -34,9 +34,59 @@ pub struct State {
     /// STOP or OFF cut the supply of the motors of a simulated robot, whose program may ignore them.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub motors_cut: bool,
+    /// The scenario that commands the robot, or has done so in this run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub experiment: Option<ExperimentState>,
     /// A log is being shown, of this length; `t_s` is where.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub replay: Option<ReplayState>,
+}
+
+/// A scenario that commands the robot.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ExperimentState {
+    /// How far it is.
+    pub phase: ExperimentPhase,
+    /// How long it takes \[s\].
+    pub duration_s: f64,
+    /// Its limits.
+    pub limits: Vec<LimitState>,
+    /// Why it has not passed, a line each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub failures: Vec<String>,
+    /// The parameters that are not the scenario's.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parameters: Vec<(String, f64)>,
+}
+
+/// How far an experiment is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ExperimentPhase {
+    /// It goes on.
+    #[default]
+    Running,
+    /// Its time is over, and no limit was missed.
+    Passed,
+    /// Its time is over.
+    Failed,
+    /// A person ended it.
+    Stopped,
+}
+
+/// A limit of an experiment.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LimitState {
+    /// The metric, its unit at the end.
+    pub name: String,
+    /// Smallest value that passes.
+    pub min: Option<f64>,
+    /// Largest value that passes.
+    pub max: Option<f64>,
+    /// The metric, once the experiment is over; `None`: what it measures did not happen.
+    pub value: Option<f64>,
+    /// It was kept.
+    pub kept: bool,
 }
 
 /// The program of an emulated robot, for the page.

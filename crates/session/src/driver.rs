@@ -105,11 +105,16 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
 
     /// Begins the first run.
     pub fn begin(&mut self, wall_us: u64) {
+        let manifest = self.target.manifest();
         let manifest = Manifest {
             version: env!("CARGO_PKG_VERSION").into(),
             baud: self.target.baud(),
-            step_us: SLICE_US,
-            ..self.target.manifest()
+            // An experiment goes in the steps of a run.
+            step_us: match manifest.step_us {
+                0 => SLICE_US,
+                own => own,
+            },
+            ..manifest
         };
         if let Some((level, text)) = self.host.begin_run(manifest) {
             self.note(level, text, wall_us);
@@ -137,6 +142,9 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
         for order in orders {
             if let Some(ask) = self.session.order(order, self.now(wall_us)) {
                 self.act(ask, wall_us);
+            }
+            if !self.session.is_playing() {
+                self.target.end_play();
             }
             // At once: STOP does not wait for the next slice.
             self.send()?;
@@ -172,6 +180,15 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
                 let calibration = self.calibration.ok_or(CalibrationError::Missing);
                 let begun = calibration.map(|begin| begin(now.target_us));
                 self.session.calibration_begun(begun, now);
+            }
+            Ask::Play(parameters) => {
+                let done = self.target.play(&parameters);
+                if done.is_ok() {
+                    self.begin_again(wall_us);
+                }
+                let done = done.map(|()| About::of(self.target.as_ref()));
+                let (id, now) = (self.host.random_id(), self.now(wall_us));
+                self.session.play_begun(done, id, now);
             }
             Ask::Reset(choice) => {
                 let done = self.target.reset(&choice);
@@ -244,6 +261,7 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
             ghost: self.target.ghost(),
             consoles: self.target.consoles(),
             shown: self.target.shown(),
+            scripted: self.target.scripted(),
         };
         self.session.observe(sight, now);
         self.bytes.clear();
@@ -281,6 +299,7 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
             achieved_speed: self.pace.achieved(),
             true_battery_v: self.target.truth().map(|truth| truth.battery_v),
             program: self.target.program(),
+            experiment: self.target.experiment(),
         };
         self.session.update(going, self.now(wall_us));
         self.publish();

@@ -182,6 +182,14 @@ impl Observer {
         self.show_parameters();
     }
 
+    /// The values of the parameters that are known, by number.
+    pub(crate) fn parameter_values(&self) -> Vec<(u8, f32)> {
+        let values = (0..).zip(&self.parameters);
+        values
+            .filter_map(|(id, each)| Some((id, each.value?)))
+            .collect()
+    }
+
     /// Notes an event.
     pub(crate) fn note(&mut self, t_ms: i64, level: Level, text: String) {
         self.urgent = true;

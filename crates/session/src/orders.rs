@@ -47,6 +47,8 @@ pub enum Order {
     Reset(Choice),
     /// Let the robot calibrate itself.
     Calibrate,
+    /// Start again, and let the scenario command the robot.
+    Play,
     /// Show a log from this time on \[s\].
     Seek(f64),
     /// Show a log this many telemetry frames further on, or back.
@@ -156,6 +158,7 @@ enum Message {
     SaveParams {},
     ResetPose {},
     Calibrate {},
+    Play {},
     Type {
         usart: u8,
         text: String,
@@ -299,6 +302,7 @@ impl FromStr for Order {
             Message::SaveParams {} => Order::Robot(Command::SaveParams),
             Message::ResetPose {} => Order::Robot(Command::ResetPose),
             Message::Calibrate {} => Order::Calibrate,
+            Message::Play {} => Order::Play,
             Message::Type {
                 usart,
                 text,

@@ -132,6 +132,7 @@ impl Replay {
             | Order::Type(..)
             | Order::Program(..)
             | Order::Profile(_)
+            | Order::Play
             | Order::World(_) => {
                 if !std::mem::replace(&mut self.warned, true) {
                     self.note("this is a replay: nothing is sent to a robot".into());

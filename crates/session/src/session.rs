@@ -7,6 +7,7 @@
 
 mod calibrating;
 mod commanding;
+mod playing;
 
 use crate::client::{KnownTable, LinkEvent, RobotClient};
 use crate::error::{CalibrationError, TargetError};
@@ -19,7 +20,9 @@ use crate::target::{About, LinkNews, Shown, Standing};
 use crate::watch::LinkWatch;
 use crate::world::WorldOrder;
 use rumbo_control::mode::ModeId;
-use rumbo_log::{Burst, CalibrationState, Choice, Level, ProgramState, State, Truth};
+use rumbo_log::{
+    Burst, CalibrationState, Choice, ExperimentState, Level, ProgramState, State, Truth,
+};
 use rumbo_wire::{Command, GUEST_SESSION};
 
 /// The slow state is published this often, and at once when it matters \[us\].
@@ -61,6 +64,8 @@ pub enum Ask {
     Supply(bool),
     /// Calibrate the robot; then [`Session::calibration_begun`].
     Calibrate,
+    /// Start it again, commanded by its scenario; these are the robot's parameters. Then [`Session::play_begun`].
+    Play(Vec<(u8, f32)>),
 }
 
 /// What is known of a target besides the bytes of its robot.
@@ -74,6 +79,8 @@ pub struct Sight {
     pub consoles: Vec<(u8, Vec<u8>)>,
     /// What is shown of it beside its telemetry, if a reading is due.
     pub shown: Vec<Shown>,
+    /// What its scenario has sent to the robot.
+    pub scripted: Vec<Burst>,
 }
 
 /// The target's progress.
@@ -87,6 +94,8 @@ pub struct Going {
     pub true_battery_v: Option<f64>,
     /// The program of an emulated robot.
     pub program: Option<ProgramState>,
+    /// The scenario that commands the robot, or has done so.
+    pub experiment: Option<ExperimentState>,
 }
 
 /// A session with one target.
@@ -111,6 +120,8 @@ pub struct Session {
     briefed: bool,
     /// STOP or OFF cut the supply of its motors.
     motors_cut: bool,
+    /// The scenario commands the robot, and the session only listens.
+    playing: bool,
     /// The port is gone and not back yet.
     port_gone: bool,
     link_watch: LinkWatch,
@@ -136,6 +147,7 @@ impl Session {
             velocity_refused_us: None,
             briefed: false,
             motors_cut: false,
+            playing: false,
             port_gone: false,
             link_watch: LinkWatch::default(),
             link_events: Vec::new(),
@@ -183,7 +195,7 @@ impl Session {
         self.calibrating = None;
         self.calibration = None;
         self.briefed = false;
-        self.motors_cut = false;
+        (self.motors_cut, self.playing) = (false, false);
         self.state_noted_us = None;
         self.observer.start_run();
         self.show_scene();
@@ -191,7 +203,7 @@ impl Session {
 
     /// Executes an order of the page; returns the request to the target, if any.
     pub fn order(&mut self, order: Order, now: Now) -> Option<Ask> {
-        if self.is_taken(&order, now) {
+        if self.is_taken(&order, now) || self.is_played(&order, now) {
             return None;
         }
         let abilities = self.about.abilities;
@@ -227,6 +239,10 @@ impl Session {
                 self.note(Level::Warning, text.into(), now);
             }
             Order::Calibrate => return self.may_calibrate(now),
+            Order::Play if abilities.play => {
+                return Some(Ask::Play(self.observer.parameter_values()));
+            }
+            Order::Play => self.play_begun(Err(TargetError::NoReset), 0, now),
             Order::TakeControl | Order::ReleaseControl => {}
             Order::RestartGhost => return Some(Ask::Ghost(self.observer.standing())),
             Order::Program(name, data) => return Some(Ask::Program(name, data)),
@@ -249,6 +265,10 @@ impl Session {
         }
         self.observer.shown(now.target_ms(), sight.shown);
         self.observer.consoles(now.target_us, sight.consoles);
+        for burst in sight.scripted {
+            self.client.said(burst.bytes.len(), now.target_us);
+            self.observer.link(burst);
+        }
     }
 
     /// Takes the bytes received from the robot, and gives a guest its turn.
@@ -299,6 +319,7 @@ impl Session {
     pub fn update(&mut self, going: Going, now: Now) {
         self.digest(now);
         self.watch_link(now);
+        self.watch_play(&going, now);
         let urgent = self.observer.publish(now.target_ms());
         let due = |noted_us: u64| now.wall_us >= noted_us + STATE_PERIOD_US;
         if urgent || self.state_noted_us.is_none_or(due) {
@@ -324,6 +345,9 @@ impl Session {
     }
 
     fn say(&mut self, now: Now) {
+        if self.playing {
+            return;
+        }
         let mut bytes = Vec::new();
         self.client
             .poll(now.target_us, &mut bytes, &mut self.link_events);
@@ -385,6 +409,7 @@ impl Session {
             calibration: self.calibration.clone(),
             program: going.program,
             motors_cut: self.motors_cut,
+            experiment: going.experiment,
             ..describe(&around, &mut self.client, &self.observer)
         }
     }

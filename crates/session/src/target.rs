@@ -8,7 +8,10 @@ use crate::error::TargetError;
 use crate::world::EditedWorld;
 use rumbo_control::Fault;
 use rumbo_control::mode::ModeId;
-use rumbo_log::{Choice, Level, Manifest, MapPose, ProgramState, Scene, Source, Truth};
+use rumbo_control::params::Params;
+use rumbo_log::{
+    Burst, Choice, ExperimentState, Level, Manifest, MapPose, ProgramState, Scene, Source, Truth,
+};
 use rumbo_wire::Command;
 
 /// What can be done with a target besides speaking to its robot.
@@ -26,6 +29,8 @@ pub struct Abilities {
     pub typing: bool,
     /// Its program may ignore STOP, and the supply of its motors can be cut ([`Target::supply_motors`]).
     pub cut_off: bool,
+    /// Its scenario can command it ([`Target::play`]).
+    pub play: bool,
     /// The robot speaks the original's text, and is in this mode at first.
     pub text: Option<ModeId>,
 }
@@ -40,6 +45,7 @@ impl Default for Abilities {
             port: true,
             typing: false,
             cut_off: false,
+            play: false,
             text: None,
         }
     }
@@ -56,6 +62,8 @@ pub struct About {
     pub first_commands: Vec<Command>,
     /// What surrounds the robot, or the ghost.
     pub scene: Option<Scene>,
+    /// The robot's parameters at its start, where the target tells them.
+    pub parameters: Option<Params>,
 }
 
 impl About {
@@ -66,6 +74,7 @@ impl About {
             baud: target.baud(),
             first_commands: target.first_commands(),
             scene: target.scene(),
+            parameters: target.parameters(),
         }
     }
 }
@@ -149,6 +158,33 @@ pub trait Target: Send {
     /// If there is no such chip.
     fn type_in(&mut self, _usart: u8, _text: &str) -> Result<(), TargetError> {
         Err(TargetError::NoTyping)
+    }
+
+    /// Starts again from time 0, commanded by its scenario; these are the parameters of the robot as it was. Bytes that are
+    /// sent do not reach the robot until the scenario is over or [`Target::end_play`].
+    ///
+    /// # Errors
+    /// Why it cannot; the target then continues as before.
+    fn play(&mut self, _parameters: &[(u8, f32)]) -> Result<(), TargetError> {
+        Err(TargetError::NoReset)
+    }
+
+    /// The scenario commands it no longer. To be called again and again.
+    fn end_play(&mut self) {}
+
+    /// The scenario that commands it, or has done so since its start.
+    fn experiment(&self) -> Option<ExperimentState> {
+        None
+    }
+
+    /// What the scenario has sent since the last call.
+    fn scripted(&mut self) -> Vec<Burst> {
+        Vec::new()
+    }
+
+    /// The robot's parameters at its start, where they are known without asking the robot.
+    fn parameters(&self) -> Option<Params> {
+        None
     }
 
     /// Cuts the supply of the motors, or gives it back; it is there at a start. Only where [`Abilities::cut_off`] says so.

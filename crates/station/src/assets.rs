@@ -38,6 +38,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/dom.js": SCRIPT,
     "src/enlarge.js": SCRIPT,
     "src/events.js": SCRIPT,
+    "src/experiment.js": SCRIPT,
     "src/flash_form.js": SCRIPT,
     "src/gamepad.js": SCRIPT,
     "src/geometry.js": SCRIPT,
@@ -47,11 +48,13 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/key.js": SCRIPT,
     "src/layout.js": SCRIPT,
     "src/layout_dialog.js": SCRIPT,
+    "src/lessons.js": SCRIPT,
     "src/link.js": SCRIPT,
     "src/linkmeter.js": SCRIPT,
     "src/machine.js": SCRIPT,
     "src/main.js": SCRIPT,
     "src/map.js": SCRIPT,
+    "src/markdown.js": SCRIPT,
     "src/mounts.js": SCRIPT,
     "src/movements.js": SCRIPT,
     "src/movers.js": SCRIPT,
@@ -110,10 +113,31 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "vendor/uplot/LICENSE": TEXT,
 ];
 
+macro_rules! lessons {
+    ($($language:literal: $($name:literal),*);*) => {
+        &[$($(Asset {
+            path: concat!("/lessons/", $language, "/", $name),
+            mime: TEXT,
+            bytes: include_bytes!(concat!("../../../docs/lessons/", $language, "/", $name)),
+        }),*),*]
+    };
+}
+
+/// The lessons, in Markdown.
+const LESSONS: &[Asset] = lessons![
+    "en": "README.md", "0-first-drive.md", "1-wheel-speed.md", "2-front-distance.md", "3-wall-follow.md", "4-odometry.md",
+        "5-lying-sensor.md", "6-obstacles.md";
+    "es": "README.md", "0-first-drive.md", "1-wheel-speed.md", "2-front-distance.md", "3-wall-follow.md", "4-odometry.md",
+        "5-lying-sensor.md", "6-obstacles.md"
+];
+
 /// The file for the path of a request.
 pub(crate) fn find(path: &str) -> Option<&'static Asset> {
     let path = if path == "/" { "/index.html" } else { path };
-    ASSETS.iter().find(|asset| asset.path == path)
+    ASSETS
+        .iter()
+        .chain(LESSONS)
+        .find(|asset| asset.path == path)
 }
 
 #[cfg(test)]
@@ -132,6 +156,18 @@ mod tests {
                     served || !name.ends_with(".js"),
                     "{folder}/{name} is missing in ASSETS"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn every_lesson_is_served_in_both_languages() {
+        let lessons = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/lessons");
+        for language in ["en", "es"] {
+            for lesson in std::fs::read_dir(lessons.join(language)).unwrap() {
+                let name = lesson.unwrap().file_name().into_string().unwrap();
+                let served = find(&format!("/lessons/{language}/{name}"));
+                assert!(served.is_some(), "{language}/{name} is missing in LESSONS");
             }
         }
     }

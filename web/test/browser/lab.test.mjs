@@ -177,7 +177,7 @@ test('a parameter is written and held, and a value out of range is refused with 
   const row = page.locator('#parameters tr', { has: input });
   await input.fill('99');
   await input.press('Enter');
-  await row.getByText('refused: allowed is').waitFor();
+  await page.locator('#why-link_timeout_s', { hasText: 'refused: allowed is' }).waitFor();
   await row.getByRole('button', { name: 'Revert' }).click();
   assert.equal(await input.inputValue(), '0.3');
 });

@@ -28,8 +28,6 @@ after(() => dashboard?.close());
 
 /** @param {Page} page @param {string | RegExp} text */
 const seatText = (page, text) => page.locator('#seat-words', { hasText: text }).waitFor();
-/** @param {Page} page @param {string} text */
-const event = (page, text) => page.locator('#events li', { hasText: text }).first().waitFor();
 /** @param {boolean} armed */
 const isArmed = (armed) => first.waitForFunction((armed) => /** @type {any} */ (window).rumbo.state()?.robot.armed === armed, armed);
 
@@ -63,9 +61,18 @@ test('the first order takes control, and every page shows which one has it', asy
   }
 });
 
-test('a page without control is refused with the reason, and may stop the robot', async () => {
+test('a page without control looks so, is refused with the reason where it was pressed, and may stop the robot', async () => {
+  const faint = (/** @type {string} */ id) => second.locator(`#${id}`).evaluate((part) => Number(getComputedStyle(part).opacity) < 0.6);
+  for (const id of ['on', 'off', 'simulation', 'save-parameters']) assert.equal(await faint(id), true, id);
+  assert.equal(await faint('stop'), false);
   await second.locator('#off').click();
-  await event(second, 'refused: another page has control; take it first');
+  const [said, button] = await Promise.all(['#nope', '#off'].map((part) => second.locator(part).boundingBox()));
+  assert.equal(await second.locator('#nope').textContent(), 'refused: another page has control; take it first');
+  assert.ok(said && button && Math.hypot(said.x - button.x, said.y - button.y - button.height) < 20, JSON.stringify([said, button]));
+  assert.equal(await answer(second, '{"type":"disarm"}'), 'refused: another page has control; take it first');
+  // The menu goes on showing what runs.
+  await second.locator('#scenario').selectOption('mode5');
+  assert.equal(await second.locator('#scenario').inputValue(), 'mode1');
   await second.locator('#stop').click();
   await isArmed(false);
   await seatText(second, 'page 1 has control, this is page 2');

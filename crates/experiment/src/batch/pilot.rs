@@ -3,7 +3,7 @@
 use crate::files::commands::read_one;
 use crate::files::{FileError, Setup, goal_seen_from};
 use crate::operator::Operator;
-use crate::run::{parameters, prepare};
+use crate::run::{of_seed, parameters};
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_control::policy::{Known, Observation, observe};
@@ -11,7 +11,6 @@ use rumbo_control::{Drive, ServoAngle};
 use rumbo_sim::Sim;
 use rumbo_sim::trace::TimedMessage;
 use rumbo_wire::{Command, Refusal};
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Ground truth, in the order of [`super::Robot::true_values`].
@@ -104,14 +103,7 @@ impl Pilot {
             let _ = pilot.command(&mut sim, &Command::Mode(mode));
             return Ok((sim, pilot));
         }
-        let calibrated = match prepare(&drawn, seed)? {
-            Cow::Owned(calibrated) => Some(calibrated),
-            Cow::Borrowed(_) => None,
-        };
-        let prepared = match (calibrated, drawn) {
-            (Some(own), _) | (None, Cow::Owned(own)) => Arc::new(own),
-            (None, Cow::Borrowed(_)) => setup.clone(),
-        };
+        let prepared = of_seed(setup, seed)?;
         let mode = prepared.scenario.mode;
         let mut sim = prepared.sim(seed)?;
         let mut operator = Operator::new(prepared);

@@ -6,8 +6,10 @@
     reason = "helpers of tests too"
 )]
 
+mod bench;
 mod calibration;
 mod fleet;
+mod play;
 mod programs;
 mod supply;
 mod velocity;

@@ -1,11 +1,10 @@
 //! STOP, OFF and ON where a foreign program has the robot, one that reads nothing and drives for ever.
-#![allow(clippy::unwrap_used)]
 
+use crate::bench::Bench;
 use rumbo_experiment::files::{Library, Overrides};
 use rumbo_experiment::run;
-use rumbo_lab::SimulatedRobot;
-use rumbo_log::{Choice, Entry, Level, Manifest};
-use rumbo_session::{Driver, Event, Extras, Host, Order, SLICE_US, Target};
+use rumbo_log::Choice;
+use rumbo_session::Order;
 use rumbo_wire::Command;
 
 /// Pins 6 and 7, 5 and 4 of a Mega high: both wheels at full speed, and nothing else, for ever.
@@ -29,77 +28,29 @@ fn bolting() -> Vec<u8> {
     format!(":{line}\n:00000001FF\n").into_bytes()
 }
 
-/// Keeps what the page is told.
-#[derive(Default)]
-struct Told {
-    events: Vec<String>,
-    cut: bool,
-}
-
-impl Host for Told {
-    fn random_id(&mut self) -> u8 {
-        7
-    }
-
-    fn publish(&mut self, event: Event) {
-        let Event::Entry(entry) = event else { return };
-        match &*entry {
-            Entry::Event(event) => self.events.push(event.text.clone()),
-            Entry::State(state) => self.cut = state.motors_cut,
-            _ => {}
-        }
-    }
-
-    fn begin_run(&mut self, _: Manifest) -> Option<(Level, String)> {
-        None
-    }
-}
-
-fn pass(driver: &mut Driver<Told, SimulatedRobot>, wall_us: &mut u64, seconds: f64) {
-    for _ in 0..(seconds * 1e6) as u64 / SLICE_US {
-        *wall_us += SLICE_US;
-        driver.wall_passed(*wall_us);
-        while driver.slice(*wall_us).unwrap() {}
-        driver.update(*wall_us);
-    }
-}
-
 #[test]
 fn stop_and_off_stop_a_program_that_ignores_them_and_on_lets_it_drive_again() {
-    let choice = Choice {
+    let mut bench = Bench::new(Choice {
         scenario: "mode1".into(),
         world: Some("open".into()),
         rig: None,
         seed: 1,
-    };
-    let robot = SimulatedRobot::new(Overrides::default(), choice).unwrap();
-    let mut driver = Driver::new(Box::new(robot), Told::default(), 1.0, Extras::default());
-    driver.begin(0);
-    let mut wall_us = 0;
-    driver
-        .obey([Order::Program("bolt.hex".into(), bolting())], 0)
-        .unwrap();
-    pass(&mut driver, &mut wall_us, 1.0);
-    let speed = |driver: &mut Driver<Told, SimulatedRobot>| {
-        driver.target().truth().unwrap().wheel_rad_s.left
-    };
-    assert!(speed(&mut driver) > 5.0, "{}", speed(&mut driver));
+    });
+    bench.order(Order::Program("bolt.hex".into(), bolting()));
+    bench.pass(1.0);
+    assert!(bench.wheel_rad_s() > 5.0, "{}", bench.wheel_rad_s());
     for order in [Command::Stop, Command::Disarm] {
-        driver.obey([Order::Robot(order)], wall_us).unwrap();
+        bench.order(Order::Robot(order));
         // Released wheels roll out.
-        pass(&mut driver, &mut wall_us, 4.0);
-        assert!(speed(&mut driver).abs() < 0.01, "{order:?}");
-        assert!(driver.host().cut, "{order:?}");
-        driver.obey([Order::Robot(Command::Arm)], wall_us).unwrap();
-        pass(&mut driver, &mut wall_us, 1.0);
-        assert!(speed(&mut driver) > 5.0, "{order:?}");
-        assert!(!driver.host().cut, "{order:?}");
+        bench.pass(4.0);
+        assert!(bench.wheel_rad_s().abs() < 0.01, "{order:?}");
+        assert!(bench.state().motors_cut, "{order:?}");
+        bench.order(Order::Robot(Command::Arm));
+        bench.pass(1.0);
+        assert!(bench.wheel_rad_s() > 5.0, "{order:?}");
+        assert!(!bench.state().motors_cut, "{order:?}");
     }
-    let told = driver.host().events.join("\n");
-    assert!(
-        told.contains("STOP: the motors have no supply, whatever the program does"),
-        "{told}"
-    );
+    assert!(bench.told("STOP: the motors have no supply, whatever the program does"));
 }
 
 #[test]

@@ -68,6 +68,7 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
         calibration: None,
         program: None,
         motors_cut: false,
+        experiment: None,
         replay: None,
     }
 }

@@ -1,0 +1,12 @@
+// @ts-check
+/** Signals in tables. No browser is needed. */
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Table } from '../src/table.js';
+
+test('a legend shows the last value up to the time, however the curve is thinned', () => {
+  const table = new Table(['a', 'b'], 600);
+  for (let line = 0; line < 6_000; line++) table.push(line / 25, { a: line, b: line % 3 === 0 ? line : undefined });
+  assert.deepEqual([42.01, 42, Infinity, -1].map((t_s) => table.at('a', t_s)), [1050, 1050, 5_999, undefined]);
+  assert.equal(table.at('b', 42.05), 1050);
+});
