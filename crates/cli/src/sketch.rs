@@ -53,15 +53,20 @@ static LIBRARIES: OnceLock<Vec<PathBuf>> = OnceLock::new();
 
 /// Takes folders of libraries for the user's own sketches, from here on.
 pub(crate) fn take_libraries(folders: &[PathBuf]) -> Result<(), Failure> {
-    for folder in folders {
-        if !folder.is_dir() {
-            return Err(Failure::Input(format!(
+    let whole = |folder: &PathBuf| {
+        // The compiler works in a folder of its own.
+        let whole = std::fs::canonicalize(folder)
+            .ok()
+            .filter(|whole| whole.is_dir());
+        whole.ok_or_else(|| {
+            Failure::Input(format!(
                 "--libraries {}: no such folder; give the one that has a folder for each library",
                 folder.display()
-            )));
-        }
-    }
-    LIBRARIES.get_or_init(|| folders.to_vec());
+            ))
+        })
+    };
+    let folders = folders.iter().map(whole).collect::<Result<Vec<_>, _>>()?;
+    LIBRARIES.get_or_init(|| folders);
     Ok(())
 }
 

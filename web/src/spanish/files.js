@@ -22,8 +22,9 @@ export const FILES = {
   'the value must be finite': 'el valor debe ser finito', '`{}` is not a number': '`{}` no es un número', '{} {}, not `{}`': '{} {}, no `{}`',
   // Scenarios.
   'one line that says what the experiment is': 'una línea que diga qué experimento es', 'name of a robot, e.g. "memoria"': 'nombre de un robot, p. ej. "memoria"',
-  'name of one of the robot\'s rigs, e.g. "front_single"': 'nombre de uno de los montajes del robot, p. ej. "front_single"', 'name of a world, e.g. "open"': 'nombre de un mundo, p. ej. "open"',
-  'mode is missing: name or number of a mode, e.g. "front_distance" or 1': 'mode no está: nombre o número de un modo, p. ej. "front_distance" o 1',
+  'name of a world, e.g. "open"': 'nombre de un mundo, p. ej. "open"',
+  '{}: `{}` is to be pressed, and the wiring has no button, switch or potentiometer of that name: {}': '{}: `{}` se va a pulsar, y el cableado no tiene ningún botón, interruptor ni potenciómetro con ese nombre: {}',
+  'there are none; the robot file has them, e.g. parts.start = {} in its [wiring.NAME], for a sketch': 'no hay ninguno; se ponen en el archivo del robot, p. ej. parts.start = {} en su [wiring.NOMBRE], para un sketch', 'there are {}': 'hay {}',
   '"left", "right" or "front"': '"left", "right" o "front"', 'write "left", "right" or "front"': 'escribe "left", "right" o "front"',
   '"cut", "stuck", "clear" or "spiking"': '"cut", "stuck", "clear" o "spiking"', 'write "cut", "stuck", "clear", or "spiking" with share = 0.3': 'escribe "cut", "stuck", "clear", o "spiking" con share = 0.3',
   '"left_encoder" or "front_echo", for instance': '"left_encoder" o "front_echo", por ejemplo', '"low", "high", "losing" or "noisy"': '"low", "high", "losing" o "noisy"',

@@ -122,7 +122,13 @@ impl Mega {
     /// That the pin of a motor's speed has no PWM, where it was only switched.
     fn only_switched(&self, wheel: usize) -> Option<String> {
         let (inputs, lines) = (self.wires().bridges[wheel], &self.bridges[wheel].lines);
-        if lines.iter().any(|line| line.been_modulated()) {
+        // A program that knows no analogWrite() wants none.
+        let wants = self
+            .firmware
+            .image()
+            .function_named("analogWrite")
+            .is_some();
+        if !wants || lines.iter().any(|line| line.been_modulated()) {
             return None;
         }
         let speed = match inputs[0].pin() {
