@@ -43,6 +43,13 @@ export function complaint() {
   return line;
 }
 
+/** A button that copies a text. @param {string} text */
+export function copyButton(text) {
+  const button = create('button', { type: 'button', className: 'small', textContent: t('Copy') });
+  button.addEventListener('click', () => navigator.clipboard.writeText(text).then(() => { button.textContent = t('copied'); }, () => {}));
+  return button;
+}
+
 /** What went wrong, for such a line. @param {unknown} error */
 export function wordsOf(error) {
   if (error instanceof DOMException && error.name === 'NotFoundError') return t('no port was chosen');

@@ -29,6 +29,9 @@ export function create(tag, properties = {}, ...children) {
   return made;
 }
 
+/** A text with what stands between backticks as code. @param {string} text */
+export const withCode = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? create('code', { textContent: part }) : part));
+
 /**
  * Writes a text only when it differs, so that nothing is laid out again without need.
  * @param {Element} target

@@ -1,6 +1,6 @@
 // @ts-check
 /** *Run the experiment*: the scenario commands the robot; its progress, its verdict, and its limits as bands in the plots. */
-import { dialog } from './dialog.js';
+import { copyButton, dialog } from './dialog.js';
 import { create, element, setText } from './dom.js';
 import { settlingBand } from './step.js';
 import { t } from './text.js';
@@ -80,7 +80,7 @@ export class ExperimentPanel {
     this.#dialog.body.replaceChildren(
       create('div', { className: 'scroll', tabIndex: 0 }, create('table', {}, create('thead', {}, create('tr', {}, ...head)), create('tbody', {}, ...rows))),
       ...other.map((line) => create('p', { className: 'failed', textContent: line })),
-      create('p', { className: 'hint' }, `${t('The same run on the command line:')} `, create('code', { textContent: command })));
+      create('p', { className: 'hint' }, `${t('The same run on the command line:')} `, create('code', { textContent: command }), ' ', copyButton(command)));
     this.#dialog.open();
   }
 }

@@ -118,7 +118,7 @@ export class Header {
 }
 
 /** Scenarios by their titles, below the headings of their groups. @param {Scene['experiments']} experiments */
-function grouped(experiments) {
+export function grouped(experiments) {
   /** @type {Map<string | null, HTMLElement>} */
   const groups = new Map();
   /** @type {HTMLElement[]} */

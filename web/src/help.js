@@ -1,7 +1,7 @@
 // @ts-check
 /** The help page: keys, meaning of colours and lines, further reading. */
 import { dialog } from './dialog.js';
-import { create } from './dom.js';
+import { create, withCode } from './dom.js';
 import { t } from './text.js';
 
 /** Keys and what they do. */
@@ -31,9 +31,6 @@ function list(title, lines) {
   return create('section', {}, create('h2', { textContent: title }),
     create('dl', {}, ...lines.flatMap(([term = '', words = '']) => [create('dt', { textContent: term }), create('dd', { textContent: words })])));
 }
-
-/** A text with what stands between backticks as code. @param {string} text */
-const withCode = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? create('code', { textContent: part }) : part));
 
 /** Makes the help page; returns the function that opens it. @param {() => void} begin shows the first steps */
 export function makeHelp(begin) {

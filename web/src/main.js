@@ -43,7 +43,8 @@ import { StateLine, pointerWords } from './stateline.js';
 import { StepFigures, figures } from './step.js';
 import { Store } from './store.js';
 import { Tabs } from './tabs.js';
-import { LANGUAGES, language, speak, t, translatePage, untranslated } from './text.js';
+import { LANGUAGES, language, said, speak, t, translatePage, untranslated } from './text.js';
+import { Timeline } from './timeline.js';
 import { Tour } from './tour.js';
 import { TuneDialog } from './tune_dialog.js';
 import { WorkerLink, isSite } from './worker_link.js';
@@ -133,6 +134,7 @@ const redraw = onFrame(() => {
   plots.draw();
   map.draw();
   stateLine.draw();
+  timeline.draw();
   stepFigures.show(panel.mode);
   machine.draw();
   setText(pointer, pointerWords(map.pointed()));
@@ -173,6 +175,9 @@ const plots = new Plots(element('plots', HTMLDivElement), store, redraw, (follow
   live.classList.toggle('good', following);
 });
 plots.follow(true);
+plots.onPoint = onFrame(() => map.hover(plots.pointed_s));
+const timeline = new Timeline(store, redraw);
+live.addEventListener('click', () => timeline.follow());
 
 pause.addEventListener('click', () => plots.follow(!plots.following));
 live.addEventListener('click', () => plots.follow(true));
@@ -261,6 +266,7 @@ function receive(message) {
       simulated = message.scene?.of_ghost ? null : message.scene;
       recordings.titles = new Map(message.scene?.experiments.map(({ name, title }) => [name, title]));
       // The first robot's page has the time and the choice for all.
+      document.title = simulated?.experiments.find(({ name }) => name === simulated?.choice.scenario)?.title ? `${said(simulated.experiments.find(({ name }) => name === simulated?.choice.scenario)?.title ?? '').replaceAll('->', '→')} · Rumbo` : 'Rumbo';
       header.setScene(follows ? null : simulated);
       map.setScene(message.scene);
       editor.setScene(simulated);
@@ -274,7 +280,7 @@ function receive(message) {
       break;
     case 'state':
       state = message.state;
-      store.playhead_s = state.replay ? state.t_s : Infinity;
+      store.playhead_s = state.replay ? state.t_s : timeline.at_s;
       plots.whole_s = state.replay?.duration_s ?? null;
       setBody();
       header.show(state);

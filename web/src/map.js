@@ -75,6 +75,8 @@ export class WorldMap {
   /** The view follows the robot; null: where it would be too small otherwise. @type {boolean | null} */
   #follow = null;
   #followButton = element('follow', HTMLButtonElement);
+  /** The robot is also shown where it was then [s]. @type {number | null} */
+  #hover_s = null;
   servo_rad = 0;
   /** The place of the route that the robot goes to now, from its origin. @type {Point | null} */
   target = null;
@@ -151,6 +153,13 @@ export class WorldMap {
     this.#redraw();
   }
 
+  /** Shows the robot also where it was then [s]. @param {number | null} t_s */
+  hover(t_s) {
+    if (t_s === this.#hover_s) return;
+    this.#hover_s = t_s;
+    this.draw();
+  }
+
   focus() {
     this.#canvas.focus();
   }
@@ -210,6 +219,8 @@ export class WorldMap {
     if (this.#pick && !isIdentity(this.#origin())) sketch.drawAxes(this.#origin(), px);
     this.#drawTask(px);
     const latest = this.#store.latest;
+    const then = this.#hover_s === null ? null : this.#store.poseAt(this.#hover_s);
+    if (then) sketch.drawRobot(then, px, 'estimated', false);
     if (!latest) return;
     const estimated = latest.estimated && compose(latest.origin, latest.estimated);
     const seen = latest.truth ?? estimated;

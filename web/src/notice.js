@@ -30,7 +30,7 @@ export class Notice {
     const old = this.#known && !document.body.classList.contains('replay') ? ` ${t('What is shown is of {}, and STOP does not reach the robot.', this.#since ?? '')}` : '';
     const robot = document.body.classList.contains('at-port') ? ` ${t('With Rumbo\'s program the robot stops by itself, for lack of a heartbeat.')}` : '';
     if (now === 'ended') return t('The lab of this page has ended: {}. Load the page again.', said(why ?? '')) + robot;
-    if (now === 'used') return t('This address opens once, and was opened before. Go on in the browser in which it was opened, or start rumbo again and open the new address.');
+    if (now === 'used') return t('This address opens once, and was opened before. Go on in the browser in which it was opened, or press Enter where rumbo runs: it prints another address.');
     if (now === 'locked' && !this.#known) return t('This browser has no key to the station: open the address that rumbo printed when it started.');
     if (now === 'locked') return `${t('The station was started again, with a new key: open the address that it printed.')}${old}`;
     return `${why ? t('No connection to the station: {}. Trying again…', said(why)) : t('No connection to the station. Trying again…')}${old}`;

@@ -43,7 +43,11 @@ export class CommandPanel {
     this.#steering = new Steering(() => send({ type: 'stop' }));
     this.#places = new Places(send, map);
     element('stop', HTMLButtonElement).addEventListener('click', () => send({ type: 'stop' }));
-    element('on', HTMLButtonElement).addEventListener('click', () => send({ type: 'arm' }));
+    element('on', HTMLButtonElement).addEventListener('click', () => {
+      // What is drawn on the map is meant.
+      this.#places.sendDraft();
+      send({ type: 'arm' });
+    });
     this.#experiment.addEventListener('click', () => {
       if (this.#scene) send({ type: 'reset', scenario: this.#experiment.value, world: null, rig: null, seed: this.#scene.choice.seed });
     });

@@ -132,6 +132,11 @@ export class Places {
     if (this.#draft.length < (this.#mode?.route ?? 0)) this.#change([...this.#draft, [rounded(x_m), rounded(y_m)]]);
   }
 
+  /** Sends the route that is drawn, if there is one. */
+  sendDraft() {
+    if (this.#draft.length > 0) this.#sendRoute();
+  }
+
   #sendRoute() {
     const waypoints = this.#draft.map(([x_m, y_m]) => ({ x_m, y_m }));
     this.#send({ type: 'route', repeat: this.#repeat.checked, relative: this.#relative.checked, waypoints });

@@ -163,8 +163,12 @@ export class Plots {
     this.#showTime();
   }
 
+  /** The pointer is at another time. */
+  onPoint = () => {};
+
   /** A moved cursor changes the numbers shown, not the curves. */
   label() {
+    this.onPoint();
     for (const panel of this.#panels) panel.label();
     this.#showTime();
   }

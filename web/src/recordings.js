@@ -161,7 +161,11 @@ export class Recordings {
 
   async #compareChosen() {
     const contents = await Promise.all(this.#chosen.map(async (name) => JSON.parse(await ask(`/recordings/${encodeURIComponent(name)}`))));
-    this.#comparison.show(contents, this.#modes());
+    const names = this.#chosen.map((name) => {
+      const recording = this.#list.find((each) => each.name === name);
+      return recording ? [this.#title(recording), ...(recording.seed === null ? [] : [t('seed {}', recording.seed)]), when(recording)].join(', ') : name;
+    });
+    this.#comparison.show(contents, this.#modes(), names);
   }
 }
 

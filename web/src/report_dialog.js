@@ -3,8 +3,8 @@
  * *Report*: the experiments of the course, run and written up as one page. On the site a worker makes it, `lab/report.js`,
  * which is loaded when the dialog is opened first; at a station it is a command that makes it, and the dialog says which.
  */
-import { complaint, dialog, saveFile } from './dialog.js';
-import { create, element, setText } from './dom.js';
+import { complaint, copyButton, dialog, saveFile } from './dialog.js';
+import { create, element, setText, withCode } from './dom.js';
 import { language, said, t } from './text.js';
 import { format } from './units.js';
 import { isSite } from './worker_link.js';
@@ -12,6 +12,7 @@ import { isSite } from './worker_link.js';
 /** @typedef {import('../lab/report.js').News} News */
 /** @typedef {import('../lab/report.js').Wanted} Wanted */
 
+const COMMAND = `rumbo experiments --language ${language}`;
 /** As `rumbo experiments` calls it. */
 const FILE = 'report.html';
 const MOST_SEED = 2 ** 32 - 1;
@@ -41,8 +42,8 @@ export class ReportDialog {
     if (!isSite) {
       this.#dialog.body.append(
         create('p', { textContent: t('Rumbo writes the report on this computer: every experiment of the course, run faster than real time, with its figures, as one page.') }),
-        create('pre', {}, create('code', { textContent: `rumbo experiments --language ${language}` })),
-        create('p', { className: 'hint', textContent: t('`--only mode1 mode5` writes chosen chapters, `--real FOLDER` puts recorded runs of a robot beside ours.') }));
+        create('div', { className: 'row' }, create('code', { textContent: COMMAND }), copyButton(COMMAND)),
+        create('p', { className: 'hint' }, ...withCode(t('`--only mode1 mode5` writes chosen chapters, `--real FOLDER` puts recorded runs of a robot beside ours.'))));
       return;
     }
     this.#part.setAttribute('aria-label', t('Make the report'));

@@ -79,8 +79,10 @@ export class StateLine {
     setText(this.#aim, aim);
     if (this.#aim.title !== aim) this.#aim.title = aim;
     const end = task.end;
-    setText(this.#end, said(end ?? ''));
-    this.#end.className = end === null ? '' : `chip ${end === 'reached' ? 'good' : 'warning'}`;
+    // What was reached before it was switched off is over.
+    const shown = slow.robot.armed && (slow.replay || this.#store.playhead_s === Infinity) ? end : null;
+    setText(this.#end, said(shown ?? ''));
+    this.#end.className = shown === null ? '' : `chip ${end === 'reached' ? 'good' : 'warning'}`;
     this.#showPose(slow);
   }
 
@@ -97,6 +99,8 @@ export class StateLine {
     const latest = this.#store.latest;
     const mode = this.modes.find((each) => each.id === robot.mode);
     if (robot.fault !== null) return t('fault');
+    const looks_back = this.#store.playhead_s !== Infinity && latest !== null;
+    if (looks_back && latest.mode >= 0) return latest.armed ? stateWords(this.modes.find((each) => each.id === latest.mode), latest.state) : t('off');
     if (!robot.armed) return t('off');
     const current = latest?.mode === robot.mode ? latest.state : 0;
     return stateWords(mode, current);
@@ -109,6 +113,7 @@ export class StateLine {
     const mode = this.modes.find((each) => each.id === robot.mode);
     const [left, right] = robot.reference;
     const answers = slow.link.connected || robot.text;
+    if (slow.speed === 0 && !slow.replay) return t('time stands still: what is pressed happens when it runs again');
     const words = !answers || robot.armed || robot.fault !== null || slow.replay || slow.refused ? [] : [t('ON starts it')];
     const at = latest?.estimated;
     const to = latest?.heading_ref_rad ?? null;

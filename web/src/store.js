@@ -91,8 +91,8 @@ const FARTHEST_DEG = 315;
 const STEPS_KEPT = 500;
 /** Two frames of telemetry [s]. */
 const SHORTEST_STEP_S = 0.1;
-/** Samples kept of a replay: what a page gets around the playhead, and as much again. */
-const MOMENTS_KEPT = 30_000;
+/** Samples kept for the map: more than ten minutes, and of a replay what a page gets around the playhead. */
+const MOMENTS_KEPT = 16_000;
 /** Points kept of each trail, in the world, one every 2 cm at least. */
 const TRAIL_POINTS = 2_000;
 const TRAIL_STEP_M = 0.02;
@@ -122,7 +122,7 @@ export class Store {
   #run = 0;
   /** The heading plotted last [deg]. */
   #heading_deg = 0;
-  /** Where a replay is [s]; live there is nothing after it. */
+  /** Where a replay is [s]; live there is nothing after it, unless an earlier instant is looked at. */
   #playhead_s = Infinity;
   /** The samples, and how many of them the map shows. @type {Latest[]} */
   #moments = [];
@@ -163,6 +163,23 @@ export class Store {
     this.#advance();
   }
 
+  /** Time of the oldest sample kept [s]. */
+  get oldest_s() {
+    return this.#moments[0]?.t_s ?? 0;
+  }
+
+  /** Where the robot was at an instant, in the world. @param {number} t_s @returns {Pose | null} */
+  poseAt(t_s) {
+    let [low, high] = [0, this.#moments.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if ((this.#moments[middle]?.t_s ?? Infinity) <= t_s) low = middle + 1;
+      else high = middle;
+    }
+    const at = this.#moments[low - 1];
+    return at ? at.truth ?? (at.estimated && compose(at.origin, at.estimated)) : null;
+  }
+
   #rewind() {
     this.latest = null;
     this.trails = { estimated: [], truth: [], ghost: [] };
@@ -177,9 +194,8 @@ export class Store {
       lengthen(this.trails.ghost, next.ghost);
       this.latest = next;
     }
-    // Live, where all is shown, those before the last are not needed again.
-    const kept = this.#playhead_s === Infinity ? 1 : MOMENTS_KEPT;
-    if (this.#moments.length > kept) this.#shown -= this.#moments.splice(0, this.#moments.length - kept).length;
+    // In large blocks, so that moving the rest is rare.
+    if (this.#moments.length > 1.2 * MOMENTS_KEPT) this.#shown = Math.max(0, this.#shown - this.#moments.splice(0, this.#moments.length - MOMENTS_KEPT).length);
   }
 
   /**

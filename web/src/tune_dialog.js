@@ -6,6 +6,7 @@
 import { complaint, dialog, saveFile, wordsOf } from './dialog.js';
 import { create, element, setText } from './dom.js';
 import { ask } from './key.js';
+import { grouped } from './header.js';
 import { unitWords } from './parameters.js';
 import { said, t } from './text.js';
 import { format, formatFloat } from './units.js';
@@ -59,6 +60,7 @@ export class TuneDialog {
   #scene = null;
   /** @type {Search | null} */
   #search = null;
+  #least = create('span', { className: 'hint' });
   /** The scenario that was loaded when the dialog was opened last. */
   #loaded = '';
   #page = 0;
@@ -82,7 +84,7 @@ export class TuneDialog {
       create('label', { className: 'wide' }, `${t('scenario')} `, this.#scenario), this.#limits, this.#parameters,
       create('label', { className: 'wide' }, `${t('aims')} `, this.#aims),
       create('p', { className: 'hint', textContent: t('Metrics to make small, and limits, with commas between them. Without any, all limits of the scenario are kept with as much room as possible.') }),
-      create('div', { className: 'row' }, create('label', {}, `${t('runs')} `, this.#runs), create('label', {}, `${t('seed')} `, this.#seed), this.#start, this.#cancel, this.#part, this.#left));
+      create('div', { className: 'row' }, create('label', {}, `${t('runs')} `, this.#runs), this.#least, create('label', {}, `${t('seed')} `, this.#seed), this.#start, this.#cancel, this.#part, this.#left));
     form.addEventListener('submit', (event) => {
       event.preventDefault();
       this.#begin();
@@ -140,12 +142,14 @@ export class TuneDialog {
     try {
       const { least_runs, most_runs, scenarios } = JSON.parse(await ask('/tune'));
       this.#offers = scenarios;
-      Object.assign(this.#runs, { min: String(least_runs), max: String(most_runs) });
+      Object.assign(this.#runs, { min: String(least_runs), max: String(most_runs), title: t('{} to {} {}', least_runs, most_runs, t('runs')) });
+      setText(this.#least, t('at least {}', least_runs));
     } catch (error) {
       return setText(this.#complaint, wordsOf(error));
     }
     const before = this.#scenario.value;
-    this.#scenario.replaceChildren(...this.#offers.map(({ name, title }) => create('option', { value: name, textContent: `${name}: ${said(title).replaceAll('->', '→')}` })));
+    const groups = new Map(this.#scene?.experiments.map(({ name, group }) => [name, group]));
+    this.#scenario.replaceChildren(...grouped(this.#offers.map((offer) => ({ ...offer, group: groups.get(offer.name) ?? null, mode: 0, shows_mode: true }))));
     // What was chosen stays until another scenario is loaded; the values may be others.
     const other = this.#loaded !== loaded;
     this.#loaded = loaded;

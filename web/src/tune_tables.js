@@ -8,10 +8,13 @@ import { format, formatShort } from './units.js';
 /** @typedef {import('./tune_search.js').Difference} Difference */
 
 /** A value with four digits, or a dash where there is none. @param {number | null} value */
-const figure = (value) => (value === null ? '–' : formatShort(value, 4));
+const figure = (value) => (value === null ? '–' : short(value));
+
+/** No more digits than tell: a difference of a hundredth of a millimetre is none. @param {number} value */
+const short = (value) => formatShort(Math.abs(value) < 5e-5 ? 0 : Number(value.toPrecision(3)));
 
 /** A difference with its sign. @param {number | null} value */
-const signed = (value) => (value !== null && value > 0 ? `+${formatShort(value, 3)}` : value === null ? '–' : formatShort(value, 3));
+const signed = (value) => (value === null ? '–' : value > 0 && short(value) !== '0' ? `+${short(value)}` : short(value));
 
 /** The parameters before and after, and every metric that differs in some run. @param {Found} found @param {(name: string) => string} unitOf */
 export function resultTables({ parameters, differences }, unitOf) {

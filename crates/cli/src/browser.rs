@@ -6,7 +6,7 @@
 use crate::args::ServeArgs;
 use crate::failure::Failure;
 use crate::output;
-use rumbo_station::{Folder, Lab};
+use rumbo_station::{Addresses, Folder, Lab};
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -20,9 +20,29 @@ pub(crate) fn show(lab: Lab, serve: ServeArgs) -> Result<(), Failure> {
         output::line(&format!("viewers: {}", lab.viewers_url()))?;
     }
     open_while(lab.url(), serve, "the dashboard", || lab.until_opened());
+    more_addresses(lab.addresses());
     let ended = lab.wait();
     drop(key);
     ended.map_err(Failure::input)
+}
+
+/// Prints another address whenever a person at the terminal presses Enter: the one before opens once.
+fn more_addresses(addresses: Addresses) {
+    let stdin = io::stdin();
+    if !stdin.is_terminal() {
+        return;
+    }
+    let _ = writeln!(
+        io::stderr(),
+        "Enter prints another address, for another browser"
+    );
+    std::thread::spawn(move || {
+        for _ in stdin.lines().map_while(Result::ok) {
+            if let Some(url) = addresses.another() {
+                let _ = output::line(&url);
+            }
+        }
+    });
 }
 
 /// A file with the key of those who may drive, which only this user can read: for programs such as `rumbo-ros`, which

@@ -197,10 +197,10 @@ fn remove_own(folder: &Path, ending: &str, mark: &mark::Mark) -> Result<(), Fail
     Ok(())
 }
 
-/// A file name for each hand-in: its name, restricted to portable characters; where another one has that, whatever
+/// A file name for each hand-in: its name, restricted to letters and digits of any script; where another one has that, whatever
 /// its capitals, with the first number that makes it another.
 fn file_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    let is_plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
     let mut taken = BTreeSet::new();
     names
         .map(|name| {
@@ -209,7 +209,7 @@ fn file_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
             let numbered = (1..).map(|number| format!("{name}-{number}"));
             std::iter::once(name.clone())
                 .chain(numbered)
-                .find(|free| taken.insert(free.to_ascii_lowercase()))
+                .find(|free| taken.insert(free.to_lowercase()))
                 .unwrap_or(name)
         })
         .collect()

@@ -400,7 +400,7 @@ impl Session {
         let around = Around {
             true_battery_v: going.true_battery_v,
             t_us: now.target_us,
-            simulated: self.about.abilities.pace,
+            simulated: self.about.abilities.pace || !self.about.abilities.port,
             speed: going.speed,
             achieved_speed: going.achieved_speed,
             baud: self.about.baud,

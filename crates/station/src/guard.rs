@@ -4,7 +4,7 @@
 //! answers (DNS rebinding). So every request must name exactly this host, and must come from this origin if it comes
 //! from a page. The page itself is no secret. Its WebSocket shows and drives the robot, and requires a key, which the
 //! page gets in exchange for the token in a printed address. There are two addresses: the controller's works once, so
-//! that one seen over a shoulder is worthless; the viewers' works for everyone who has it, to watch and to stop the
+//! that one seen over a shoulder is worthless, and who sits at the terminal gets another one; the viewers' works for everyone who has it, to watch and to stop the
 //! robot. A program of the same user gets the key itself, in a file that nobody else can read.
 //!
 //! The key is no cookie: a browser sends cookies to every port of a host, and other users of this computer may run
@@ -13,8 +13,8 @@
 use crate::error::ServeError;
 use axum::http::{HeaderMap, header};
 use std::net::{IpAddr, SocketAddr};
-use std::sync::OnceLock;
 use std::sync::mpsc::Sender;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use subtle::ConstantTimeEq;
 
 /// A random secret of 256 bits, in hexadecimal.
@@ -71,6 +71,13 @@ impl Access {
     }
 }
 
+/// A further token, and what the page presented that used it.
+#[derive(Debug)]
+struct Entry {
+    token: Secret,
+    used_by: OnceLock<String>,
+}
+
 /// Decides on requests.
 #[derive(Debug)]
 pub(crate) struct Guard {
@@ -79,6 +86,8 @@ pub(crate) struct Guard {
     origins: Vec<String>,
     controller: Access,
     viewer: Access,
+    /// Further tokens of the controller, for addresses that were asked for.
+    further: Mutex<Vec<Entry>>,
     /// What the page that used the controller's token presented: it asks again if the answer is lost.
     used_by: OnceLock<String>,
     /// Notified then.
@@ -110,7 +119,7 @@ impl Denied {
                 "refused: open the address that rumbo printed when it started, with its token"
             }
             Self::Token => {
-                "refused: this address was used already or is of an earlier start; use the browser in which it was opened, or start rumbo again"
+                "refused: this address was used already or is of an earlier start; use the browser in which it was opened, or press Enter where rumbo runs: it prints another address"
             }
         }
     }
@@ -132,9 +141,26 @@ impl Guard {
             hosts,
             controller: Access::new(Role::Controller)?,
             viewer: Access::new(Role::Viewer)?,
+            further: Mutex::default(),
             used_by: OnceLock::new(),
             opened,
         })
+    }
+
+    /// Another address to open, once, as in another browser.
+    ///
+    /// # Errors
+    /// When the system gives no randomness.
+    pub(crate) fn another_url(&self) -> Result<String, getrandom::Error> {
+        let token = Secret::new()?;
+        let url = format!("http://{}/?token={}", self.at, token.0);
+        let used_by = OnceLock::new();
+        self.further().push(Entry { token, used_by });
+        Ok(url)
+    }
+
+    fn further(&self) -> MutexGuard<'_, Vec<Entry>> {
+        self.further.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The address to open, once.
@@ -215,21 +241,29 @@ impl Guard {
     }
 
     fn redeem(&self, access: &Access, token: &str, shown: &str) -> Result<Role, Denied> {
-        if !access.token.matches(token) {
+        if access.role == Role::Viewer {
+            return access
+                .token
+                .matches(token)
+                .then_some(Role::Viewer)
+                .ok_or(Denied::Token);
+        }
+        let further = self.further();
+        let used_by = match further.iter().find(|entry| entry.token.matches(token)) {
+            Some(entry) => &entry.used_by,
+            None if access.token.matches(token) => &self.used_by,
+            None => return Err(Denied::Token),
+        };
+        // A page that shows nothing could not ask again, and nobody else could after it.
+        if shown.is_empty() {
             return Err(Denied::Token);
         }
-        if access.role == Role::Controller {
-            // A page that shows nothing could not ask again, and nobody else could after it.
-            if shown.is_empty() {
-                return Err(Denied::Token);
-            }
-            let used_by = self.used_by.get_or_init(|| shown.to_owned());
-            if !bool::from(used_by.as_bytes().ct_eq(shown.as_bytes())) {
-                return Err(Denied::Token);
-            }
-            let _ = self.opened.send(());
+        let used_by = used_by.get_or_init(|| shown.to_owned());
+        if !bool::from(used_by.as_bytes().ct_eq(shown.as_bytes())) {
+            return Err(Denied::Token);
         }
-        Ok(access.role)
+        let _ = self.opened.send(());
+        Ok(Role::Controller)
     }
 }
 
@@ -352,6 +386,17 @@ mod tests {
         for none in ["mine", "0", ""] {
             assert_eq!(guard.key(none, ""), Err(Denied::Key));
         }
+    }
+
+    #[test]
+    fn another_address_opens_once_too_and_the_first_one_no_more() {
+        let guard = guard();
+        let (url, other) = (guard.url(), guard.another_url().unwrap());
+        let key = guard.key("mine", query(&url)).unwrap();
+        assert_eq!(guard.key("yours", query(&url)), Err(Denied::Token));
+        assert_eq!(guard.key("yours", query(&other)), Ok(key));
+        assert_eq!(guard.key("theirs", query(&other)), Err(Denied::Token));
+        assert_ne!(other, guard.another_url().unwrap());
     }
 
     #[test]

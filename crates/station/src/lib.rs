@@ -34,6 +34,7 @@ pub use error::{ServeError, SessionError};
 pub use folder::{Folder, serve_folder};
 pub use recorder::{Recording, now_utc, today_utc};
 pub use serve::{
-    DEFAULT_PORT, Lab, LabConfig, Named, ServeAt, serve, serve_fleet, serve_log, serve_with,
+    Addresses, DEFAULT_PORT, Lab, LabConfig, Named, ServeAt, serve, serve_fleet, serve_log,
+    serve_with,
 };
 pub use tuning::{NotTuned, Tuner};

@@ -83,12 +83,25 @@ impl Default for LabConfig {
 /// A target and the name of its robot.
 pub type Named = (String, Box<dyn Target>);
 
+/// Makes addresses that open the dashboard once each.
+#[derive(Clone, Debug)]
+pub struct Addresses(Arc<Guard>);
+
+impl Addresses {
+    /// The next one; `None` when the system gives no randomness.
+    #[must_use]
+    pub fn another(&self) -> Option<String> {
+        self.0.another_url().ok()
+    }
+}
+
 /// A lab being served; dropping it ends it, and stops the robot.
 #[derive(Debug)]
 pub struct Lab {
     url: String,
     viewers_url: String,
     key: String,
+    addresses: Addresses,
     port: u16,
     opened: Receiver<()>,
     web_ends: Option<oneshot::Sender<()>>,
@@ -100,6 +113,11 @@ impl Lab {
     /// The address to open in a browser, with its one-time token.
     pub fn url(&self) -> &str {
         &self.url
+    }
+
+    /// Further addresses, for whoever sits at the terminal.
+    pub fn addresses(&self) -> Addresses {
+        self.addresses.clone()
     }
 
     /// The address for viewers; it can be opened any number of times.
@@ -287,6 +305,8 @@ fn start_on(
     let guard = Guard::new(at, opens.clone()).map_err(io::Error::other)?;
     let (url, viewers_url) = (guard.url(), guard.viewers_url());
     let key = guard.drivers_key().to_owned();
+    let guard = Arc::new(guard);
+    let addresses = Addresses(Arc::clone(&guard));
 
     let several = names.len() > 1;
     let (mut chairs, mut hubs) = (Vec::new(), Vec::new());
@@ -314,7 +334,7 @@ fn start_on(
             ended
         })?;
 
-    let router = web::router(Arc::new(guard), hubs);
+    let router = web::router(guard, hubs);
     let (web_ends, ended) = oneshot::channel::<()>();
     let ended = async {
         // An error: the lab was dropped.
@@ -327,6 +347,7 @@ fn start_on(
         url,
         viewers_url,
         key,
+        addresses,
         port,
         opened,
         web_ends: Some(web_ends),

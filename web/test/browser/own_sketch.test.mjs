@@ -61,6 +61,8 @@ test('STOP stops it whatever it does, the page says by what, and ON lets it go o
   const chip = page.locator('#armed');
   const text = readFileSync(file, 'utf8');
   save('#include <RumboRobot.h>\nRumboRobot robot;\nvoid setup() { robot.begin(); }\nvoid loop() { robot.drive(-80, -80); }\n');
+  const renewed = page.locator('#events li', { hasText: 'the changed program runs' });
+  await renewed.first().waitFor();
   await until('true_left_rpm', -300, -20);
   await page.keyboard.press('Space');
   await until('true_left_rpm', -0.1, 0.1);
@@ -70,6 +72,7 @@ test('STOP stops it whatever it does, the page says by what, and ON lets it go o
   await chip.filter({ hasText: 'motors supplied' }).waitFor();
   await until('true_left_rpm', -300, -20);
   save(text);
+  await renewed.nth(1).waitFor();
   await until('true_left_rpm', 20, 300);
 });
 

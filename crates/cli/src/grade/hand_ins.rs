@@ -47,7 +47,8 @@ pub(super) fn find(folder: &Path) -> Result<(Vec<Found>, Vec<String>), Failure> 
     }
     let entries = fs::read_dir(folder).map_err(wrong)?.flatten();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
-    paths.sort();
+    // As people look names up, whatever their capitals.
+    paths.sort_by_cached_key(|path| (super::name_of(path).to_lowercase(), path.clone()));
     let (paths, others): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_hand_in(path));
     let hidden = |path: &Path| super::name_of(path).starts_with('.');
     // Hidden files of other programs are nobody's hand-in.
