@@ -138,8 +138,21 @@ export class Sketch {
 
   /** @param {number} px @param {number} t_s Simulated time. */
   drawWorld(px, t_s) {
+    this.drawLines();
     this.drawOutlines(px, this.scene?.obstacles ?? []);
     this.drawMovers(px, t_s);
+  }
+
+  /** Dark lines on the floor. */
+  drawLines() {
+    const context = this.context;
+    context.strokeStyle = colours.text;
+    context.lineJoin = 'round';
+    for (const { points_m, width_m } of this.scene?.lines ?? []) {
+      context.lineWidth = width_m;
+      tracePath(context, points_m, false);
+      context.stroke();
+    }
   }
 
   /** What moves, at this simulated time. @param {number} px @param {number} t_s */

@@ -4,8 +4,8 @@ use rumbo_control::SonarId;
 use rumbo_experiment::files::TimedCommand;
 use rumbo_experiment::files::{FileError, Kind, Library, ScenarioFile, Setup, goal_seen_from};
 use rumbo_log::{
-    Choice, Experiment, MapPose, Mover, Obstacle, Other, Repeat, RoutePlan, Scene, SonarMount,
-    TimedPose,
+    Choice, Experiment, FloorLine, MapPose, Mover, Obstacle, Other, Repeat, RoutePlan, Scene,
+    SonarMount, TimedPose,
 };
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::moving;
@@ -68,6 +68,7 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
             heading_rad: scenario.start.heading_rad,
         },
         obstacles: obstacles.collect(),
+        lines: world.lines.iter().map(floor_line).collect(),
         movers: world.movers.iter().map(mover).collect(),
         others: Vec::new(),
         footprint_m: footprint.corners(&Pose::default()).to_vec(),
@@ -98,6 +99,13 @@ pub fn others(fleet: &[Setup], number: usize) -> Vec<Other> {
             footprint_m: outline(setup),
         })
         .collect()
+}
+
+fn floor_line(line: &rumbo_sim::floor::Line) -> FloorLine {
+    FloorLine {
+        points_m: line.points_m.clone(),
+        width_m: line.width_m,
+    }
 }
 
 /// Something that moves, as the map needs it.

@@ -57,8 +57,8 @@ pub use parameters::{Parameter, ParameterState, parameter, parameters};
 pub use reading::{Names, Reading, Source};
 pub use recorded::{CSV, recorded_csv};
 pub use scene::{
-    Choice, Experiment, MapPose, Mover, Obstacle, Other, Place, Repeat, RoutePlan, Scene,
-    SonarMount, TimedPose, Truth, compose,
+    Choice, Experiment, FloorLine, MapPose, Mover, Obstacle, Other, Place, Repeat, RoutePlan,
+    Scene, SonarMount, TimedPose, Truth, compose,
 };
 pub use signals::{Cell, EARLIER_MS, Row, SIGNALS, Sample, Signal, Spread};
 pub use state::{

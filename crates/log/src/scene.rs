@@ -72,6 +72,9 @@ pub struct Scene {
     pub start: MapPose,
     /// Walls and boxes.
     pub obstacles: Vec<Obstacle>,
+    /// Dark lines on the floor.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lines: Vec<FloorLine>,
     /// What moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub movers: Vec<Mover>,
@@ -89,6 +92,15 @@ pub struct Scene {
     /// It is the ghost's: the robot itself is not simulated.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub of_ghost: bool,
+}
+
+/// A dark line on the floor.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FloorLine {
+    /// Its corners, in order \[m\].
+    pub points_m: Vec<[f64; 2]>,
+    /// Its width \[m\].
+    pub width_m: f64,
 }
 
 /// A scenario to choose.

@@ -12,6 +12,7 @@ pub mod debugging;
 pub mod drivers;
 mod error;
 pub mod fleet;
+pub mod floor;
 mod instruments;
 pub mod mega;
 mod sim;

@@ -2,6 +2,7 @@
 
 use crate::boards::Board;
 use crate::drivers::Driver;
+use crate::floor::LineSensor;
 use std::collections::BTreeMap;
 
 /// The signals that a wiring may place: enable and direction inputs of the bridge, encoders, servo, sonars and UARTs.
@@ -41,6 +42,8 @@ pub struct Wiring {
     pub pins: BTreeMap<String, u8>,
     /// Inputs of the driver that are held high or low instead, as by a jumper.
     pub held: BTreeMap<String, bool>,
+    /// Sensors for lines on the floor.
+    pub line_sensors: Vec<LineSensor>,
     /// What else is at pins: what a person works, and what shows something.
     pub parts: Vec<Part>,
     /// Rate of the Bluetooth module, where it is not the usual one \[baud\].

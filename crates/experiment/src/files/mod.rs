@@ -14,6 +14,7 @@ mod fit;
 mod fleet;
 mod kept;
 mod library;
+mod line;
 mod mover;
 mod names;
 pub(crate) mod near;

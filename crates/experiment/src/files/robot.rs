@@ -18,6 +18,7 @@
 //! ```
 
 use super::error::{FileError, did_you_mean};
+use super::line::read_line_sensors;
 use super::parameters::read_parameters;
 use super::read::{Allowed, Source, Table};
 use super::value::ANGLE;
@@ -248,6 +249,7 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
         wiring.pins.insert(signal.to_owned(), number);
     }
     read_parts(&table.table("parts"), &mut wiring);
+    wiring.line_sensors = read_line_sensors(&table.table("line"), &wiring);
     suits_driver(table, &wiring);
     table.finish();
     wiring
@@ -312,7 +314,12 @@ fn read_parts(table: &Table<'_, '_>, wiring: &mut Wiring) {
 }
 
 /// A pin of the board, by number or name.
-fn read_pin(table: &Table<'_, '_>, key: &str, board: &Board, analogue: bool) -> Option<u8> {
+pub(super) fn read_pin(
+    table: &Table<'_, '_>,
+    key: &str,
+    board: &Board,
+    analogue: bool,
+) -> Option<u8> {
     let (line, wired) = read_wired(table, key, board, analogue)?;
     match wired {
         Wired::Pin(number) if !analogue || number >= board.first_analogue => Some(number),

@@ -354,6 +354,7 @@ impl Setup {
             plant: setup.drawn_params(seed)?,
             rig: setup.rig,
             world,
+            lines: setup.world.lines.clone().into(),
             start: pose(&scenario.start),
             wheels_in_air: scenario.wheels_in_air,
             program,

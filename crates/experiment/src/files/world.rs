@@ -13,6 +13,8 @@
 //! centre_m = [0.5, 0.6]
 //! size_m = [0.4, 0.3]
 //! angle_deg = 20
+//! [[line]]               # dark lines on the floor: see `line.rs`
+//! points_m = [[0, 0], [1, 0]]
 //! [[mover]]              # bodies that move: see `mover.rs`
 //! diameter_m = 0.3
 //! path_m = [[0.8, -0.9], [0.8, 0.9]]
@@ -28,12 +30,14 @@
 //! ```
 
 use super::error::FileError;
+use super::line::read_lines;
 use super::mover::{MOST_MOVERS, Mover, read_mover};
 use super::read::{Allowed, Source, Table};
 use super::scenario::{Start, read_start};
 use super::value::{ANGLE, PLACE, SIDE};
 use crate::random_world::{Journey, RandomWorld};
 use rumbo_plant::world::{Block, Point, ShapeError, Wall, World};
+use rumbo_sim::floor::Line;
 
 /// Each ray of a sonar meets all of them.
 const MOST_SHAPES: usize = 1_000;
@@ -57,6 +61,8 @@ pub struct WorldFile {
     pub walls: Vec<Wall>,
     /// Boxes, solid.
     pub boxes: Vec<Block>,
+    /// Dark lines on the floor.
+    pub lines: Vec<Line>,
     /// What moves.
     pub movers: Vec<Mover>,
     /// Where the robot starts, in place of the scenario's start.
@@ -106,6 +112,7 @@ impl WorldFile {
                 Some(mover)
             })
             .collect();
+        let lines = read_lines(&root);
         let random = root
             .has("random")
             .then(|| read_random(&root.table("random")));
@@ -123,6 +130,7 @@ impl WorldFile {
             arena,
             walls,
             boxes,
+            lines,
             movers,
             start,
             goal_m,

@@ -6,6 +6,7 @@
 mod align;
 mod curve;
 mod fleet;
+mod floor;
 mod journey;
 mod lane;
 mod mission;
@@ -82,6 +83,7 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
         .filter(|message| matches!(message.what, FromRobot::Telemetry(_)));
     metrics.insert("telemetry_hz".into(), frames.count() as f64 / duration_s);
     metrics.insert("control_period_s".into(), sim.control_period_s());
+    floor::following(setup, trace, &mut metrics);
     if trace.drove() {
         of_mode(setup, sim, trace, &mut metrics);
     }

@@ -158,9 +158,9 @@ impl Winding {
         }
         // Towards minus this current the winding discharges. A motor turned against the bridge faster than the supply
         // would feed it for ever: the floor keeps the logarithm's argument bounded.
-        let off_a = (off_v + against_v) / self.loop_ohm;
-        let off_a = if off_a > 0.05 * on_a {
-            off_a
+        let true_off_a = (off_v + against_v) / self.loop_ohm;
+        let off_a = if true_off_a > 0.05 * on_a {
+            true_off_a
         } else {
             0.05 * on_a
         };
@@ -176,8 +176,13 @@ impl Winding {
             let drawn_a = mean_a + 2.0 * (off_a * fall - command.periods * peak_a);
             (command.direction * mean_a, drawn_a)
         } else {
+            // A short does not feed the motor: no floor is needed.
+            let (off_a, returned) = if slow {
+                (true_off_a, 0.0)
+            } else {
+                (off_a, off)
+            };
             let mean_a = on_a * command.duty - off_a * off;
-            let returned = if slow { 0.0 } else { off };
             (
                 command.direction * mean_a,
                 mean_a * (command.duty - returned),

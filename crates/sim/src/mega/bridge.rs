@@ -188,7 +188,7 @@ impl HalfBridge {
         } else if time(Stage::Brake) > 0.0 {
             Bridge::Brake(time(Stage::Brake))
         } else {
-            return (Bridge::Released, Modulation::default());
+            Bridge::Released
         };
         let decay = match time(Stage::Brake) > time(Stage::Coast) {
             true => Decay::Slow,

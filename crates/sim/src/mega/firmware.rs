@@ -4,6 +4,7 @@ use super::pins::{LinkOn, Wires};
 use super::{CYCLES_PER_US, ON_PINS};
 use crate::boards::Board;
 use crate::error::SimError;
+use crate::floor::LineSensor;
 use crate::wiring::{Part, Wiring};
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
@@ -47,6 +48,7 @@ pub struct Firmware {
     /// The board's pin of each signal.
     pins: BTreeMap<String, u8>,
     parts: Vec<Part>,
+    line_sensors: Vec<LineSensor>,
 }
 
 impl Firmware {
@@ -69,6 +71,7 @@ impl Firmware {
             wires: Wires::new(wiring, pins)?,
             pins: pins.pins.clone(),
             parts: pins.parts.clone(),
+            line_sensors: pins.line_sensors.clone(),
             link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
         })
     }
@@ -110,6 +113,11 @@ impl Firmware {
         });
         let wired = self.wires.signals().into_iter();
         wired.chain(led).chain(parts).collect()
+    }
+
+    /// Its sensors for lines on the floor.
+    pub fn line_sensors(&self) -> &[LineSensor] {
+        &self.line_sensors
     }
 
     /// What else is at its pins.

@@ -18,6 +18,7 @@
 //! | `console` | output of the USARTs, for people |
 //! | `meters` | what instruments at the wired pins show |
 //! | `marks` | when the program reaches some of its functions |
+//! | `floor` | line sensors |
 //! | `parts` | buttons, switches and potentiometers |
 //! | `wheels` | what the program did with each motor |
 //! | `notes` | oddities of a program, for people |
@@ -32,6 +33,7 @@ pub mod pins;
 
 mod bridge;
 mod echo;
+mod floor;
 mod inputs;
 mod marks;
 mod meters;
@@ -132,6 +134,8 @@ pub struct Mega {
     /// What the module hears on the pin of `link_tx`, where that is no USART's.
     module: uart::Receiver,
     meters: Meters,
+    /// How dark it is below each line sensor, and the level that it gives.
+    floor: Vec<(f64, bool)>,
     /// What has been set of each part.
     worked: Vec<f64>,
     verdict: Option<Verdict>,
@@ -172,6 +176,7 @@ impl Mega {
             consoles: Default::default(),
             module: uart::Receiver::new(firmware.link_baud()),
             meters: Meters::at(firmware.metered()),
+            floor: Vec::new(),
             worked: Vec::new(),
             verdict: None,
             marks: Marks::default(),
@@ -270,7 +275,9 @@ impl Mega {
 
     /// What the instruments at the wired pins show since the last reading.
     pub(crate) fn read_meters(&mut self) -> Vec<(String, f64)> {
-        self.meters.read(self.chip.cycle())
+        let mut shown = self.meters.read(self.chip.cycle());
+        shown.extend(self.read_floor());
+        shown
     }
 
     /// Sends bytes to a USART from a terminal that is set to its rate, as the Serial Monitor is; to [`PARTS`] what a person

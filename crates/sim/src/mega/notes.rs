@@ -100,8 +100,14 @@ impl Mega {
     /// What of the robot was not identified from recordings.
     pub fn data_sheet(&self) -> Option<String> {
         let driver = self.firmware.wires().driver;
-        driver.source?;
-        Some(format!("motor driver: {}", driver.in_words()))
+        let driver = driver
+            .source
+            .map(|_| format!("motor driver: {}", driver.in_words()));
+        let sensors = (!self.firmware.line_sensors().is_empty()).then(|| {
+            "line sensors: TCRT5000 modules by their data sheet, not identified".to_owned()
+        });
+        let both: Vec<String> = driver.into_iter().chain(sensors).collect();
+        (!both.is_empty()).then(|| both.join("; "))
     }
 
     /// Why the program has halted for good, if it has.

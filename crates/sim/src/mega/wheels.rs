@@ -123,11 +123,8 @@ impl Mega {
     fn only_switched(&self, wheel: usize) -> Option<String> {
         let (inputs, lines) = (self.wires().bridges[wheel], &self.bridges[wheel].lines);
         // A program that knows no analogWrite() wants none.
-        let wants = self
-            .firmware
-            .image()
-            .function_named("analogWrite")
-            .is_some();
+        let mut functions = self.firmware.image().functions().iter();
+        let wants = functions.any(|function| function.name.starts_with("analogWrite"));
         if !wants || lines.iter().any(|line| line.been_modulated()) {
             return None;
         }

@@ -22,6 +22,9 @@ impl Sim {
             let end_us = ((self.now_us() / AHEAD_US + 1) * AHEAD_US).min(until_us);
             self.bytes_to(mega, end_us);
             mega.supply(self.truth().battery_v);
+            if !mega.firmware().line_sensors().is_empty() {
+                mega.see_floor(&self.lines, &self.pose(), self.now_us(), &self.noise);
+            }
             if !self.wire_faults.is_empty() {
                 let now_us = self.now_us();
                 mega.disturb(

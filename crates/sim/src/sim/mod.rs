@@ -18,6 +18,7 @@ mod unlinked;
 use crate::baseline::Baseline;
 use crate::config::{Config, Program};
 use crate::error::SimError;
+use crate::floor::Line;
 use crate::mega::Mega;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
 use crate::wire_fault::{TimedWireFault, WireFaults};
@@ -76,6 +77,8 @@ pub struct Sim {
     sonar_faults: SonarFaults,
     wire_faults: WireFaults,
     noise: Noise,
+    /// The dark lines on the floor.
+    lines: Arc<[Line]>,
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
     /// The chip is without power: its program does not run, and its pins drive nothing.
@@ -96,6 +99,7 @@ impl Sim {
             plant: params,
             rig,
             world,
+            lines,
             start,
             wheels_in_air,
             program,
@@ -170,6 +174,7 @@ impl Sim {
             sonar_faults,
             wire_faults,
             noise,
+            lines,
             outputs_us: (0, 0, 0),
             off: false,
             motors_cut: false,

@@ -424,7 +424,7 @@ fn a_sketch_of_one_s_own_needs_neither_mode_nor_rig_and_gets_the_metrics_of_its_
 fn a_wheel_that_was_never_driven_is_named_with_what_was_missing() {
     let sketch = to_and_fro(
         "5, 7, 8, 12",
-        "digitalWrite(7, HIGH); digitalWrite(8, HIGH); analogWrite(12, 200);",
+        "digitalWrite(7, HIGH); digitalWrite(8, HIGH); analogWrite(12, 200); analogWrite(11, 30);",
         "",
     );
     let wiring = "left_enable = 5\nleft_forward = 7\nright_enable = 12\nright_forward = 8\n";
@@ -689,5 +689,55 @@ fn a_part_on_a_taken_pin_or_one_that_cannot_measure_is_named() {
             return;
         };
         assert!(said.contains(why), "{said}");
+    }
+}
+
+#[test]
+fn line_followers_keep_to_their_line_with_levels_and_with_voltages() {
+    let levels = "
+bool dark(byte pin) { return digitalRead(pin) == LOW; }
+void setup() { for (byte pin = 5; pin <= 11; pin++) if (pin != 10) pinMode(pin, OUTPUT); }
+void drive(int left, int right) {
+  digitalWrite(7, left > 0); digitalWrite(8, left < 0); digitalWrite(11, right > 0); digitalWrite(9, right < 0);
+  analogWrite(5, abs(left)); analogWrite(6, abs(right));
+}
+int side = 0;
+void loop() {
+  if (dark(2)) side = -1; else if (dark(10)) side = 1; else if (dark(4)) side = 0;
+  drive(side < 0 ? -80 : 80, side > 0 ? -80 : 80);
+}";
+    let voltages = "
+void setup() { for (byte pin : {3, 5, 6, 7, 8}) pinMode(pin, OUTPUT); }
+void loop() {
+  int error = analogRead(A2) - analogRead(A0);
+  int turn = error / 12;
+  digitalWrite(3, HIGH); digitalWrite(7, HIGH); digitalWrite(8, HIGH);
+  analogWrite(6, constrain(85 - turn, 0, 160)); analogWrite(5, constrain(85 + turn, 0, 160));
+}"
+    .replace(
+        "for (byte pin : {3, 5, 6, 7, 8}) pinMode(pin, OUTPUT);",
+        "DDRD |= 0xE8; DDRB |= 1;",
+    );
+    for (robot, sketch) in [("kit_elegoo_v3", levels), ("kit_elegoo_v4", &voltages)] {
+        let Some(bench) = bench(&format!("line_{robot}")) else {
+            return;
+        };
+        std::fs::write(bench.join("car.ino"), sketch).unwrap();
+        let scenario = format!(
+            "title = \"A loop\"\nrobot = \"{robot}\"\nworld = \"line_loop\"\nduration_s = 25\n"
+        );
+        std::fs::write(bench.join("floor.toml"), scenario).unwrap();
+        let run = drive(&bench, &["--json"]);
+        let result: serde_json::Value = serde_json::from_str(&stdout(&run)).unwrap();
+        let metric = |name: &str| result["metrics"][name].as_f64().unwrap_or(f64::NAN);
+        assert!(
+            metric("line_rms_m") < 0.02,
+            "{robot} {result}{}",
+            stderr(&run)
+        );
+        assert!(
+            metric("path_m") > 1.5 && metric("line_lost_share") == 0.0,
+            "{robot} {result}"
+        );
     }
 }

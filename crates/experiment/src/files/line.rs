@@ -1,0 +1,125 @@
+//! Dark lines of a world, and the sensors of a robot that see them.
+//!
+//! ```toml
+//! [[line]]                 # of a world
+//! points_m = [[0, 0], [1, 0], [1, 1]]
+//! width_m = 0.02           # 0.019, that of tape, where it is left out
+//! closed = true            # back to its first point
+//!
+//! [wiring.mine.line]       # of a robot: a name, a pin, and where it is
+//! left = { pin = 2, x_m = 0.08, y_m = 0.015 }
+//! right = { pin = "A1", x_m = 0.08, y_m = -0.015, analogue = true, dark = "low" }
+//! ```
+
+use super::read::{Allowed, Table};
+use super::robot::read_pin;
+use super::value::PLACE;
+use rumbo_sim::floor::{Line, LineSensor};
+use rumbo_sim::wiring::Wiring;
+
+/// Most lines of a world, and corners of one.
+const MOST_LINES: usize = 100;
+const MOST_POINTS: usize = 500;
+const WIDTH: Allowed = Allowed::new(0.002, 0.2, "m");
+/// Position of a sensor on the body.
+const MOUNT: Allowed = Allowed::new(-0.5, 0.5, "m");
+/// That of usual tape.
+const TAPE_M: f64 = 0.019;
+
+/// The lines of a world.
+pub(super) fn read_lines(root: &Table<'_, '_>) -> Vec<Line> {
+    let tables = root.tables("line", MOST_LINES);
+    tables.iter().map(read_line).collect()
+}
+
+fn read_line(table: &Table<'_, '_>) -> Line {
+    let mut points_m = Vec::new();
+    let what = "a list of points [x, y] in m, at least two";
+    table.require("points_m", what);
+    if let Some((line, items)) = table.items("points_m", what) {
+        for item in items.iter().take(MOST_POINTS) {
+            let pair = item.value.as_array().map(|pair| {
+                let numbers = pair.iter().map(|each| each.get_ref());
+                let numbers =
+                    numbers.map(|each| table.judge_number("points_m", item.line, each, PLACE));
+                numbers.collect::<Vec<_>>()
+            });
+            match pair.as_deref() {
+                Some([Some(x_m), Some(y_m)]) => points_m.push([*x_m, *y_m]),
+                Some(pair) if pair.contains(&None) => {}
+                _ => table.complain("points_m", item.line, "a point", "must be [x, y] in m"),
+            }
+        }
+        if items.len() < 2 || items.len() > MOST_POINTS {
+            let remedy = format!("must be {what}, at most {MOST_POINTS}");
+            table.complain(
+                "points_m",
+                line,
+                &format!("{} points", items.len()),
+                &remedy,
+            );
+        }
+    }
+    let width_m = table.number("width_m", WIDTH).unwrap_or(TAPE_M);
+    if table.flag("closed").is_some_and(|closed| closed.value) {
+        points_m.extend(points_m.first().copied());
+    }
+    table.finish();
+    Line { points_m, width_m }
+}
+
+/// The line sensors of a wiring.
+pub(super) fn read_line_sensors(table: &Table<'_, '_>, wiring: &Wiring) -> Vec<LineSensor> {
+    let mut sensors: Vec<LineSensor> = Vec::new();
+    for key in table.keys() {
+        let own = table.table(key.value);
+        let analogue = own.flag("analogue").is_some_and(|flag| flag.value);
+        own.require("pin", "the pin of the sensor's output, e.g. 2 or \"A0\"");
+        let pin = read_pin(&own, "pin", wiring.board, analogue);
+        let at_m = [
+            own.required_number("x_m", MOUNT),
+            own.number("y_m", MOUNT).unwrap_or(0.0),
+        ];
+        let dark = own.text("dark").map(|dark| {
+            if !["high", "low"].contains(&dark.value.as_str()) {
+                own.complain(
+                    "dark",
+                    dark.line,
+                    &dark.value,
+                    "must be \"high\" or \"low\"",
+                );
+            }
+            dark.value
+        });
+        own.finish();
+        let Some(pin) = pin else { continue };
+        let others = wiring
+            .pins
+            .iter()
+            .map(|(name, taken)| (name.as_str(), *taken));
+        let others = others.chain(
+            wiring
+                .parts
+                .iter()
+                .map(|part| (part.name.as_str(), part.pin)),
+        );
+        let others = others.chain(
+            sensors
+                .iter()
+                .map(|sensor| (sensor.name.as_str(), sensor.pin)),
+        );
+        if let Some((other, _)) = others.into_iter().find(|(_, taken)| *taken == pin) {
+            let remedy = format!("{other} is on that pin already: give each its own");
+            table.complain(key.value, key.line, &wiring.board.shown(pin), &remedy);
+        }
+        sensors.push(LineSensor {
+            name: key.value.to_owned(),
+            at_m,
+            pin,
+            analogue,
+            dark_high: dark.is_none_or(|dark| dark == "high"),
+        });
+    }
+    table.finish();
+    sensors
+}

@@ -1,0 +1,54 @@
+//! How a robot with line sensors keeps to the lines of its world: the middle of its sensors, by ground truth.
+
+use super::Metrics;
+use crate::files::Setup;
+use rumbo_plant::contact::Pose;
+use rumbo_sim::floor::nearest;
+use rumbo_sim::trace::Trace;
+
+/// A robot that drives to its line has this long [s].
+const FROM_S: f64 = 1.0;
+/// Farther from it the robot has lost its line [m].
+const LOST_M: f64 = 0.05;
+
+/// The distance from the nearest line, and for how long it was lost.
+pub(super) fn following(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
+    let sensors = setup
+        .firmware
+        .as_ref()
+        .map(|firmware| firmware.line_sensors());
+    let sensors = sensors.unwrap_or_default();
+    if sensors.is_empty() || setup.world.lines.is_empty() {
+        return;
+    }
+    let mut middle = sensors[0].clone();
+    for axis in 0..2 {
+        let sum: f64 = sensors.iter().map(|sensor| sensor.at_m[axis]).sum();
+        middle.at_m[axis] = sum / sensors.len() as f64;
+    }
+    let samples = trace.between(FROM_S, f64::INFINITY);
+    let distances: Vec<f64> = samples
+        .iter()
+        .filter_map(|sample| {
+            let pose = Pose {
+                x_m: sample.x_m,
+                y_m: sample.y_m,
+                heading_rad: sample.heading_rad,
+            };
+            Some(nearest(&setup.world.lines, middle.place(&pose))?.0)
+        })
+        .collect();
+    let count = distances.len().max(1) as f64;
+    let square: f64 = distances.iter().map(|distance| distance * distance).sum();
+    let lost = distances
+        .iter()
+        .filter(|distance| **distance > LOST_M)
+        .count() as f64;
+    let mut put = |name: &str, value: f64| metrics.insert(name.into(), value);
+    put("line_rms_m", (square / count).sqrt());
+    put(
+        "line_worst_m",
+        distances.iter().copied().fold(0.0, f64::max),
+    );
+    put("line_lost_share", lost / count);
+}

@@ -1,0 +1,123 @@
+//! Dark lines on the floor, and what reflectance sensors below the robot see of them.
+//!
+//! A sensor sees a spot; what share of it is dark grows from 0 to 1 across the edge of a line. Spot and voltages are those of
+//! TCRT5000 modules by their data sheet (Vishay 83760) and usual circuit, not identified from recordings.
+
+use rumbo_plant::contact::Pose;
+
+/// Width of the spot \[m\]: the data sheet's working distance of 2.5 mm sees about that.
+const SPOT_M: f64 = 0.004;
+/// Voltages of an analogue module over a light and a dark floor \[V\].
+const LIGHT_V: f64 = 0.4;
+const DARK_V: f64 = 4.4;
+/// Standard deviation of its voltage \[V\]: two counts of the converter.
+pub(crate) const NOISE_V: f64 = 0.01;
+/// A comparator switches this far beyond the middle.
+const HYSTERESIS: f64 = 0.05;
+
+/// A dark line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// Its corners, in order \[m\].
+    pub points_m: Vec<[f64; 2]>,
+    /// Its width \[m\].
+    pub width_m: f64,
+}
+
+/// A reflectance sensor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LineSensor {
+    /// What the robot file calls it.
+    pub name: String,
+    /// Where it is on the robot, ahead of the wheels' axis and to the left \[m\].
+    pub at_m: [f64; 2],
+    /// The board's pin.
+    pub pin: u8,
+    /// It gives a voltage, not a level.
+    pub analogue: bool,
+    /// A dark floor is high.
+    pub dark_high: bool,
+}
+
+impl LineSensor {
+    /// Where it is in the world \[m\].
+    #[must_use]
+    pub fn place(&self, pose: &Pose) -> [f64; 2] {
+        let (sin, cos) = libm::sincos(pose.heading_rad);
+        let [x_m, y_m] = self.at_m;
+        [
+            pose.x_m + cos * x_m - sin * y_m,
+            pose.y_m + sin * x_m + cos * y_m,
+        ]
+    }
+
+    /// The voltage of an analogue one.
+    pub(crate) fn volts(&self, darkness: f64) -> f64 {
+        let high = if self.dark_high {
+            darkness
+        } else {
+            1.0 - darkness
+        };
+        LIGHT_V + high * (DARK_V - LIGHT_V)
+    }
+
+    /// The level of another one, which was at a level before.
+    pub(crate) fn level(&self, darkness: f64, before: bool) -> bool {
+        let was_dark = before == self.dark_high;
+        let edge = if was_dark {
+            0.5 - HYSTERESIS
+        } else {
+            0.5 + HYSTERESIS
+        };
+        (darkness > edge) == self.dark_high
+    }
+}
+
+/// Distance of a point from the middle of the nearest line, and that line's width \[m\].
+#[must_use]
+pub fn nearest(lines: &[Line], [x_m, y_m]: [f64; 2]) -> Option<(f64, f64)> {
+    let pieces = lines.iter().flat_map(|line| {
+        let pieces = line.points_m.windows(2);
+        pieces.map(move |ends| (ends[0], ends[1], line.width_m))
+    });
+    let distances = pieces.map(|([ax, ay], [bx, by], width_m)| {
+        let (dx, dy) = (bx - ax, by - ay);
+        let along = ((x_m - ax) * dx + (y_m - ay) * dy) / (dx * dx + dy * dy).max(1e-12);
+        let along = along.clamp(0.0, 1.0);
+        let (ex, ey) = (x_m - ax - along * dx, y_m - ay - along * dy);
+        (libm::sqrt(ex * ex + ey * ey), width_m)
+    });
+    distances.min_by(|one, other| (one.0 - 0.5 * one.1).total_cmp(&(other.0 - 0.5 * other.1)))
+}
+
+/// The dark share of a spot there, 0 to 1.
+#[must_use]
+pub fn darkness(lines: &[Line], at_m: [f64; 2]) -> f64 {
+    nearest(lines, at_m).map_or(0.0, |(distance_m, width_m)| {
+        (0.5 + (0.5 * width_m - distance_m) / SPOT_M).clamp(0.0, 1.0)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spot_is_dark_on_a_line_half_at_its_edge_and_light_beside_it() {
+        let line = Line {
+            points_m: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]],
+            width_m: 0.02,
+        };
+        let lines = [line];
+        for (at_m, expected) in [
+            ([0.5, 0.0], 1.0),
+            ([0.5, 0.01], 0.5),
+            ([0.5, 0.02], 0.0),
+            ([1.01, 0.5], 0.5),
+            ([-0.1, 0.0], 0.0),
+        ] {
+            assert!((darkness(&lines, at_m) - expected).abs() < 1e-9, "{at_m:?}");
+        }
+        assert_eq!(darkness(&[], [0.0, 0.0]), 0.0);
+    }
+}
