@@ -105,6 +105,7 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     }
     if only.is_empty() || only.iter().any(|name| name == RELEASE) {
         release::try_it(project).map_err(said)?;
+        wheel::in_clean_systems(project).map_err(said)?;
         release::try_crates(project)?;
     }
     let mut scenarios = vec![seeds.unwrap_or(SEEDS).to_string()];
