@@ -14,10 +14,13 @@ from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
 
+EXPORT = ["export", "logs/mode8-goals-1.mcap", "--ros2bag", "--scan"]
+
+
 @pytest.fixture(scope="module")
 def bag(rumbo_command: str, tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
     folder = tmp_path_factory.mktemp("bag")
-    for words in (["run", "mode8-goals", "--out", "logs"], ["export", "logs/mode8-goals-1.mcap", "--ros2bag"]):
+    for words in (["run", "mode8-goals", "--out", "logs"], EXPORT):
         done = subprocess.run([rumbo_command, *words], cwd=folder, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
     return folder / "mode8-goals-1.ros2bag"
@@ -33,6 +36,7 @@ def test_types_and_bytes_are_those_of_the_distributions(bag: pathlib.Path) -> No
     with AnyReader([bag]) as reader:
         topics = {each.topic for each in reader.connections}
         assert {"/odom", "/tf", "/tf_static", "/joint_states", "/sonar/front", "/diagnostics"} <= topics
+        assert {"/map", "/markers/world", "/markers/way", "/scan"} <= topics
         for store in (get_typestore(Stores.ROS2_JAZZY), get_typestore(Stores.LATEST)):
             for each in reader.connections:
                 assert each.digest == store.hash_rihs01(each.msgtype), each.topic
@@ -81,7 +85,7 @@ def test_every_frame_hangs_on_the_map(bag: pathlib.Path) -> None:
 
 
 def test_a_bag_is_written_again_but_nothing_else_is_replaced(rumbo_command: str, bag: pathlib.Path) -> None:
-    export = [rumbo_command, "export", "logs/mode8-goals-1.mcap", "--ros2bag"]
+    export = [rumbo_command, *EXPORT]
     before = (bag / "mode8-goals-1.mcap").read_bytes()
     assert subprocess.run(export, cwd=bag.parent, capture_output=True).returncode == 0
     assert (bag / "mode8-goals-1.mcap").read_bytes() == before

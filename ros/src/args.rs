@@ -35,6 +35,9 @@ pub(crate) struct Args {
     /// Velocities on cmd_vel are geometry_msgs/TwistStamped instead of Twist
     #[arg(long)]
     pub(crate) stamped: bool,
+    /// The sonars as one sensor_msgs/LaserScan on scan, besides
+    #[arg(long)]
+    pub(crate) scan: bool,
     /// Whose nav2_msgs the clients of navigate_to_pose have
     #[arg(long, value_enum, value_name = "NAME", default_value_t = Distribution::Jazzy)]
     pub(crate) distribution: Distribution,

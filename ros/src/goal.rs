@@ -15,9 +15,9 @@ use crate::station::Order;
 use rumbo_log::{End, Level, LoggedEvent};
 use rumbo_ros::convert::stamp;
 use rumbo_ros::geometry::{ODOM, pose};
-use rumbo_ros::messages::{Header, Time};
+use rumbo_ros::messages::{Duration as Lasting, Header, Time};
 use rumbo_ros::service_messages::{
-    Accepted, Duration as Lasting, Ended, FeedbackMessage, NavigateFeedback, PoseStamped, Uuid,
+    Accepted, Ended, FeedbackMessage, NavigateFeedback, PoseStamped, Uuid,
 };
 use rumbo_ros::topics::Topic;
 use std::time::{Duration, Instant};

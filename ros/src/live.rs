@@ -19,6 +19,7 @@ use rumbo_ros::convert::{ConvertError, Converter, Sent, clock};
 use rumbo_ros::geometry::Geometry;
 use rumbo_ros::messages::DiagnosticStatus;
 use rumbo_ros::types::Byte;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -76,6 +77,8 @@ pub(super) struct Live {
     pub(super) navigation: Navigation,
     pub(super) settings: Settings,
     pub(super) converter: Converter,
+    /// The sonars become a scan too.
+    with_scan: bool,
     run: u32,
     scene: Option<Box<Scene>>,
     pub(super) state: State,
@@ -118,6 +121,7 @@ impl Live {
         node.offer_navigation()?;
         Ok(Self {
             converter: Converter::new(&node.speaker(), String::new(), 0),
+            with_scan: args.scan,
             node,
             station,
             has_clock,
@@ -231,6 +235,9 @@ impl Live {
         if let Some(geometry) = Geometry::new(self.scene.as_deref(), parameter) {
             self.converter.know(geometry);
         }
+        if let Some(scene) = &self.scene {
+            self.converter.surround(&scene.obstacles);
+        }
         if self.state.simulated && (!news.samples.is_empty() || self.clocked.elapsed() >= CLOCK) {
             let state_ms = (self.state.t_s * 1e3) as i64;
             self.clock_ms = self.clock_ms.max(news.heard_ms).max(state_ms);
@@ -239,14 +246,16 @@ impl Live {
                 self.publish(&clock(self.clock_ms.unsigned_abs() * 1_000_000)?);
             }
         }
+        let mut latched = BTreeMap::new();
         for row in &news.past {
             self.converter.row(row)?;
             for message in self.converter.take() {
                 if message.topic.quality().latched {
-                    self.publish(&message);
+                    latched.insert(message.topic, message);
                 }
             }
         }
+        latched.values().for_each(|message| self.publish(message));
         for row in &news.samples {
             self.converter.row(row)?;
         }
@@ -285,6 +294,7 @@ impl Live {
         };
         let speaker = self.node.speaker();
         self.converter = Converter::new(&speaker, robot.unwrap_or_default(), started_ns);
+        self.converter.with_scan = self.with_scan;
         self.clock_ms = 0;
         self.rows = 0;
     }

@@ -32,6 +32,29 @@ pub(crate) struct ParameterState {
     pub(crate) pending: bool,
     /// Why the robot has not taken it.
     pub(crate) refused: Option<String>,
+    /// Nobody sets it: the node's own.
+    #[serde(skip)]
+    read_only: bool,
+}
+
+impl ParameterState {
+    /// What every node of ROS 2 has: whether its stamps are times of a simulation. Comes after the robot's, in number too.
+    pub(crate) fn use_sim_time(simulated: bool, id: u8) -> Self {
+        Self {
+            id,
+            name: "use_sim_time".to_owned(),
+            unit: String::new(),
+            min: 0.0,
+            max: 1.0,
+            kind: "switch".to_owned(),
+            choices: Vec::new(),
+            description: "stamps are times of the simulation, as on /clock".to_owned(),
+            value: Some(f32::from(u8::from(simulated))),
+            pending: false,
+            refused: None,
+            read_only: true,
+        }
+    }
 }
 
 /// Names and types of the services, in the order of [`question`].
@@ -221,6 +244,7 @@ fn descriptor(entry: &ParameterState) -> ParameterDescriptor {
             _ => String::new(),
         },
         floating_point_range: (kind == DOUBLE).then_some(range),
+        read_only: entry.read_only,
         ..ParameterDescriptor::default()
     }
 }
@@ -251,6 +275,9 @@ fn value(known: &ParameterState) -> ParameterValue {
 /// Why it is none.
 pub(crate) fn number(entry: &ParameterState, value: &Value) -> Result<f32, String> {
     let ParameterState { min, max, unit, .. } = entry;
+    if entry.read_only {
+        return Err("it tells whether the robot is simulated, and cannot be set".to_owned());
+    }
     let (wanted, given) = match (kind(entry), value) {
         (BOOL, Value::Bool(value)) => return Ok(f32::from(u8::from(*value))),
         (STRING, Value::Text(name)) => {

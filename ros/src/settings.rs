@@ -89,7 +89,9 @@ impl Live {
     }
 
     /// Takes what is newly known of the parameters, and says what has changed.
-    pub(super) fn know(&mut self, known: Vec<ParameterState>) {
+    pub(super) fn know(&mut self, mut known: Vec<ParameterState>) {
+        let number = u8::try_from(known.len()).unwrap_or(u8::MAX);
+        known.push(ParameterState::use_sim_time(self.state.simulated, number));
         let before = std::mem::replace(&mut self.settings.known, known);
         let node = format!("/{}", self.node.speaker());
         let at = stamp(self.now_ns());

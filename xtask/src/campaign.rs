@@ -71,6 +71,7 @@ const PARTS: [Part; 12] = [
     // The release on a system with nothing else, and the crates that others can use alone.
     ("release", |project, _| {
         release::try_it(project).map_err(said)?;
+        wheel::in_clean_systems(project).map_err(said)?;
         release::try_crates(project)?;
         Ok(true)
     }),

@@ -1,8 +1,8 @@
 //! `cargo xtask release`: what a version is published as, in `dist/`, for the machine that it is built on.
 //!
-//! An archive and, on Debian, a package, both with the command, which carries the image for the Mega, manual pages,
-//! completions and the licences of what is linked in; the image as a file of its own; a bill of materials (CycloneDX);
-//! installers; checksums. `.github/workflows/release.yml` does it on each system.
+//! An archive and, on Debian, a package, both with the command, which carries the image for the Mega, on Linux the node
+//! of ROS 2, manual pages, completions and the licences of what is linked in; the image as a file of its own; a bill of
+//! materials (CycloneDX); installers; checksums. `.github/workflows/release.yml` does it on each system.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -22,6 +22,8 @@ const COMPLETIONS: [(&str, &str); 3] = [
     ("zsh", "share/zsh/site-functions/_rumbo"),
     ("fish", "share/fish/vendor_completions.d/rumbo.fish"),
 ];
+/// The workspace of the node of ROS 2, and its package.
+const NODE: [&str; 2] = ["ros/Cargo.toml", "rumbo-ros-node"];
 /// The crates that others can use alone.
 const CRATES: [&str; 4] = [
     "rumbo-control",
@@ -68,15 +70,23 @@ pub(crate) fn build(project: &Project) -> Result<PathBuf, Stop> {
     };
     let mut build = project.cargo(&["build", "--release", "--locked"]);
     run_command(build.env("RUMBO_IMAGE", &image))?;
-    let command = project.release_binary_path();
-
-    let linked = linked(project)?;
+    let mut linked = linked(project, ["Cargo.toml", "rumbo-cli"])?;
+    let mut commands = vec![project.release_binary_path()];
+    // Where ROS 2 is.
+    if cfg!(target_os = "linux") {
+        let folder = project.target.join("rumbo-ros");
+        let mut build = project.cargo(&["build", "--release", "--locked", "--manifest-path"]);
+        run_command(build.arg(NODE[0]).env("CARGO_TARGET_DIR", &folder))?;
+        commands.push(folder.join("release/rumbo-ros"));
+        linked.append(&mut self::linked(project, NODE)?);
+    }
+    let linked: Vec<Linked> = linked.into_values().collect();
     let version = env!("CARGO_PKG_VERSION");
     let name = stem(version, std::env::consts::ARCH, std::env::consts::OS);
     let dist = project.root.join("dist");
     clear(&dist)?;
     let prefix = dist.join(&name);
-    fill(project, &prefix, &command, &linked)?;
+    fill(project, &prefix, &commands, &linked)?;
 
     let archive = format!("{name}.tar.gz");
     let tar = ["--sort=name", "--owner=0", "--group=0", "--numeric-owner"];
@@ -113,12 +123,18 @@ fn stem(version: &str, machine: &str, system: &str) -> String {
     format!("rumbo-{version}-{machine}-{system}")
 }
 
-/// Everything below the prefix, `/usr` or `~/.local`.
-fn fill(project: &Project, prefix: &Path, command: &Path, linked: &[Linked]) -> Result<(), String> {
-    let installed = prefix
-        .join("bin")
-        .join(command.file_name().unwrap_or_default());
-    copy(command, &installed)?;
+/// Everything below the prefix, `/usr` or `~/.local`; the first command is `rumbo`.
+fn fill(
+    project: &Project,
+    prefix: &Path,
+    commands: &[PathBuf],
+    linked: &[Linked],
+) -> Result<(), String> {
+    for command in commands {
+        let name = command.file_name().unwrap_or_default();
+        copy(command, &prefix.join("bin").join(name))?;
+    }
+    let command = &commands[0];
     for (shell, place) in COMPLETIONS {
         let script = output(project.command(command).args(["completions", shell]))?;
         write(&prefix.join(place), &script)?;
@@ -133,9 +149,12 @@ fn fill(project: &Project, prefix: &Path, command: &Path, linked: &[Linked]) -> 
     write(&papers.join("THIRD-PARTY.txt"), &licences(linked)?)
 }
 
-/// What is linked into the command, by name and version.
-fn linked(project: &Project) -> Result<Vec<Linked>, String> {
-    let metadata = all_metadata(&project.root.join("Cargo.toml"))?;
+/// What is linked into a package's command, by name and version.
+fn linked(
+    project: &Project,
+    [manifest, package]: [&str; 2],
+) -> Result<BTreeMap<(String, String), Linked>, String> {
+    let metadata = all_metadata(&project.root.join(manifest))?;
     let mut folders = BTreeMap::new();
     for package in metadata["packages"].as_array().into_iter().flatten() {
         let text = |key: &str| package[key].as_str().unwrap_or_default().to_owned();
@@ -152,8 +171,10 @@ fn linked(project: &Project) -> Result<Vec<Linked>, String> {
     let tree = project.cargo(&[
         "tree",
         "--locked",
+        "--manifest-path",
+        manifest,
         "--package",
-        "rumbo-cli",
+        package,
         "--edges",
         "normal",
         "--prefix",
@@ -181,13 +202,14 @@ fn linked(project: &Project) -> Result<Vec<Linked>, String> {
             linked.insert(key, one);
         }
     }
-    Ok(linked.into_values().collect())
+    Ok(linked)
 }
 
 /// The licences of the crates of others: a list, then each text once, with the crates that it is of.
 fn licences(linked: &[Linked]) -> Result<String, String> {
     let foreign = || linked.iter().filter(|one| one.is_foreign);
-    let mut text = String::from("The command `rumbo` contains these crates of crates.io.\n\n");
+    let mut text =
+        String::from("The commands `rumbo` and `rumbo-ros` contain these crates of crates.io.\n\n");
     for one in foreign() {
         let _ = writeln!(text, "{} {}: {}", one.name, one.version, one.licence);
     }
@@ -276,7 +298,7 @@ fn package(project: &Project, dist: &Path, prefix: &Path, version: &str) -> Resu
          Depends: libc6 (>= {libc}), libgcc-s1\nSuggests: bubblewrap\n\
          Description: laboratory for a small differential-drive robot\n \
          Control program, simulator, emulated Arduino Mega and Uno, dashboard in the\n \
-         browser, recording, sweeps, tuning, grading.\n"
+         browser, recording, sweeps, tuning, grading, a node of ROS 2.\n"
     );
     write(&root.join("DEBIAN/control"), &control)?;
     let file = dist.join(format!("rumbo_{version}_{architecture}.deb"));
@@ -306,11 +328,7 @@ fn checksums(project: &Project, dist: &Path) -> Result<(), String> {
 /// Installs the Debian package in a system with nothing else on it and no network, and has it do its main job.
 pub(crate) fn try_it(project: &Project) -> Result<(), Stop> {
     let dist = build(project)?;
-    tools::debootstrap(project)?;
-    let root = project.target.join("tmp/clean-root");
-    let _ = fs::remove_dir_all(&root);
-    let mut bootstrap = project.command("debootstrap");
-    run_command(bootstrap.args(["--variant=minbase", "bookworm"]).arg(&root))?;
+    let root = clean_system(project, "bookworm", &[])?;
     for entry in fs::read_dir(&dist)
         .map_err(|error| wrong(&dist, &error))?
         .flatten()
@@ -323,6 +341,7 @@ pub(crate) fn try_it(project: &Project) -> Result<(), Stop> {
     for words in [
         &["dpkg", "--install", "/tmp/rumbo.deb"][..],
         &["rumbo", "--version"],
+        &["rumbo-ros", "--version"],
         &["rumbo", "run", "mode1", "--runs", "20", "--out", "/tmp/out"],
         &["rumbo", "rerun", "/tmp/out/mode1-7.mcap"],
         // It has an image, and no port.
@@ -332,10 +351,33 @@ pub(crate) fn try_it(project: &Project) -> Result<(), Stop> {
             "rumbo flash /dev/null 2>&1 | grep 'cannot be opened'",
         ],
     ] {
-        let mut inside = project.command("unshare");
-        run_command(inside.args(["--net", "chroot"]).arg(&root).args(words))?;
+        inside(project, &root, words)?;
     }
     Ok(())
+}
+
+/// A system of this Debian with nothing on it but these packages; returns its root.
+pub(crate) fn clean_system(
+    project: &Project,
+    suite: &str,
+    packages: &[&str],
+) -> Result<PathBuf, Stop> {
+    tools::debootstrap(project)?;
+    let root = project.target.join(format!("tmp/clean-{suite}"));
+    let _ = fs::remove_dir_all(&root);
+    let mut bootstrap = project.command("debootstrap");
+    bootstrap.arg("--variant=minbase");
+    if !packages.is_empty() {
+        bootstrap.arg(format!("--include={}", packages.join(",")));
+    }
+    run_command(bootstrap.arg(suite).arg(&root))?;
+    Ok(root)
+}
+
+/// Runs a command in such a system, without a network.
+pub(crate) fn inside(project: &Project, root: &Path, words: &[&str]) -> Result<(), String> {
+    let mut inside = project.command("unshare");
+    run_command(inside.args(["--net", "chroot"]).arg(root).args(words))
 }
 
 /// Has cargo pack the crates that others can use alone, and build them from what it packed.

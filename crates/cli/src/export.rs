@@ -50,7 +50,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
         place::folder(&folder)?;
     }
     if args.ros2bag {
-        bag.write(&args.log, &log)?;
+        bag.write(&args.log, &log, args.scan)?;
     }
     let figures = figures::of_one(&log);
     for format in formats {

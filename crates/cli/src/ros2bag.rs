@@ -41,9 +41,9 @@ impl Bag {
             .try_for_each(|path| guard.check(path, &mark))
     }
 
-    /// Writes it, and prints where it is.
-    pub(crate) fn write(&self, path: &Path, log: &Log) -> Result<(), Failure> {
-        let messages = convert::messages(log)
+    /// Writes it, with the sonars as a scan if that is wanted, and prints where it is.
+    pub(crate) fn write(&self, path: &Path, log: &Log, with_scan: bool) -> Result<(), Failure> {
+        let messages = convert::messages(log, with_scan)
             .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
         place::folder(&self.folder)?;
         let [mcap, metadata] = self.paths();

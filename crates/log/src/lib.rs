@@ -42,6 +42,7 @@ mod schema;
 mod signals;
 mod state;
 mod summary;
+mod viewers;
 mod writer;
 
 pub use bound::Bound;

@@ -4,10 +4,11 @@ use crate::entry::{Entry, Said};
 use crate::event::{Level, LoggedEvent};
 use crate::parameters::ParameterState;
 use crate::reading::{Reading, Source};
-use crate::scene::{MapPose, Scene, compose};
+use crate::scene::{MapPose, Scene, SonarMount, compose};
 use crate::schema::Topic;
 use crate::signals::Row;
 use crate::state::{LinkState, ProgramState, RobotState, State};
+use crate::viewers::{self, timestamp};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
@@ -37,6 +38,9 @@ pub(crate) trait Sink {
         data: Vec<u8>,
     ) -> Result<(), Self::Error>;
 
+    /// The sonars whose frames are written.
+    fn mounts(&mut self) -> &mut Option<Vec<SonarMount>>;
+
     /// The messages of an entry; an outcome has none. Scene and parameters have no time of their own: they get the last
     /// time `now_us`, which a burst updates.
     ///
@@ -60,8 +64,9 @@ pub(crate) trait Sink {
     }
 }
 
-/// Poses, which telemetry has too, are for viewers: a fifth of its rate is smooth enough \[us\].
-const POSES_US: u64 = 190_000;
+/// Poses and frames, which telemetry has too, are for viewers: an eighth of its rate is smooth enough, since they draw
+/// what is between two frames \[us\].
+const POSES_US: u64 = 310_000;
 
 /// The messages of one entry each.
 pub(crate) trait Messages: Sink {
@@ -102,11 +107,40 @@ pub(crate) trait Messages: Sink {
         self.put(Topic::Telemetry, t_us, row_json(row).to_string().as_bytes())?;
         if let (Some(estimated), Some(origin)) = (row.pose(""), row.pose("origin_")) {
             self.pose(Topic::Estimated, t_us, compose(origin, estimated))?;
+            self.frames(t_us, row, compose(origin, estimated))?;
         }
         if let Some(truth) = row.pose("true_") {
             self.pose(Topic::True, t_us, truth)?;
         }
         Ok(())
+    }
+
+    /// The frames of a robot that estimates itself there.
+    fn frames(&mut self, t_us: u64, row: &Row, at: MapPose) -> Result<(), Self::Error> {
+        if self.mounts().is_none() {
+            self.fix(t_us, Vec::new())?;
+        }
+        let data = viewers::robot(t_us, at).to_string().into_bytes();
+        let what = viewers::pose(at).to_string();
+        self.put_new(Topic::Frames, t_us, POSES_US, what, data)?;
+        let on_servo = |mount: &&SonarMount| mount.on_servo;
+        let mount = self.mounts().iter().flatten().find(on_servo).copied();
+        if let Some((mount, servo_rad)) = mount.zip(row.signal("servo_rad")) {
+            let Some(frame) = viewers::sonar(t_us, &mount, servo_rad) else {
+                return Ok(());
+            };
+            let data = frame.to_string().into_bytes();
+            let what = servo_rad.to_string();
+            self.put_new(Topic::ServoFrame, t_us, POSES_US, what, data)?;
+        }
+        Ok(())
+    }
+
+    /// The frames that do not move, of a robot with these sonars.
+    fn fix(&mut self, t_us: u64, sonars: Vec<SonarMount>) -> Result<(), Self::Error> {
+        let frames = viewers::fixed(t_us, &sonars);
+        *self.mounts() = Some(sonars);
+        self.put_json(Topic::FixedFrames, t_us, &frames)
     }
 
     /// Signals beside the telemetry.
@@ -129,7 +163,7 @@ pub(crate) trait Messages: Sink {
     }
 
     fn pose(&mut self, topic: Topic, t_us: u64, at: MapPose) -> Result<(), Self::Error> {
-        let pose = pose_json(at);
+        let pose = viewers::pose(at);
         let what = pose.to_string();
         let message = json!({ "timestamp": timestamp(t_us), "frame_id": "world", "pose": pose });
         self.put_new(
@@ -183,7 +217,9 @@ pub(crate) trait Messages: Sink {
     /// What surrounds the robot.
     fn scene(&mut self, t_us: u64, scene: Option<&Scene>) -> Result<(), Self::Error> {
         if let Some(scene) = scene {
-            self.put_json(Topic::World, t_us, &world_json(t_us, scene))?;
+            self.put_json(Topic::World, t_us, &viewers::world(t_us, scene))?;
+            self.put_json(Topic::Body, t_us, &viewers::body(t_us, scene))?;
+            self.fix(t_us, scene.sonars.clone())?;
         }
         match serde_json::to_vec(&json!({ "scene": scene })) {
             Ok(message) => self.put(Topic::Scene, t_us, &message),
@@ -235,16 +271,6 @@ fn to_us(t_ms: i64) -> u64 {
     u64::try_from(t_ms).unwrap_or_default() * 1_000
 }
 
-fn timestamp(t_us: u64) -> Value {
-    json!({ "sec": t_us / 1_000_000, "nsec": t_us % 1_000_000 * 1_000 })
-}
-
-fn pose_json(at: MapPose) -> Value {
-    // A heading in telemetry has four decimals.
-    let [sin, cos] = [f64::sin, f64::cos].map(|of| (of(0.5 * at.heading_rad) * 1e6).round() / 1e6);
-    json!({ "position": { "x": at.x_m, "y": at.y_m, "z": 0.0 }, "orientation": { "x": 0.0, "y": 0.0, "z": sin, "w": cos } })
-}
-
 /// Unknown values are left out; a clear range has a field of its own, since viewers plot numbers.
 fn row_json(row: &Row) -> Value {
     let mut message = Map::new();
@@ -256,25 +282,4 @@ fn row_json(row: &Row) -> Value {
         }
     }
     Value::Object(message)
-}
-
-fn world_json(t_us: u64, scene: &Scene) -> Value {
-    /// Connects the points; the second also connects the last with the first.
-    const LINE_STRIP: u8 = 0;
-    const LINE_LOOP: u8 = 1;
-    let lines: Vec<Value> = scene
-        .obstacles
-        .iter()
-        .map(|obstacle| {
-            let points: Vec<Value> =
-                obstacle.corners_m.iter().map(|[x, y]| json!({ "x": x, "y": y, "z": 0.0 })).collect();
-            json!({ "type": if obstacle.closed { LINE_LOOP } else { LINE_STRIP }, "pose": pose_json(MapPose::default()),
-                "thickness": 0.01, "scale_invariant": false, "points": points,
-                "color": { "r": 0.5, "g": 0.5, "b": 0.5, "a": 1.0 }, "colors": [], "indices": [] })
-        })
-        .collect();
-    let entity = json!({ "timestamp": timestamp(t_us), "frame_id": "world", "id": "world", "lifetime": { "sec": 0, "nsec": 0 },
-        "frame_locked": false, "metadata": [], "arrows": [], "cubes": [], "spheres": [], "cylinders": [], "lines": lines,
-        "triangles": [], "texts": [], "models": [] });
-    json!({ "deletions": [], "entities": [entity] })
 }

@@ -21,6 +21,14 @@ pub(crate) enum Topic {
     True,
     /// Walls and boxes.
     World,
+    /// Outline and wheels of the robot.
+    Body,
+    /// Where the robot is.
+    Frames,
+    /// Where the sonar on the servo looks.
+    ServoFrame,
+    /// Where the other sonars sit.
+    FixedFrames,
     /// What the dashboard draws around the robot.
     Scene,
     /// Raw bytes from the robot.
@@ -43,7 +51,7 @@ pub(crate) enum Topic {
 
 impl Topic {
     /// All of them, in the order of their numbers.
-    pub(crate) const ALL: [Self; 16] = [
+    pub(crate) const ALL: [Self; 20] = [
         Self::Telemetry,
         Self::State,
         Self::Parameters,
@@ -51,6 +59,10 @@ impl Topic {
         Self::Estimated,
         Self::True,
         Self::World,
+        Self::Body,
+        Self::Frames,
+        Self::ServoFrame,
+        Self::FixedFrames,
         Self::Scene,
         Self::FromRobot,
         Self::ToRobot,
@@ -73,6 +85,10 @@ impl Topic {
             Self::Estimated => "/pose/estimated",
             Self::True => "/pose/true",
             Self::World => "/world",
+            Self::Body => "/robot",
+            Self::Frames => "/frames",
+            Self::ServoFrame => "/frames/servo",
+            Self::FixedFrames => "/frames/fixed",
             Self::Scene => "/scene",
             Self::FromRobot => "/link/from_robot",
             Self::ToRobot => "/link/to_robot",
@@ -91,6 +107,11 @@ impl Topic {
         Self::ALL.into_iter().find(|topic| topic.name() == name)
     }
 
+    /// Whether it is written again where nothing changes, for who looks at a part of a log: viewers keep frames.
+    pub(crate) fn is_repeated(self) -> bool {
+        !matches!(self, Self::Frames | Self::ServoFrame)
+    }
+
     /// Name and text of its schema.
     #[must_use]
     pub(crate) fn schema(self) -> (&'static str, Value) {
@@ -100,7 +121,9 @@ impl Topic {
             Self::Parameters => ("rumbo.Parameters", parameters()),
             Self::Events => ("foxglove.Log", log()),
             Self::Estimated | Self::True => ("foxglove.PoseInFrame", pose_in_frame()),
-            Self::World => ("foxglove.SceneUpdate", scene_update()),
+            Self::World | Self::Body => ("foxglove.SceneUpdate", scene_update()),
+            Self::Frames | Self::ServoFrame => ("foxglove.FrameTransform", frame_transform()),
+            Self::FixedFrames => ("foxglove.FrameTransforms", frame_transforms()),
             // What it holds is for the dashboard.
             Self::Scene => ("rumbo.Scene", object("rumbo.Scene", json!({}))),
             Self::FromRobot | Self::ToRobot => ("rumbo.Bytes", bytes()),
@@ -193,11 +216,31 @@ fn vector(title: &str) -> Value {
     )
 }
 
+fn quaternion() -> Value {
+    let numbers = json!({ "x": number(), "y": number(), "z": number(), "w": number() });
+    object("foxglove.Quaternion", numbers)
+}
+
 fn pose() -> Value {
-    let orientation = json!({ "x": number(), "y": number(), "z": number(), "w": number() });
     object(
         "foxglove.Pose",
-        json!({ "position": vector("foxglove.Vector3"), "orientation": object("foxglove.Quaternion", orientation) }),
+        json!({ "position": vector("foxglove.Vector3"), "orientation": quaternion() }),
+    )
+}
+
+fn frame_transform() -> Value {
+    object(
+        "foxglove.FrameTransform",
+        json!({ "timestamp": time(), "parent_frame_id": text(), "child_frame_id": text(),
+            "translation": vector("foxglove.Vector3"), "rotation": quaternion() }),
+    )
+}
+
+fn frame_transforms() -> Value {
+    let transforms = json!({ "type": "array", "items": frame_transform() });
+    object(
+        "foxglove.FrameTransforms",
+        json!({ "transforms": transforms }),
     )
 }
 
@@ -216,10 +259,12 @@ fn scene_update() -> Value {
     let line = json!({ "type": { "type": "integer" }, "pose": pose(), "thickness": number(), "scale_invariant": { "type": "boolean" },
         "points": { "type": "array", "items": vector("foxglove.Point3") }, "color": color,
         "colors": { "type": "array", "items": color }, "indices": { "type": "array", "items": { "type": "integer" } } });
+    let cylinder = json!({ "pose": pose(), "size": vector("foxglove.Vector3"), "bottom_scale": number(), "top_scale": number(),
+        "color": color });
     let nothing = || json!({ "type": "array", "items": object("nothing", json!({})) });
     let entity = json!({ "timestamp": time(), "frame_id": text(), "id": text(), "lifetime": time(),
         "frame_locked": { "type": "boolean" }, "metadata": nothing(), "arrows": nothing(), "cubes": nothing(), "spheres": nothing(),
-        "cylinders": nothing(), "lines": { "type": "array", "items": object("foxglove.LinePrimitive", line) }, "triangles": nothing(),
+        "cylinders": { "type": "array", "items": object("foxglove.CylinderPrimitive", cylinder) }, "lines": { "type": "array", "items": object("foxglove.LinePrimitive", line) }, "triangles": nothing(),
         "texts": nothing(), "models": nothing() });
     object(
         "foxglove.SceneUpdate",

@@ -5,6 +5,7 @@ use crate::digest::{Digest, MANIFEST, OUTCOME};
 use crate::entry::{Burst, Entry};
 use crate::manifest::{Manifest, Outcome};
 use crate::messages::{Messages, Sink};
+use crate::scene::SonarMount;
 use crate::schema::Topic;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -17,7 +18,10 @@ const AGAIN_US: u64 = 1_000_000;
 /// A log being written.
 pub struct LogWriter<W: Write> {
     log: Container<W>,
-    channels: [u16; Topic::ALL.len()],
+    /// Of each topic that has a message.
+    channels: [Option<u16>; Topic::ALL.len()],
+    /// The sonars whose frames are written.
+    mounts: Option<Vec<SonarMount>>,
     sequences: [u32; Topic::ALL.len()],
     /// The time of what came last \[us\].
     now_us: u64,
@@ -60,16 +64,10 @@ impl<W: Write> LogWriter<W> {
             let name = format!("{name}.toml");
             log.attach(&name, "application/toml", text.as_bytes())?;
         }
-        let mut channels = [0; Topic::ALL.len()];
-        for topic in Topic::ALL {
-            let (name, schema) = topic.schema();
-            let schema = log.schema(name, "jsonschema", schema.to_string().as_bytes());
-            let channel = log.channel(schema, topic.name(), "json", &BTreeMap::new());
-            channels[topic as usize] = channel;
-        }
         let mut log = Self {
             log,
-            channels,
+            channels: [None; Topic::ALL.len()],
+            mounts: None,
             sequences: [0; Topic::ALL.len()],
             now_us: 0,
             joined: Joined::default(),
@@ -132,6 +130,17 @@ impl<W: Write> LogWriter<W> {
         }
     }
 
+    /// Makes the channel of a topic that has none: viewers list what there is.
+    fn announce(&mut self, topic: Topic) -> u16 {
+        let (name, schema) = topic.schema();
+        let schema = schema.to_string();
+        let schema = self.log.schema(name, "jsonschema", schema.as_bytes());
+        let channel = self
+            .log
+            .channel(schema, topic.name(), "json", &BTreeMap::new());
+        *self.channels[topic as usize].insert(channel)
+    }
+
     fn outcome(&mut self, outcome: &Outcome) -> io::Result<()> {
         let metadata = outcome.to_metadata();
         self.digest(self.now_us, &Digest::of(OUTCOME, &metadata))?;
@@ -170,11 +179,18 @@ impl<W: Write> LogWriter<W> {
 impl<W: Write> Sink for LogWriter<W> {
     type Error = io::Error;
 
+    fn mounts(&mut self) -> &mut Option<Vec<SonarMount>> {
+        &mut self.mounts
+    }
+
     fn put(&mut self, topic: Topic, t_us: u64, data: &[u8]) -> io::Result<()> {
         let sequence = self.sequences[topic as usize];
         self.sequences[topic as usize] = sequence.wrapping_add(1);
         let time_ns = t_us.saturating_mul(1_000);
-        let channel = self.channels[topic as usize];
+        let channel = match self.channels[topic as usize] {
+            Some(channel) => channel,
+            None => self.announce(topic),
+        };
         self.log.message(channel, sequence, time_ns, data)
     }
 
@@ -189,7 +205,8 @@ impl<W: Write> Sink for LogWriter<W> {
         let kept = &mut self.kept[topic as usize];
         let age_us = kept.t_us.map(|then_us| t_us.saturating_sub(then_us));
         let is_same = what == kept.what;
-        if is_same && age_us.is_some_and(|age_us| age_us < AGAIN_US) {
+        let is_late = |age_us: u64| age_us >= AGAIN_US && topic.is_repeated();
+        if is_same && age_us.is_some_and(|age_us| !is_late(age_us)) {
             kept.still = Some((t_us, data));
             return Ok(());
         }

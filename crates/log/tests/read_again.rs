@@ -229,8 +229,8 @@ fn an_hour_of_log_leaves_nothing_in_memory_but_its_index() {
     });
     const CHUNKS: i64 = 9_000;
     for kept in hours {
-        // A record of each chunk, in a list that has up to twice the room that it needs.
-        assert!(kept.count_current <= 10, "{kept:?}");
+        // A record of each chunk, in a list that has up to twice the room that it needs; in the first hour the channels.
+        assert!(kept.count_current <= 15, "{kept:?}");
         assert!(kept.bytes_current < 250 * CHUNKS, "{kept:?}");
     }
 }

@@ -1,20 +1,23 @@
 //! What is known of a robot as messages of ROS 2, by topic: of a log, or as it happens.
 
 use crate::geometry::{
-    BASE, Geometry, MAP, ODOM, Origin, SONARS, WHEELS, pose, seen_from, stamped, transform,
+    BASE, Geometry, LEAST_M, MAP, ODOM, Origin, SONARS, WHEELS, pose, seen_from, stamped, transform,
 };
 use crate::messages::{
     BatteryState, Clock, DiagnosticStatus, Diagnostics, Event, Header, JointState, KeyValue,
     Odometry, Range, Text, Time, Transforms,
 };
+use crate::surroundings::{self, Way};
 use crate::topics::Topic;
 use crate::types::{Byte, Covariance, Message, encode};
-use rumbo_log::{Level, Log, LoggedEvent, MapPose, Row, SonarMount, State, compose};
+use rumbo_log::{
+    Level, Log, LoggedEvent, MapPose, Obstacle, Row, SonarMount, State, Task, compose,
+};
 use std::fmt;
 use std::time::UNIX_EPOCH;
 
-/// Shortest distance that the sonars measure [m]: HC-SR04.
-const LEAST_M: f32 = 0.02;
+/// The sonars' signals, by `SonarId` number.
+const RANGES: [&str; 3] = ["range_left_m", "range_right_m", "range_front_m"];
 /// The node that speaks in a bag, and a live one outside a namespace.
 pub const SPEAKER: &str = "rumbo";
 
@@ -56,11 +59,11 @@ impl fmt::Display for ConvertError {
 
 impl std::error::Error for ConvertError {}
 
-/// All messages of a log, in order of time.
+/// All messages of a log, in order of time; with the sonars as a scan besides, if it is wanted.
 ///
 /// # Errors
 /// [`ConvertError`].
-pub fn messages(log: &Log) -> Result<Vec<Sent>, ConvertError> {
+pub fn messages(log: &Log, with_scan: bool) -> Result<Vec<Sent>, ConvertError> {
     if log.rows.is_empty() {
         return Err(ConvertError::NoTelemetry);
     }
@@ -74,11 +77,20 @@ pub fn messages(log: &Log) -> Result<Vec<Sent>, ConvertError> {
     let robot = log.manifest.as_ref();
     let robot = robot.and_then(|manifest| manifest.robot.clone());
     let mut converter = Converter::new(SPEAKER, robot.unwrap_or_default(), started_ns.unwrap_or(0));
+    converter.with_scan = with_scan;
     converter.know(geometry.ok_or(ConvertError::NoGeometry)?);
+    if let Some(scene) = log.scene() {
+        converter.surround(&scene.obstacles);
+    }
+    // A goal is counted from the origin that the robot has then.
+    let mut states = log.states.iter().peekable();
     for row in &log.rows {
+        while let Some(state) = states.next_if(|state| state.t_s * 1e3 <= row.t_ms as f64) {
+            converter.state(state, Vec::new())?;
+        }
         converter.row(row)?;
     }
-    for state in &log.states {
+    for state in states {
         converter.state(state, Vec::new())?;
     }
     for event in &log.events {
@@ -110,8 +122,13 @@ pub struct Converter {
     started_ns: u64,
     /// Once it is known.
     geometry: Option<Geometry>,
-    /// Description and fixed frames are still to be sent.
+    /// Walls and boxes in the world.
+    obstacles: Vec<Obstacle>,
+    /// Description, fixed frames and world are still to be sent.
     is_new: bool,
+    way: Way,
+    /// The sonars become a scan too.
+    pub with_scan: bool,
     /// Where odometry started in the world, of a simulated robot, as its first row has it.
     odom_in_map: Option<Option<MapPose>>,
     origin: Origin,
@@ -130,7 +147,10 @@ impl Converter {
             robot,
             started_ns,
             geometry: None,
+            obstacles: Vec::new(),
             is_new: true,
+            way: Way::default(),
+            with_scan: false,
             odom_in_map: None,
             origin: Origin::default(),
             wheel_rad: [0.0; 2],
@@ -144,6 +164,14 @@ impl Converter {
     pub fn know(&mut self, geometry: Geometry) {
         self.is_new |= self.geometry.as_ref() != Some(&geometry);
         self.geometry = Some(geometry);
+    }
+
+    /// Takes what stands in the world of a simulated robot; map and markers of it follow with the next row.
+    pub fn surround(&mut self, obstacles: &[Obstacle]) {
+        if self.obstacles != obstacles {
+            self.is_new = true;
+            self.obstacles = obstacles.to_vec();
+        }
     }
 
     /// The robot's pose in `odom`, as it was last reported.
@@ -169,9 +197,13 @@ impl Converter {
                     odom.ok_or("only a simulated robot knows where it is in map; use odom")?;
                 Ok(seen_from(odom, at))
             }
-            other => Err(format!(
-                "there is no frame `{other}`; use odom or base_link"
-            )),
+            other => {
+                let known = match self.odom_in_map.flatten() {
+                    Some(_) => "odom, base_link or map",
+                    None => "odom or base_link",
+                };
+                Err(format!("there is no frame `{other}`; use {known}"))
+            }
         }
     }
 
@@ -233,7 +265,15 @@ impl Converter {
             self.put(Topic::StaticTransforms, t_ns, &Transforms { transforms })?;
         }
         let data = geometry.urdf(&self.robot);
-        self.put(Topic::Description, t_ns, &Text { data })
+        self.put(Topic::Description, t_ns, &Text { data })?;
+        let Some(start) = odom else {
+            return Ok(());
+        };
+        let stamp = stamp(t_ns);
+        let map = surroundings::map(&stamp, &self.obstacles, start);
+        self.put(Topic::Map, t_ns, &map)?;
+        let walls = surroundings::walls(&stamp, &self.obstacles);
+        self.put(Topic::Walls, t_ns, &walls)
     }
 
     /// The signals of an instant.
@@ -267,6 +307,10 @@ impl Converter {
             let odometry = self.odometry(t_ns, ODOM, at, velocity, covariance(row, turned_rad));
             self.put(Topic::Odometry, t_ns, &odometry)?;
             frames.push(stamped(&stamp(t_ns), ODOM, BASE, transform(at)));
+            self.way.step(at);
+            if let Some(markers) = self.way.markers(row.t_ms, &stamp(t_ns)) {
+                self.put(Topic::Way, t_ns, &markers)?;
+            }
         }
         let moving = geometry.sonars.iter().filter(|mount| mount.on_servo);
         let moving: Vec<&str> = moving.filter_map(frame).chain(WHEELS).collect();
@@ -277,6 +321,11 @@ impl Converter {
         self.joints(t_ns, &geometry, now, servo_rad)?;
         for mount in &geometry.sonars {
             self.range(t_ns, row, mount)?;
+        }
+        if self.with_scan {
+            let ranges_m = RANGES.map(|name| row.signal(name));
+            let scan = surroundings::scan(&stamp(t_ns), &geometry, servo_rad, ranges_m);
+            self.put(Topic::Scan, t_ns, &scan)?;
         }
         if let Some(at) = row.pose("true_") {
             let velocity = geometry.velocity(speeds("true_"));
@@ -330,7 +379,7 @@ impl Converter {
     }
 
     fn range(&mut self, t_ns: u64, row: &Row, mount: &SonarMount) -> Result<(), ConvertError> {
-        let name = ["range_left_m", "range_right_m", "range_front_m"].get(usize::from(mount.id));
+        let name = RANGES.get(usize::from(mount.id));
         let range_m = name.and_then(|name| row.signal(name));
         let (Some(range_m), Some(sonar)) = (range_m, frame(mount)) else {
             return Ok(());
@@ -357,6 +406,9 @@ impl Converter {
         also: Vec<DiagnosticStatus>,
     ) -> Result<(), ConvertError> {
         let t_ns = self.at_ms((state.t_s * 1e3) as i64);
+        let origin = self.origin.in_odom();
+        let goals = goals(&state.robot.task).into_iter();
+        self.way.aim(goals.map(|goal| compose(origin, goal)));
         if let Some(battery_v) = state.robot.battery_v {
             let battery = BatteryState {
                 header: self.header(t_ns, BASE),
@@ -450,6 +502,26 @@ impl Converter {
         };
         self.put(Topic::Events, t_ns, &event)
     }
+}
+
+/// Where a task leads, from the robot's origin.
+fn goals(task: &Task) -> Vec<MapPose> {
+    let at = |x_m: f32, y_m: f32| MapPose {
+        x_m: x_m.into(),
+        y_m: y_m.into(),
+        heading_rad: 0.0,
+    };
+    let route = task.route.iter().flat_map(|route| {
+        let from = task.from.filter(|_| route.relative);
+        let from = from.map_or(MapPose::default(), |[x_m, y_m, heading_rad]| MapPose {
+            heading_rad: heading_rad.into(),
+            ..at(x_m, y_m)
+        });
+        let places = route.waypoints.iter();
+        places.map(move |place| compose(from, at(place.x_m, place.y_m)))
+    });
+    let goal = task.goal.map(|[x_m, y_m]| at(x_m, y_m));
+    goal.into_iter().chain(route).collect()
 }
 
 /// The frame of a sonar.

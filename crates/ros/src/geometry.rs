@@ -15,6 +15,8 @@ pub const WHEELS: [&str; 2] = ["left_wheel", "right_wheel"];
 /// The sonars' frames, by `SonarId` number.
 pub const SONARS: [&str; 3] = ["sonar_left", "sonar_right", "sonar_front"];
 
+/// Shortest distance that the sonars measure [m]: HC-SR04.
+pub(crate) const LEAST_M: f32 = 0.02;
 /// Width of a wheel in drawings [m].
 const WHEEL_WIDTH_M: f64 = 0.026;
 /// Height of the body, and of the sonars above the floor, in drawings [m].

@@ -4,6 +4,7 @@
 //! types      what a message is made of: its definition as text, its hash (REP 2016)
 //! messages   the messages used here
 //! geometry   frames and body of a robot; its URDF
+//! surroundings   maps and markers: the world, the goals, the way; the sonars as a scan
 //! topics     the topics of a robot: names, types, quality of service
 //! convert    a log, or what happens, as messages by topic
 //! bag        the bag: an MCAP file and its metadata
@@ -20,5 +21,6 @@ pub mod convert;
 pub mod geometry;
 pub mod messages;
 pub mod service_messages;
+mod surroundings;
 pub mod topics;
 pub mod types;

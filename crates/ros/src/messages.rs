@@ -153,6 +153,29 @@ messages! {
         /// Not known: 0.
         variance: f32,
     }
+    /// Distances all around; not a number: not known.
+    "sensor_msgs/msg/LaserScan" LaserScan {
+        /// When; the frame of the directions.
+        header: Header,
+        /// Direction of the first one [rad].
+        angle_min: f32,
+        /// Direction of the last one [rad].
+        angle_max: f32,
+        /// Between two of them [rad].
+        angle_increment: f32,
+        /// 0: all at once.
+        time_increment: f32,
+        /// Not known: 0.
+        scan_time: f32,
+        /// Shortest distance [m].
+        range_min: f32,
+        /// Longest distance [m].
+        range_max: f32,
+        /// The distances [m].
+        ranges: Vec<f32>,
+        /// Not known.
+        intensities: Vec<f32>,
+    }
     /// A battery; not a number: not known.
     "sensor_msgs/msg/BatteryState" BatteryState {
         /// When.
@@ -231,6 +254,115 @@ messages! {
         function: String,
         /// 0.
         line: u32,
+    }
+    /// Size and place of a map.
+    "nav_msgs/msg/MapMetaData" MapMetaData {
+        /// When it was made.
+        map_load_time: Time,
+        /// Side of a cell [m].
+        resolution: f32,
+        /// Cells along x.
+        width: u32,
+        /// Cells along y.
+        height: u32,
+        /// The first cell's lowest corner.
+        origin: Pose,
+    }
+    /// A map of cells.
+    "nav_msgs/msg/OccupancyGrid" OccupancyGrid {
+        /// When; in which frame.
+        header: Header,
+        /// Its size.
+        info: MapMetaData,
+        /// 0 free, 100 occupied; along x first.
+        data: Vec<i8>,
+    }
+    /// A length of time; 0 for ever.
+    "builtin_interfaces/msg/Duration" Duration {
+        /// Whole seconds.
+        sec: i32,
+        /// The rest [ns].
+        nanosec: u32,
+    }
+    /// A colour, each part 0 to 1.
+    "std_msgs/msg/ColorRGBA" Color {
+        /// Red.
+        r: f32,
+        /// Green.
+        g: f32,
+        /// Blue.
+        b: f32,
+        /// Opacity.
+        a: f32,
+    }
+    /// A picture.
+    "sensor_msgs/msg/CompressedImage" Picture {
+        /// When.
+        header: Header,
+        /// Empty: none.
+        format: String,
+        /// It.
+        data: Vec<u8>,
+    }
+    /// A place in a picture.
+    "visualization_msgs/msg/UVCoordinate" PicturePlace {
+        /// Across.
+        u: f32,
+        /// Down.
+        v: f32,
+    }
+    /// A shape from a file.
+    "visualization_msgs/msg/MeshFile" MeshFile {
+        /// Empty: none.
+        filename: String,
+        /// It.
+        data: Vec<u8>,
+    }
+    /// A shape in a display.
+    "visualization_msgs/msg/Marker" Marker {
+        /// When; in which frame.
+        header: Header,
+        /// What it belongs to.
+        ns: String,
+        /// Its number there.
+        id: i32,
+        /// 1 a box, 4 a line, 7 balls.
+        kind as "type": i32,
+        /// 0 show, 2 remove, 3 remove all.
+        action: i32,
+        /// Where.
+        pose: Pose,
+        /// Its size, or the width of lines [m].
+        scale: Vector3,
+        /// Its colour.
+        color: Color,
+        /// For how long.
+        lifetime: Duration,
+        /// It moves with its frame.
+        frame_locked: bool,
+        /// Places of a line, or of balls.
+        points: Vec<Point>,
+        /// A colour for each, or none.
+        colors: Vec<Color>,
+        /// Empty.
+        texture_resource: String,
+        /// None.
+        texture: Picture,
+        /// None.
+        uv_coordinates: Vec<PicturePlace>,
+        /// Empty.
+        text: String,
+        /// Empty.
+        mesh_resource: String,
+        /// None.
+        mesh_file: MeshFile,
+        /// No.
+        mesh_use_embedded_materials: bool,
+    }
+    /// Shapes in a display.
+    "visualization_msgs/msg/MarkerArray" Markers {
+        /// All.
+        markers: Vec<Marker>,
     }
     /// The answer of a service that has no question.
     "std_srvs/srv/Trigger_Response" Triggered {

@@ -1,6 +1,6 @@
 //! What the services of a node's parameters and those of an action carry. Requests are read as tuples of the same shape.
 
-use crate::messages::{Header, Pose, Time};
+use crate::messages::{Duration, Header, Pose, Time};
 use crate::types::{Byte, messages};
 
 messages! {
@@ -158,13 +158,6 @@ messages! {
         return_code: i8,
         /// They.
         goals_canceling: Vec<GoalInfo>,
-    }
-    /// A time that passes.
-    "builtin_interfaces/msg/Duration" Duration {
-        /// Whole seconds.
-        sec: i32,
-        /// The rest [ns].
-        nanosec: u32,
     }
     /// A pose in a frame, at an instant.
     "geometry_msgs/msg/PoseStamped" PoseStamped {

@@ -1,7 +1,8 @@
 //! The topics of a robot: names, types, quality of service.
 
 use crate::messages::{
-    BatteryState, Clock, Diagnostics, Event, JointState, Odometry, Range, Text, Transforms,
+    BatteryState, Clock, Diagnostics, Event, JointState, LaserScan, Markers, OccupancyGrid,
+    Odometry, Range, Text, Transforms,
 };
 use crate::service_messages::{EarlierFeedbackMessage, GoalStatusArray, ParameterEvent};
 use crate::types::{Definition, Message};
@@ -29,6 +30,14 @@ pub enum Topic {
     Truth,
     /// The robot's URDF.
     Description,
+    /// The world of a simulated robot, as cells.
+    Map,
+    /// The same as walls and boxes, for displays.
+    Walls,
+    /// The goals, and the way driven, for displays.
+    Way,
+    /// The sonars as one scan, where it is wanted.
+    Scan,
     /// The time of a simulation; no part of a bag, which has its own times.
     Clock,
     /// Changes of parameters; live only.
@@ -67,6 +76,10 @@ impl Topic {
             Self::Events => "/rosout",
             Self::Truth => "/ground_truth/odom",
             Self::Description => "/robot_description",
+            Self::Map => "/map",
+            Self::Walls => "/markers/world",
+            Self::Way => "/markers/way",
+            Self::Scan => "/scan",
             Self::Clock => "/clock",
             Self::ParameterEvents => "/parameter_events",
             Self::GoalFeedback => "/rumbo/navigate_to_pose/_action/feedback",
@@ -95,6 +108,9 @@ impl Topic {
             Self::Diagnostics => Diagnostics::DEFINITION,
             Self::Events => Event::DEFINITION,
             Self::Description => Text::DEFINITION,
+            Self::Map => OccupancyGrid::DEFINITION,
+            Self::Walls | Self::Way => Markers::DEFINITION,
+            Self::Scan => LaserScan::DEFINITION,
             Self::Clock => Clock::DEFINITION,
             Self::ParameterEvents => ParameterEvent::DEFINITION,
             Self::GoalFeedback => EarlierFeedbackMessage::DEFINITION,
@@ -107,7 +123,12 @@ impl Topic {
     pub fn quality(self) -> Quality {
         let latched = matches!(
             self,
-            Self::StaticTransforms | Self::Description | Self::GoalStatus
+            Self::StaticTransforms
+                | Self::Description
+                | Self::Map
+                | Self::Walls
+                | Self::Way
+                | Self::GoalStatus
         );
         let depth = match self {
             _ if latched => 1,

@@ -177,3 +177,19 @@ fn an_event_has_what_is_new_and_what_has_changed() {
     let event = changes("/rumbo", at, &[], &before).unwrap();
     assert_eq!(event.new_parameters.len(), before.len());
 }
+
+#[test]
+fn use_sim_time_tells_whether_the_robot_is_simulated_and_nobody_sets_it() {
+    for simulated in [true, false] {
+        let mut table = table();
+        table.push(ParameterState::use_sim_time(simulated, 99));
+        let asked = names(&["use_sim_time"]);
+        let expected = (1, simulated, 0.0, String::new());
+        assert_eq!(values(&asked, &table), [expected]);
+        let known = table.last().unwrap();
+        for wanted in [true, false] {
+            let refused = number(known, &Value::Bool(wanted)).unwrap_err();
+            assert!(refused.contains("cannot be set"), "{refused}");
+        }
+    }
+}

@@ -20,7 +20,7 @@ import check_ros_others
 import check_ros_parameters
 import rclpy
 import yaml
-from nav_msgs.msg import Odometry
+from nav_msgs.msg import OccupancyGrid, Odometry
 from ros_peers import (
     COMMANDS,
     DOMAIN,
@@ -44,8 +44,9 @@ from ros_peers import (
     wait_for,
 )
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import JointState, Range
+from sensor_msgs.msg import JointState, LaserScan, Range
 from std_msgs.msg import String
+from visualization_msgs.msg import MarkerArray
 
 # Its robot does not measure its battery.
 TOPICS = {
@@ -60,6 +61,9 @@ TOPICS = {
     "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
     "/rosout": "rcl_interfaces/msg/Log",
     "/robot_description": "std_msgs/msg/String",
+    "/map": "nav_msgs/msg/OccupancyGrid",
+    "/markers/world": "visualization_msgs/msg/MarkerArray",
+    "/markers/way": "visualization_msgs/msg/MarkerArray",
     "/clock": "rosgraph_msgs/msg/Clock",
     "/parameter_events": "rcl_interfaces/msg/ParameterEvent",
     "/rumbo/navigate_to_pose/_action/feedback": "nav2_msgs/action/NavigateToPose_FeedbackMessage",
@@ -114,6 +118,27 @@ def check_late(cyclone):
     frames = wait_for("the fixed frames", lambda: fixed.take(N=1))[0].transforms
     frames = {each.child_frame_id: each.header.frame_id for each in frames}
     assert frames == {"sonar_left": "base_link", "sonar_right": "base_link", "odom": "map"}, frames
+    # An open floor.
+    floors = late.listen(OccupancyGrid, "/map", LATCHED)
+    assert set(wait_for("the map", lambda: floors)[-1].data) == {0}, floors
+
+
+def check_surroundings(late):
+    """The robot is in no void, for those who come late too."""
+    robot = lab("--scenario", "free", "--world", "room", node=["--scan", "--namespace", "room"])
+    grids = late.listen(OccupancyGrid, "/room/map", LATCHED)
+    walls = late.listen(MarkerArray, "/room/markers/world", LATCHED)
+    ways = late.listen(MarkerArray, "/room/markers/way", LATCHED)
+    scans = late.listen(LaserScan, "/room/scan")
+    wait_for("map, markers and a scan", lambda: grids and walls and ways and scans)
+    grid = grids[-1]
+    assert grid.header.frame_id == "map" and len(grid.data) == grid.info.width * grid.info.height, grid.info
+    assert {0, 100} == set(grid.data) and grid.info.width * grid.info.resolution > 3.0, grid.info
+    assert {marker.ns for marker in walls[-1].markers[1:]} == {"walls", "boxes"}, walls
+    assert [marker.ns for marker in ways[-1].markers] == ["way", "goals"] and ways[-1].markers[0].header.frame_id == "odom", ways
+    seen = [distance for distance in scans[-1].ranges if not math.isnan(distance)]
+    assert len(scans[-1].ranges) == 360 and 20 < len(seen) < 180, scans[-1]
+    robot.end()
 
 
 def check_driving(peer, odometry, truth, robot):
@@ -226,6 +251,8 @@ def check_examples():
     compile(launch.read_text(), launch, "exec")
     layout = yaml.safe_load(Path("examples/ros2/rumbo.rviz").read_text())["Visualization Manager"]
     kinds = {
+        "Map": "nav_msgs/msg/OccupancyGrid",
+        "MarkerArray": "visualization_msgs/msg/MarkerArray",
         "Odometry": "nav_msgs/msg/Odometry",
         "Range": "sensor_msgs/msg/Range",
         "RobotModel": "std_msgs/msg/String",
@@ -235,7 +262,7 @@ def check_examples():
         topic = display.get("Topic") or display.get("Description Topic")
         if topic:
             shown[topic["Value"]] = kinds[display["Class"].split("/")[1]]
-    assert len(shown) == 6 and shown.items() <= TOPICS.items(), shown
+    assert len(shown) == 9 and shown.items() <= TOPICS.items(), shown
     assert layout["Global Options"]["Fixed Frame"] == "odom"
     example = [sys.executable, "examples/ros2/drive.py"]
     run = subprocess.run(example, capture_output=True, text=True, timeout=PATIENCE_S)
@@ -370,7 +397,13 @@ def main():
     done("a fleet")
     check_connected(peer)
     done("a robot at a port")
+    check_surroundings(peer)
+    done("a room")
     Peer.end()
+    for distribution in ("humble", "kilted"):
+        script = Path(__file__).with_name("check_ros_distribution.py")
+        subprocess.run([sys.executable, script, sys.argv[1], distribution], check=True)
+        done(f"go to goal for {distribution}")
 
 
 main()

@@ -93,6 +93,8 @@ def ask(cyclone, service, kinds, **question):
 def check_reading(client, cyclone):
     names = ask(cyclone, "list_parameters", (ListRequest, ListAnswer), prefixes=[], depth=0).names
     assert len(names) > 50 and "front_kp" in names and "rig" in names, names
+    simulated = ask(cyclone, "get_parameters", (GetRequest, GetAnswer), names=["use_sim_time"]).values
+    assert [(each.type, each.bool_value) for each in simulated] == [(1, True)], simulated
     assert result("one name", client.list_parameters(["rig"], 1)).result.names == ["rig"]
     front, rig, none = result("descriptions", client.describe_parameters(["front_kp", "rig", "no_such"])).descriptors
     limits = front.floating_point_range[0]

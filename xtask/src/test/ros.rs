@@ -7,12 +7,13 @@ use super::{Stop, tools};
 use crate::project::{Project, run};
 
 /// Packages of PyPI: rclpy of Jazzy with Fast DDS, its messages, Cyclone DDS.
-const PACKAGES: [&str; 6] = [
+const PACKAGES: [&str; 7] = [
     "ros-jazzy-rclpy[fastrtps]==7.1.6",
     "ros-jazzy-geometry-msgs==5.3.6",
     "ros-jazzy-nav-msgs==5.3.6",
     "ros-jazzy-sensor-msgs==5.3.6",
     "ros-jazzy-std-srvs==5.3.6",
+    "ros-jazzy-visualization-msgs==5.3.6",
     "cyclonedds==11.0.1",
 ];
 

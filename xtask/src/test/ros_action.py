@@ -12,13 +12,17 @@ import sysconfig
 from pathlib import Path
 
 PACKAGE = "nav2_msgs"
-# As in Jazzy.
+# What the result has in a distribution.
+RESULTS = {
+    "humble": "std_msgs/Empty result",
+    "jazzy": "uint16 NONE=0\nuint16 error_code",
+    "kilted": "uint16 NONE=0\nuint16 error_code\nstring error_msg",
+}
 DEFINITION = """\
 geometry_msgs/PoseStamped pose
 string behavior_tree
 ---
-uint16 NONE=0
-uint16 error_code
+{result}
 ---
 geometry_msgs/PoseStamped current_pose
 builtin_interfaces/Duration navigation_time
@@ -31,7 +35,7 @@ KINDS = ["rosidl_generator_c", "rosidl_generator_py", "rosidl_typesupport_c"]
 SUPPORTS = ["rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c"]
 
 
-def generate(folder):
+def generate(folder, definition):
     os.environ["AMENT_PREFIX_PATH"] = sys.prefix
     from rosidl_adapter.action import convert_action_to_idl
     from rosidl_generator_c.cli import GenerateC
@@ -42,7 +46,7 @@ def generate(folder):
 
     source = Path("action/NavigateToPose.action")
     (folder / "action").mkdir(parents=True)
-    (folder / source).write_text(DEFINITION)
+    (folder / source).write_text(definition)
     convert_action_to_idl(folder, PACKAGE, source, folder / "idl" / PACKAGE / "action")
     definitions = [f"{folder}/idl/{PACKAGE}:action/NavigateToPose.idl"]
     shared = [str(Path(sys.prefix) / "share"), str(folder / "idl")]
@@ -86,15 +90,16 @@ def compile_all(folder):
         subprocess.run(["g++" if library.name.endswith("fastrtps_c.so") else "gcc", *options, *files, name, *link, "-o", library], check=True)
 
 
-def make(folder):
-    """The type; it is made in a folder, where it stays."""
+def make(folder, distribution="jazzy"):
+    """The type of a distribution; it is made in a folder, where it stays. A process has one."""
+    definition = DEFINITION.format(result=RESULTS[distribution])
     folder = Path(folder).resolve()
     made = folder / "made"
-    if not made.is_file() or made.read_text() != DEFINITION:
+    if not made.is_file() or made.read_text() != definition:
         shutil.rmtree(folder, ignore_errors=True)
-        generate(folder)
+        generate(folder, definition)
         compile_all(folder)
-        made.write_text(DEFINITION)
+        made.write_text(definition)
     for library in [folder / PACKAGE / f"{PACKAGE}_s__rosidl_typesupport_c.so", *folder.glob("*.so")]:
         # Found by their names from now on.
         ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)

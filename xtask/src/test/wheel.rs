@@ -6,6 +6,7 @@ use std::process::Command;
 
 use super::{Stop, tools};
 use crate::project::{Project, output, run};
+use crate::release;
 
 /// Packages of PyPI; what type checkers find depends on their versions. They need Python 3.11, the wheel itself 3.10.
 const PACKAGES: [&str; 7] = [
@@ -175,6 +176,49 @@ fn wheel(project: &Project) -> Result<PathBuf, Stop> {
         &interpreter,
     ];
     package(project, &python, &build, "whl")
+}
+
+/// Systems that the wheel is tried in, and their Python.
+const SYSTEMS: [(&str, &str); 2] = [("bookworm", "3.11"), ("trixie", "3.13")];
+
+/// Installs the wheel as a user would, in systems with nothing but Python and without a network, and drives robots there.
+pub(crate) fn in_clean_systems(project: &Project) -> Result<(), Stop> {
+    let python = tools::python_with(project, "wheel", &packages())?;
+    let wheel = wheel(project)?;
+    for (suite, version) in SYSTEMS {
+        let root = release::clean_system(project, suite, &["python3-venv"])?;
+        let wheels = root.join("wheels");
+        let words = [
+            "pip",
+            "download",
+            "--quiet",
+            "--only-binary=:all:",
+            "--python-version",
+            version,
+            "--dest",
+        ];
+        run(module(project, &python, &words).arg(&wheels).arg(&wheel))?;
+        let there = "/venv/bin/python";
+        let count = "import rumbo; assert len(rumbo.run('mode1', seeds=range(1, 21))) == 20";
+        for words in [
+            &["python3", "-m", "venv", "/venv"][..],
+            &[
+                there,
+                "-m",
+                "pip",
+                "install",
+                "--quiet",
+                "--no-index",
+                "--find-links",
+                "/wheels",
+                "rumbo",
+            ],
+            &[there, "-c", count],
+        ] {
+            release::inside(project, &root, words)?;
+        }
+    }
+    Ok(())
 }
 
 /// Installs it in place of an earlier one.

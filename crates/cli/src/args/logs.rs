@@ -76,9 +76,12 @@ pub(crate) struct ExportArgs {
     /// What to write; may be repeated [default: csv and svg]
     #[arg(long = "format", value_enum, value_name = "FORMAT")]
     pub(crate) formats: Vec<Format>,
-    /// A bag of ROS 2 instead, or besides: odometry, transforms, sonars, joints, battery, diagnostics, events
+    /// A bag of ROS 2 instead, or besides: odometry, transforms, sonars, map, joints, battery, diagnostics, events
     #[arg(long)]
     pub(crate) ros2bag: bool,
+    /// The sonars as one LaserScan in the bag, too
+    #[arg(long, requires = "ros2bag")]
+    pub(crate) scan: bool,
     /// Folder for the files; made if need be [default: the current one]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

@@ -263,7 +263,7 @@ pub(crate) fn explain(error: &clap::Error) -> Result<(), Failure> {
 fn elsewhere(error: &clap::Error) -> Option<String> {
     let word = error.get(ContextKind::InvalidSubcommand)?;
     (*word == ContextValue::String("ros".to_owned())).then(|| {
-        "ros: the node of ROS 2 is a program of its own, beside `rumbo lab` or `rumbo connect`; in a checkout, `cargo install --path ros` installs it: rumbo-ros (docs/ros2.md)".to_owned()
+        "ros: the node of ROS 2 is a program of its own, beside `rumbo lab` or `rumbo connect`; rumbo-ros, in the archive for Linux and the Debian package, else by `cargo install --path ros` in a checkout (docs/ros2.md)".to_owned()
     })
 }
 

@@ -254,6 +254,7 @@ impl Intake {
             Topic::Console => size_of::<Said>() + data.len(),
             Topic::Telemetry | Topic::Digest | Topic::Truth | Topic::Loops | Topic::Others => 0,
             Topic::Printed | Topic::Estimated | Topic::True | Topic::World => 0,
+            Topic::Body | Topic::Frames | Topic::ServoFrame | Topic::FixedFrames => 0,
         };
         match topic {
             Topic::Telemetry => {
@@ -325,6 +326,7 @@ impl Intake {
             }
             // Made of what the others hold.
             Topic::Estimated | Topic::True | Topic::World => {}
+            Topic::Body | Topic::Frames | Topic::ServoFrame | Topic::FixedFrames => {}
         }
         Ok(())
     }

@@ -29,19 +29,22 @@ fn log(rows: &[(f64, f64)]) -> Log {
 #[test]
 fn a_log_that_tells_too_little_is_refused_with_what_is_missing() {
     assert!(matches!(
-        messages(&Log::default()),
+        messages(&Log::default(), false),
         Err(ConvertError::NoTelemetry)
     ));
     let mut log = log(&[(0.0, 0.0)]);
     log.scene = None;
-    assert!(matches!(messages(&log), Err(ConvertError::NoGeometry)));
+    assert!(matches!(
+        messages(&log, false),
+        Err(ConvertError::NoGeometry)
+    ));
 }
 
 #[test]
 fn the_pose_in_odom_goes_on_where_the_robot_moves_its_origin() {
     // At its goal, 1 m ahead, it begins to count from there; the world has it 2 cm short of that.
     let log = log(&[(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.0, 0.98), (0.1, 0.98)]);
-    let all = messages(&log).unwrap();
+    let all = messages(&log, false).unwrap();
     let odometry = all.iter().filter(|sent| sent.topic == Topic::Odometry);
     // The place is the first of the message's numbers of eight bytes, after header and frames.
     let x_m: Vec<f64> = odometry

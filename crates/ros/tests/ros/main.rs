@@ -7,4 +7,5 @@
 )]
 
 mod convert;
+mod surroundings;
 mod types;

@@ -2,6 +2,7 @@
 
 use rumbo_ros::messages::{BatteryState, Diagnostics, Event, JointState, KeyValue, Odometry};
 use rumbo_ros::messages::{DiagnosticStatus, Header, Range, Text, Time, Transforms};
+use rumbo_ros::messages::{LaserScan, Markers, OccupancyGrid};
 use rumbo_ros::service_messages::{
     EarlierFeedbackMessage, GoalStatusArray, ParameterDescriptor, ParameterEvent,
 };
@@ -45,6 +46,18 @@ fn hashes_are_those_of_the_distributions() {
         (
             Event::DEFINITION,
             "e28ce254ca8abc06abf92773b74602cdbf116ed34fbaf294fb9f81da9f318eac",
+        ),
+        (
+            OccupancyGrid::DEFINITION,
+            "8d348150c12913a31ee0ec170fbf25089e4745d17035792a1ba94d6f0bc0cfc7",
+        ),
+        (
+            Markers::DEFINITION,
+            "86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf",
+        ),
+        (
+            LaserScan::DEFINITION,
+            "64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828",
         ),
         (
             ParameterEvent::DEFINITION,
