@@ -352,6 +352,7 @@ impl Target for Toy {
                 corners_m: vec![[1.3, -1.0], [1.3, 1.0]],
                 closed: false,
             }],
+            lines: Vec::new(),
             movers: Vec::new(),
             others: Vec::new(),
             footprint_m: vec![[0.1, 0.075], [-0.1, 0.075], [-0.1, -0.075], [0.1, -0.075]],
