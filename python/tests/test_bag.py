@@ -13,7 +13,6 @@ import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
-
 EXPORT = ["export", "logs/mode8-goals-1.mcap", "--ros2bag", "--scan"]
 
 
