@@ -107,6 +107,11 @@ export class Sketch {
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     const bottom = this.canvas.clientHeight - 10;
     const right = this.canvas.clientWidth - 12;
+    // Legible on a wall too.
+    context.globalAlpha = 0.75;
+    context.fillStyle = colours.panel;
+    context.fillRect(right - length_m * px_per_m - 4, bottom - 22, length_m * px_per_m + 8, 26);
+    context.globalAlpha = 1;
     context.strokeStyle = context.fillStyle = colours.dim;
     context.lineWidth = 1.5;
     context.beginPath();

@@ -8,7 +8,7 @@ import { format, formatShort } from './units.js';
 /** @typedef {import('./tune_search.js').Difference} Difference */
 
 /** A value with four digits, or a dash where there is none. @param {number | null} value */
-const figure = (value) => (value === null ? '–' : short(value));
+const figure = (value) => (value === null ? '–' : formatShort(value, 4));
 
 /** No more digits than tell: a difference of a hundredth of a millimetre is none. @param {number} value */
 const short = (value) => formatShort(Math.abs(value) < 5e-5 ? 0 : Number(value.toPrecision(3)));

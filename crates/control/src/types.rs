@@ -454,13 +454,13 @@ impl Fault {
                 "link lost: no heartbeat arrived in time; check the connection, then clear and arm again"
             }
             Fault::SonarFaulty => {
-                "sonar faulty: its echo line is silent, or its readings jump; check its wiring, and see that it faces no corner, gap or slanted box"
+                "sonar faulty: its echo line is silent or stuck, or its readings jump; check its wiring, and see that it faces no corner, gap or slanted box"
             }
             Fault::SonarStale => {
                 "sonar stale: no good reading for too long; is something absorbing the echo?"
             }
             Fault::WallLost => {
-                "wall lost: nothing within the sonar's reach; face the robot to a wall"
+                "wall lost: a sonar that the mode needs hears none; face the robot to a wall"
             }
             Fault::LeftEncoderSilent => {
                 "left encoder silent: something holds the left wheel, or its encoder is cut off; free the wheel, then see the wires of the encoder"

@@ -204,7 +204,7 @@ export const PAGE = {
     'Gráficas: las flechas mueven en el tiempo, + y - amplían, M pone la marca, L sigue los datos más nuevos',
   'Time at the pointer; Δ from the mark, which a click in a plot sets': 'Tiempo en el puntero; Δ desde la marca, que un clic en una gráfica pone',
   'Plot {}, or not': 'Dibuja {}, o no', '{}: show or hide': '{}: mostrar u ocultar', 'state': 'estado',
-  'distance': 'distancia', 'wheels': 'ruedas', 'position': 'posición', 'of 255': 'de 255', 'lock': 'fijar',
+  'distance': 'distancia', 'wheels': 'ruedas', 'position': 'posición', 'of 255': 'de 255', 'lock': 'bloquear',
   'Hold the limits of the axis': 'Mantiene los límites del eje', 'Signals, axis and picture of this plot': 'Señales, eje e imagen de esta gráfica',
   'Change the plot {}': 'Cambiar la gráfica {}', 'New plot': 'Gráfica nueva', 'Plot': 'Gráfica', 'Remove plot': 'Quitar gráfica', 'title': 'título', 'y min': 'y mín.', 'y max': 'y máx.', 'right axis: y min': 'eje derecho: y mín.', 'These have the axis on the right': 'Estas tienen el eje a la derecha',
   'empty = auto': 'vacío = automático', 'Save this plot as {}': 'Guarda esta gráfica como {}', 'Print this plot, or save it as PDF': 'Imprime esta gráfica, o la guarda como PDF', 'figure': 'figura', 'from': 'desde', 'width': 'ancho', 'height': 'alto',

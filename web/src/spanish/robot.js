@@ -79,11 +79,11 @@ export const ROBOT = {
   // Faults, each with its cause.
   'link lost: no heartbeat arrived in time; check the connection, then clear and arm again':
     'enlace perdido: no llegó ningún latido a tiempo; comprueba la conexión, borra el fallo y arma otra vez',
-  'sonar faulty: its echo line is silent, or its readings jump; check its wiring, and see that it faces no corner, gap or slanted box':
-    'sonar averiado: su línea de eco calla o sus lecturas saltan; comprueba su cableado y que no mire a una esquina, un hueco o una caja oblicua',
+  'sonar faulty: its echo line is silent or stuck, or its readings jump; check its wiring, and see that it faces no corner, gap or slanted box':
+    'sonar averiado: su línea de eco calla o se queda fija, o sus lecturas saltan; comprueba su cableado y que no mire a una esquina, un hueco o una caja oblicua',
   'sonar stale: no good reading for too long; is something absorbing the echo?':
     'sonar sin lecturas: ninguna buena desde hace demasiado; ¿hay algo que absorbe el eco?',
-  'wall lost: nothing within the sonar\'s reach; face the robot to a wall': 'pared perdida: nada al alcance del sonar; pon el robot frente a una pared',
+  'wall lost: a sonar that the mode needs hears none; face the robot to a wall': 'pared perdida: un sonar que el modo necesita no oye ninguna; pon el robot frente a una pared',
   'left encoder silent: something holds the left wheel, or its encoder is cut off; free the wheel, then see the wires of the encoder': 'encoder izquierdo en silencio: algo retiene la rueda izquierda, o no llega la señal del encoder; libera la rueda y comprueba después los cables del encoder',
   'right encoder silent: something holds the right wheel, or its encoder is cut off; free the wheel, then see the wires of the encoder': 'encoder derecho en silencio: algo retiene la rueda derecha, o no llega la señal del encoder; libera la rueda y comprueba después los cables del encoder',
   'left encoder implausible: the robot met something, or something drags at the left wheel; if neither, its encoder loses edges or picks up noise: see its wires, its ground, and the gap between sensor and magnet':

@@ -35,7 +35,7 @@ export const SCENARIOS = {
   'Straight on at 40 rpm for 23.5 s, calibrated': 'En línea recta a 40 rpm durante 23,5 s, calibrado',
   'A square of 1 m, once': 'Un cuadrado de 1 m, una vez', 'A square of 1 m without end': 'Un cuadrado de 1 m sin fin',
   'Pure pursuit on a curve of 3 m': 'Persecución pura por una curva de 3 m', 'Pure pursuit on a straight line of 3 m': 'Persecución pura por una recta de 3 m',
-  'The goals (1, 1), (0.5, -0.5), (0.5, -0.5), (-1, -1), one after the other': 'Los destinos (1, 1), (0,5, −0,5), (0,5, −0,5), (−1, −1), uno tras otro',
+  'The goals (1, 1), (0.5, -0.5), (0.5, -0.5), (-1, -1), one after the other': 'Los destinos (1; 1), (0,5; −0,5), (0,5; −0,5), (−1; −1), uno tras otro',
   'A lane of boxes': 'Un carril de cajas', 'To (2.5, 0) around a box and a block of two': 'A (2,5, 0) rodeando una caja y un bloque de dos',
   'A goal in a random world': 'Un destino en un mundo aleatorio',
   'A goal among boxes by a learned policy': 'Un destino entre cajas con una política aprendida',

@@ -2,6 +2,7 @@
 /** Who may do what: a viewer, two pages of controllers and the one lease of control between them. */
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
+import { violations } from '../axe.mjs';
 import { folder, open, showPage } from '../dashboard.mjs';
 
 /** @typedef {import('playwright-core').Page} Page */
@@ -62,9 +63,10 @@ test('the first order takes control, and every page shows which one has it', asy
 });
 
 test('a page without control looks so, is refused with the reason where it was pressed, and may stop the robot', async () => {
-  const faint = (/** @type {string} */ id) => second.locator(`#${id}`).evaluate((part) => Number(getComputedStyle(part).opacity) < 0.6);
-  for (const id of ['on', 'off', 'simulation', 'save-parameters']) assert.equal(await faint(id), true, id);
+  const faint = (/** @type {string} */ id) => second.locator(`#${id}`).evaluate((part) => getComputedStyle(part).borderStyle === 'dashed');
+  for (const id of ['on', 'off', 'scenario', 'save-parameters']) assert.equal(await faint(id), true, id);
   assert.equal(await faint('stop'), false);
+  assert.deepEqual(await violations(second), []);
   await second.locator('#off').click();
   const [said, button] = await Promise.all(['#nope', '#off'].map((part) => second.locator(part).boundingBox()));
   assert.equal(await second.locator('#nope').textContent(), 'refused: another page has control; take it first');

@@ -141,6 +141,7 @@ rare('it is in Spanish, on a narrow screen too', async () => {
   const spanish = await open(['lab', '--out', folder(), '--scenario', 'mode5'], { locale: 'es-ES', viewport: { width: 390, height: 844 } });
   const { page } = spanish;
   await page.waitForSelector('#connection.good, #connection.warning');
+  await page.locator('#views button[value="events"]').click();
   await page.getByRole('button', { name: 'Sintonizar' }).click();
   await page.locator('#tune-start:enabled').waitFor();
   await choose(page, ['kv']);

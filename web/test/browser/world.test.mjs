@@ -164,7 +164,7 @@ rare('a random world is frozen by its seed, and a page without control only watc
     assert.ok(url);
     const other = await showPage(page.context(), new URL('/', url).href);
     await other.click('#edit-world');
-    await eventually(async () => assert.match(await other.locator('#events').textContent() ?? '', /another page has control/));
+    await other.locator('#nope', { hasText: 'another page has control' }).waitFor();
     assert.equal(await other.locator('#editor').isHidden(), true);
   } finally {
     await close();
