@@ -11,8 +11,8 @@
 //! right = { pin = "A1", x_m = 0.08, y_m = -0.015, analogue = true, dark = "low" }
 //! ```
 
+use super::pin::read_pin;
 use super::read::{Allowed, Table};
-use super::robot::read_pin;
 use super::value::PLACE;
 use rumbo_sim::floor::{Line, LineSensor};
 use rumbo_sim::wiring::Wiring;

@@ -122,7 +122,10 @@ fn the_robot_with_an_uno_has_the_body_and_motors_of_the_report_s() {
     assert!(error.to_string().contains("0..19"), "{error}");
     let wrong = uno.text.replace("board = \"uno\"", "board = \"due\"");
     let error = RobotFile::parse("uno", "uno.toml", &wrong).unwrap_err();
-    assert!(error.to_string().contains("`mega`, `uno` or `nano`"), "{error}");
+    assert!(
+        error.to_string().contains("`mega`, `uno` or `nano`"),
+        "{error}"
+    );
 }
 
 #[test]
