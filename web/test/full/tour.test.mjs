@@ -50,8 +50,9 @@ for (const [width, height] of [[1280, 800], [390, 844], [640, 360]]) {
         }));
         const [card, stop, about] = seen;
         assert.ok(card && stop && about && card.left >= 0 && card.right <= (width ?? 0) && card.bottom <= (height ?? 0), JSON.stringify(seen));
-        assert.ok(stop.bottom <= card.top && stop.top >= 0, `STOP: ${JSON.stringify(seen)}`);
-        assert.ok(about.top < card.top - 20 && about.bottom > 0, `step ${number}: ${JSON.stringify(seen)}`);
+        // On a telephone it is below.
+        assert.ok((stop.bottom <= card.top || stop.top >= card.bottom) && stop.top >= 0 && stop.bottom <= (height ?? 0), `STOP: ${JSON.stringify(seen)}`);
+        assert.ok((about.top < card.top - 20 || about.top >= card.bottom) && about.bottom > 0, `step ${number}: ${JSON.stringify(seen)}`);
         await page.locator('#tour .go').click();
       }
       assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
