@@ -1,7 +1,7 @@
-//! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, everything that can
-//! fail in the middle of drives, mode 8 among what moves, a million frames over a link with faults, and the image for 75
-//! minutes under a flood of bytes, and beside the native robot; sweeps of the Python package on Ray, a policy learned
-//! with it; the fuzz targets for ten minutes each.
+//! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds and beside planners of
+//! the literature there, everything that can fail in the middle of drives, mode 8 among what moves, a million frames over
+//! a link with faults, and the image for 75 minutes under a flood of bytes, and beside the native robot; sweeps of the
+//! Python package on Ray, a policy learned with it; the fuzz targets for ten minutes each.
 //!
 //! Runs and requirements are those of `rumbo_experiment::campaign`. Each program is built in release mode, and its
 //! output is printed as it comes.
@@ -28,6 +28,8 @@ const FAULTS_SEEDS_IMAGE: u32 = 5;
 const FAULTS_INSTANTS_IMAGE: u32 = 2;
 /// Mode 8 among people who cross its way and among other robots.
 const MOVING: &str = "moving";
+/// Mode 8 beside planners of the literature.
+const BESIDE: &str = "beside";
 /// The fuzz targets.
 const FUZZ: &str = "fuzz";
 /// A class of a hundred hand-ins, thirty of them hostile.
@@ -97,6 +99,13 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
         };
         met &= tool(project, MOVING, &args)?;
     }
+    if only.is_empty() || only.iter().any(|name| name == BESIDE) {
+        let args = match seeds {
+            Some(seeds) => vec!["--seeds".to_owned(), seeds.to_string()],
+            None => vec!["--write".to_owned()],
+        };
+        met &= tool(project, BESIDE, &args)?;
+    }
     if only.is_empty() || only.iter().any(|name| name == RAY) {
         wheel::on_ray(project).map_err(said)?;
     }
@@ -112,8 +121,8 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
         only.iter()
             .filter(|name| {
                 ![
-                    LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, TUNE, FAULTS, MOVING, RAY, PYTHON,
-                    RELEASE,
+                    LINK, IMAGE, MEDIANS, FUZZ, GRADE, IDENTIFY, TUNE, FAULTS, MOVING, BESIDE, RAY,
+                    PYTHON, RELEASE,
                 ]
                 .contains(&name.as_str())
             })
