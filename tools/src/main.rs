@@ -1,6 +1,7 @@
 //! Rumbo's tools: campaigns, comparisons and the figures of the docs, as `cargo xtask` starts them. The first argument is
 //! the tool; those that follow are its own.
 
+mod beside;
 mod campaign;
 mod faults;
 mod fidelity;
@@ -19,7 +20,8 @@ use rumbo_experiment::run::{RunResult, run_all};
 use std::process::ExitCode;
 
 /// The names, as one types them.
-const NAMES: [&str; 11] = [
+const NAMES: [&str; 12] = [
+    "beside",
     "campaign",
     "faults",
     "fidelity",
@@ -35,6 +37,7 @@ const NAMES: [&str; 11] = [
 
 fn main() -> ExitCode {
     match std::env::args().nth(1).unwrap_or_default().as_str() {
+        "beside" => beside::main(),
         "campaign" => campaign::main(),
         "faults" => faults::main(),
         "fidelity" => fidelity::main(),

@@ -1,7 +1,7 @@
-//! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds, everything that can
-//! fail in the middle of drives, mode 8 among what moves, a million frames over a link with faults, and the image for 75
-//! minutes under a flood of bytes, and beside the native robot; sweeps of the Python package on Ray, a policy learned
-//! with it; the fuzz targets for ten minutes each.
+//! `cargo xtask campaign`: every scenario with a thousand seeds, mode 8 in a thousand random worlds and beside planners of
+//! the literature there, everything that can fail in the middle of drives, mode 8 among what moves, a million frames over
+//! a link with faults, and the image for 75 minutes under a flood of bytes, and beside the native robot; sweeps of the
+//! Python package on Ray, a policy learned with it; the fuzz targets for ten minutes each.
 //!
 //! Runs and requirements are those of `rumbo_experiment::campaign`. Each program is built in release mode, and its
 //! output is printed as it comes.
@@ -17,7 +17,7 @@ type Part = (
     fn(&Project, Option<u32>) -> Result<bool, String>,
 );
 
-const PARTS: [Part; 12] = [
+const PARTS: [Part; 13] = [
     // Frames over a link with faults.
     ("link", |project, _| {
         let example = ["rumbo-session", "--example", "link_campaign"];
@@ -52,11 +52,11 @@ const PARTS: [Part; 12] = [
     ("faults", faults),
     // Mode 8 among people who cross its way and among other robots.
     ("moving", |project, seeds| {
-        let args = match seeds {
-            Some(seeds) => vec!["--seeds".to_owned(), seeds.to_string()],
-            None => vec!["--write".to_owned()],
-        };
-        tool(project, "moving", &args)
+        tool(project, "moving", &seeds_or_write(seeds))
+    }),
+    // Mode 8 beside planners of the literature.
+    ("beside", |project, seeds| {
+        tool(project, "beside", &seeds_or_write(seeds))
     }),
     // Sweeps of the Python package on Ray.
     ("ray", |project, _| {
@@ -104,6 +104,14 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
         met &= tool(project, "campaign", &scenarios)?;
     }
     Ok(met)
+}
+
+/// So many seeds; all of them make the tables of the docs.
+fn seeds_or_write(seeds: Option<u32>) -> Vec<String> {
+    match seeds {
+        Some(seeds) => vec!["--seeds".to_owned(), seeds.to_string()],
+        None => vec!["--write".to_owned()],
+    }
 }
 
 /// As many as were asked for, at most these.
