@@ -73,6 +73,8 @@ pub(crate) fn build(project: &Project) -> Result<(), Stop> {
         let of_library = sketch.starts_with(project.root.join(LIBRARY));
         let is_for = |board: &Board| match board.name {
             "uno" => of_library || source.name == OF_UNO,
+            // The Uno's chip and pins.
+            "nano" => false,
             _ => source.name != OF_UNO,
         };
         let compilers = compilers.iter().filter(|(board, _)| is_for(board));

@@ -2,7 +2,7 @@
 
 use super::sketch::{bench, rumbo};
 use crate::support::{stderr, stdout};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Output;
 
 /// A folder with a robot on a Uno, wired so, in an open world, and a sketch. `None` where no compiler is installed.
@@ -38,7 +38,7 @@ fn drive(bench: &PathBuf, more: &[&str]) -> Output {
 }
 
 /// The last value of a column of the true signals.
-fn last(bench: &PathBuf, column: &str) -> f64 {
+fn last(bench: &Path, column: &str) -> f64 {
     let csv = std::fs::read_to_string(bench.join("out/floor-1.truth.csv")).unwrap();
     let mut lines = csv.lines();
     let at = lines
@@ -229,7 +229,7 @@ fn there_and_back(bench: Option<PathBuf>) {
 }
 
 /// What the sketch printed on USB.
-fn printed(bench: &PathBuf) -> Vec<i64> {
+fn printed(bench: &Path) -> Vec<i64> {
     let said = std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
     said.lines()
         .filter_map(|line| line.trim().parse().ok())
@@ -309,7 +309,7 @@ void loop() {}";
 }
 
 /// The mean of a column of the true signals over the first 2.9 s.
-fn mean(bench: &PathBuf, column: &str) -> f64 {
+fn mean(bench: &Path, column: &str) -> f64 {
     let csv = std::fs::read_to_string(bench.join("out/floor-1.truth.csv")).unwrap();
     let mut lines = csv.lines();
     let at = lines
