@@ -196,7 +196,7 @@ fn a_program_that_is_not_for_this_robot_gets_a_list_of_what_it_never_did() {
     };
     setup.scenario.duration_s = 1.0;
     let notes = run(&setup, 1).unwrap().notes;
-    let [motors, left, right, link] = &notes[..] else {
+    let [motors, left, right, link, scenario] = &notes[..] else {
         panic!("{notes:?}");
     };
     assert!(motors.contains("never drove a motor") && motors.contains("wiring final"));
@@ -210,4 +210,5 @@ fn a_program_that_is_not_for_this_robot_gets_a_list_of_what_it_never_did() {
         );
     }
     assert!(link.contains("Serial2 in wiring final, on no other either"));
+    assert!(scenario.contains("a scenario without mode and limits"));
 }
