@@ -18,7 +18,7 @@ use tokio::sync::watch;
 use tokio::time::{sleep, timeout};
 
 /// The head of each request must arrive within this time: a slow computer needs some seconds for a page of 80 files.
-const HEAD: Duration = Duration::from_secs(20);
+const HEAD: Duration = Duration::from_secs(10);
 /// Lifetime of a connection without a WebSocket, even of one that does not read its answer.
 const LIFE: Duration = Duration::from_secs(60);
 /// A connection is closed after this many newer ones. A page has six; the usual limit is 1,024 descriptors.

@@ -159,14 +159,18 @@ impl Winding {
         // Towards minus this current the winding discharges. A motor turned against the bridge faster than the supply
         // would feed it for ever: the floor keeps the logarithm's argument bounded.
         let true_off_a = (off_v + against_v) / self.loop_ohm;
-        let off_a = if true_off_a > 0.05 * on_a {
+        let share = if slow { 0.01 } else { 0.05 };
+        let least_a = share * on_a;
+        let off_a = if true_off_a > least_a {
             true_off_a
         } else {
-            0.05 * on_a
+            least_a
         };
         let peak_a = on_a * command.reached;
         let fall = command.periods * ln_1p(peak_a / off_a);
-        if fall < off {
+        // A motor that is turned against the bridge feeds the short: the current does not end.
+        let ends = fall < off && !(slow && true_off_a < 0.0);
+        if ends {
             let mean_a = on_a * command.duty - off_a * fall;
             if slow {
                 let shorted_a = (off - fall) * self.braking_current_a(emf_v);

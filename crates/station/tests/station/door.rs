@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::page;
+use futures_util::StreamExt;
 use page::*;
 use rumbo_station::Lab;
 use serde_json::json;
@@ -54,7 +55,12 @@ async fn a_crowd_that_asks_for_nothing_keeps_nobody_out_and_goes() {
     wait_for(&mut driver, |message| armed(message, false)).await;
     let mut late = connect_own(&lab, &key).await;
     wait_for(&mut late, |message| event(message, "connected")).await;
-    all_end(crowd);
+    let gone = tokio::task::spawn_blocking(|| all_end(crowd));
+    while !gone.is_finished() {
+        // Who does not read is let go, too.
+        driver.next().await.unwrap().unwrap();
+    }
+    gone.await.unwrap();
     say(&mut driver, json!({"type": "arm"})).await;
     wait_for(&mut driver, |message| armed(message, true)).await;
 }
