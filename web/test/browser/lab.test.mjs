@@ -114,7 +114,18 @@ async function startScenario(scenario) {
 
 /** Clicks the map at a place from the robot's origin [m]. @param {[number, number]} at */
 async function clickMap(at) {
-  const [x, y] = await page.evaluate((at) => /** @type {any} */ (window).rumbo.onMap(at), at);
+  // Once the panels have found their places, and with them the view.
+  const [x, y] = await page.evaluate(async (at) => {
+    const place = () => /** @type {[number, number]} */ (/** @type {any} */ (window).rumbo.onMap(at));
+    let last = place();
+    for (let still = 0, frames = 0; still < 10 && frames < 120; frames += 1) {
+      await new Promise(requestAnimationFrame);
+      const now = place();
+      still = now.every((value, axis) => value === last[axis]) ? still + 1 : 0;
+      last = now;
+    }
+    return last;
+  }, at);
   await page.locator('#map').click({ position: { x, y } });
 }
 
