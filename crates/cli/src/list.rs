@@ -377,10 +377,13 @@ fn row(entry: &Value) -> Vec<String> {
         row.extend([default, format!("{min}..{max}"), text("unit"), text("help")]);
     } else if let Some(rigs) = entry["rigs"].as_array() {
         let rigs: Vec<_> = rigs.iter().filter_map(Value::as_str).collect();
+        let rigs = match rigs[..] {
+            [] => "no sonar".to_owned(),
+            _ => format!("rigs: {}", rigs.join(", ")),
+        };
         row.push(format!(
-            "{} (rigs: {}; driver: {})",
+            "{} ({rigs}; driver: {})",
             text("title"),
-            rigs.join(", "),
             text("driver")
         ));
     } else {

@@ -4,8 +4,9 @@
 //! answers (DNS rebinding). So every request must name exactly this host, and must come from this origin if it comes
 //! from a page. The page itself is no secret. Its WebSocket shows and drives the robot, and requires a key, which the
 //! page gets in exchange for the token in a printed address. There are two addresses: the controller's works once, so
-//! that one seen over a shoulder is worthless, and who sits at the terminal gets another one; the viewers' works for everyone who has it, to watch and to stop the
-//! robot. A program of the same user gets the key itself, in a file that nobody else can read.
+//! that one seen over a shoulder is worthless, and who sits at the terminal gets another one; the viewers' works for
+//! everyone who has it, to watch and to stop the robot. A program of the same user gets the key itself, in a file that
+//! nobody else can read.
 //!
 //! The key is no cookie: a browser sends cookies to every port of a host, and other users of this computer may run
 //! servers there. The page keeps it in its storage, which belongs to this port alone.

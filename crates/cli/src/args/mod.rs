@@ -84,7 +84,7 @@ pub(crate) enum Command {
     Rerun(RerunArgs),
     /// Remove old logs of sessions and runs
     Prune(PruneArgs),
-    /// Begin a sketch for a Mega or an Uno that drives to a wall
+    /// Begin a sketch that drives to a wall, or the file of a robot of your own
     New(NewArgs),
     /// List modes, scenarios, worlds, rigs, robots and parameters
     List(ListArgs),

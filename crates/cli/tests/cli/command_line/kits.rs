@@ -37,17 +37,19 @@ fn drive(bench: &PathBuf, more: &[&str]) -> Output {
     rumbo(bench, &[&run, more].concat())
 }
 
-/// The last value of a column of the true signals.
-fn last(bench: &Path, column: &str) -> f64 {
+/// A column of the true signals.
+fn column(bench: &Path, name: &str) -> Vec<f64> {
     let csv = std::fs::read_to_string(bench.join("out/floor-1.truth.csv")).unwrap();
-    let mut lines = csv.lines();
-    let at = lines
-        .next()
-        .unwrap()
-        .split(',')
-        .position(|each| each == column);
-    let row: Vec<&str> = lines.last().unwrap().split(',').collect();
-    row[at.unwrap()].parse().unwrap()
+    let mut lines = csv.lines().map(|line| line.split(','));
+    let at = lines.next().unwrap().position(|each| each == name).unwrap();
+    lines
+        .map(|mut cells| cells.nth(at).unwrap().parse().unwrap())
+        .collect()
+}
+
+/// The last value of a column of the true signals.
+fn last(bench: &Path, name: &str) -> f64 {
+    *column(bench, name).last().unwrap()
 }
 
 const LETTERS: &str = "
@@ -211,13 +213,7 @@ fn a_drv8833_drives_by_pwm_on_its_inputs_and_has_no_enable() {
 fn there_and_back(bench: Option<PathBuf>) {
     let Some(bench) = bench else { return };
     let run = drive(&bench, &[]);
-    let csv = std::fs::read_to_string(bench.join("out/floor-1.truth.csv")).unwrap();
-    let mut lines = csv.lines();
-    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
-    let x = header.iter().position(|each| *each == "x_m").unwrap();
-    let x_m: Vec<f64> = lines
-        .map(|line| line.split(',').nth(x).unwrap().parse().unwrap())
-        .collect();
+    let x_m = column(&bench, "x_m");
     let farthest_m = x_m.iter().copied().fold(0.0, f64::max);
     let end_m = *x_m.last().unwrap();
     assert!(
@@ -309,23 +305,10 @@ void loop() {}";
 }
 
 /// The mean of a column of the true signals over the first 2.9 s.
-fn mean(bench: &Path, column: &str) -> f64 {
-    let csv = std::fs::read_to_string(bench.join("out/floor-1.truth.csv")).unwrap();
-    let mut lines = csv.lines();
-    let at = lines
-        .next()
-        .unwrap()
-        .split(',')
-        .position(|each| each == column);
-    let cells = lines.map(|line| {
-        line.split(',')
-            .nth(at.unwrap())
-            .unwrap()
-            .parse::<f64>()
-            .unwrap()
-    });
-    let values: Vec<f64> = cells.take(290).collect();
-    values.iter().sum::<f64>() / values.len() as f64
+fn mean(bench: &Path, name: &str) -> f64 {
+    let values = column(bench, name);
+    let first = &values[..290.min(values.len())];
+    first.iter().sum::<f64>() / first.len() as f64
 }
 
 #[test]
