@@ -44,6 +44,7 @@ pub(crate) use near::near_or_all;
 pub use near::unknown;
 pub use policy::PolicyFile;
 pub use robot::{FirmwareCaps, RobotFile};
+pub(crate) use scenario::read_bounds;
 pub use scenario::{Bounds, Member, NativeProgram, ScenarioFile, Spread, Start};
 pub use setup::{Overrides, Setup, goal_seen_from};
 pub use start::fleet_around;

@@ -27,6 +27,8 @@
 mod fleet;
 mod read;
 
+pub(crate) use read::read_bounds;
+
 use super::commands::TimedCommand;
 use super::read::Table;
 use super::typed::TimedText;

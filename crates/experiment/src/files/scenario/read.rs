@@ -96,23 +96,29 @@ fn read_limits(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String, Bounds> 
             limits.extend(read_limits(&below, &format!("{metric}.")));
             continue;
         }
-        let bounds = Bounds {
-            min: below.number("min", BOUND),
-            max: below.number("max", BOUND),
-        };
-        if below.keys().is_empty() && table.holds_table(key.value) {
-            below.complain_here("has neither min nor max: write e.g. { max = 2.4 }");
-        }
-        if let Bounds {
-            min: Some(min),
-            max: Some(max),
-        } = bounds
-            && min > max
-        {
-            below.complain_here(&format!("min {min} is above max {max}: nothing could pass"));
-        }
-        below.finish();
-        limits.insert(metric, bounds);
+        limits.insert(metric, read_bounds(table, key.value));
     }
     limits
+}
+
+/// The limits below a key, `{ min = 1, max = 2 }`, of which one may be missing.
+pub(crate) fn read_bounds(table: &Table<'_, '_>, key: &str) -> Bounds {
+    let below = table.table(key);
+    let bounds = Bounds {
+        min: below.number("min", BOUND),
+        max: below.number("max", BOUND),
+    };
+    if below.keys().is_empty() && table.holds_table(key) {
+        below.complain_here("has neither min nor max: write e.g. { max = 2.4 }");
+    }
+    if let Bounds {
+        min: Some(min),
+        max: Some(max),
+    } = bounds
+        && min > max
+    {
+        below.complain_here(&format!("min {min} is above max {max}: nothing could pass"));
+    }
+    below.finish();
+    bounds
 }
