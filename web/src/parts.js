@@ -1,19 +1,27 @@
 // @ts-check
-/** What else is at the robot's pins: buttons, switches and potentiometers to work, LEDs and buzzers to look at. */
+/** What else is at the robot's pins: buttons, switches and potentiometers to work, LEDs, buzzers, displays and sensors to look at. */
+import { contentsOf, drawDots, drawLetters } from './displays.js';
 import { create, element } from './dom.js';
 import { shownOf } from './light.js';
 import { t } from './text.js';
 
 /** @typedef {import('./types.js').Part} Part */
 
-/** The console that works parts, by lines `name=value`. */
-const PARTS = 5;
+/** The console that works parts and tells what displays show, by lines `name=value`. */
+export const PARTS = 5;
+
+/** What is on the two-wire bus, and where. @param {Part} part */
+const onBus = ({ kind, address }) => t('{} at address {}', kind.toUpperCase(), `0x${(address ?? 0).toString(16)}`);
 
 export class PartsPanel {
   #panel = element('parts', HTMLDivElement);
   #made = '';
   /** @type {[Part, HTMLOutputElement][]} */
   #lights = [];
+  /** What draws each display, and what it shows. @type {Map<string, (content: any) => void>} */
+  #draws = new Map();
+  /** @type {ReturnType<typeof contentsOf>} */
+  #contents = new Map();
   #send;
 
   /** @param {(order: import('./types.js').Order) => void} send */
@@ -26,14 +34,30 @@ export class PartsPanel {
     this.#send({ type: 'type', usart: PARTS, text: `${name}=${value}`, ending: 'none' });
   }
 
+  /** Another run begins. */
+  clear() {
+    this.#contents.clear();
+    this.#made = '';
+  }
+
+  /** Takes what displays show. @param {string} text */
+  tell(text) {
+    for (const [name, content] of contentsOf(text)) {
+      this.#contents.set(name, content);
+      this.#draws.get(name)?.(content);
+    }
+  }
+
   /** @param {Part[]} parts @param {(signal: string) => number | null} now the last value of a signal */
   show(parts, now) {
     const kinds = JSON.stringify(parts.map(({ name, kind }) => [name, kind]));
     if (kinds !== this.#made) {
       this.#made = kinds;
       this.#lights = [];
+      this.#draws.clear();
       this.#panel.hidden = parts.length === 0;
       this.#panel.replaceChildren(...parts.map((part) => this.#make(part)));
+      for (const [name, content] of this.#contents) this.#draws.get(name)?.(content);
     }
     for (const [part, light] of this.#lights) {
       const [words, level] = shownOf(part, now);
@@ -77,8 +101,26 @@ export class PartsPanel {
       range.addEventListener('input', () => this.#put(name, Number(range.value) / 100));
       return create('label', {}, `${name} `, range);
     }
-    const light = create('output', { className: `light ${kind}` });
+    if (kind === 'ssd1306') {
+      const screen = create('canvas', { className: 'screen', width: 128, height: 64 });
+      screen.setAttribute('role', 'img');
+      screen.setAttribute('aria-label', name);
+      this.#draws.set(name, (content) => drawDots(screen, content));
+      return create('span', { className: 'part', title: onBus(part) }, `${name} `, screen);
+    }
+    if (kind === 'hd44780') {
+      const letters = create('div', { className: 'letters' });
+      letters.setAttribute('role', 'img');
+      letters.setAttribute('aria-label', name);
+      this.#draws.set(name, (content) => drawLetters(letters, content));
+      return create('span', { className: 'part', title: onBus(part) }, `${name} `, letters);
+    }
+    const light = create('output', { className: kind === 'mpu6050' ? '' : `light ${kind}` });
     this.#lights.push([part, light]);
+    if (kind === 'mpu6050') {
+      const origin = create('small', {}, ` ${t('by its data sheet, not identified')}`);
+      return create('span', { className: 'part', title: onBus(part) }, `${name} `, light, origin);
+    }
     return create('span', { className: 'part' }, `${name} `, light);
   }
 }

@@ -7,6 +7,7 @@
 mod baseline;
 mod board;
 pub mod boards;
+pub mod bus;
 mod config;
 pub mod debugging;
 pub mod drivers;

@@ -1,6 +1,7 @@
 //! Which signal is on which pin of the board.
 
 use crate::boards::Board;
+use crate::bus::{BusDevice, DeviceKind};
 use crate::drivers::Driver;
 use crate::floor::LineSensor;
 use std::collections::BTreeMap;
@@ -46,10 +47,35 @@ pub struct Wiring {
     pub line_sensors: Vec<LineSensor>,
     /// What else is at pins: what a person works, and what shows something.
     pub parts: Vec<Part>,
+    /// The devices on the two-wire bus.
+    pub bus: Vec<BusDevice>,
     /// Rate of the Bluetooth module, where it is not the usual one \[baud\].
     pub link_baud: Option<u32>,
     /// The divider that brings the battery's voltage to an analogue input, where there is one.
     pub battery: Option<Divider>,
+}
+
+impl Wiring {
+    /// The name of what is on a pin of the board, if anything is: a signal, a part, a line sensor, the two-wire bus.
+    #[must_use]
+    pub fn owner_of(&self, pin: u8) -> Option<&str> {
+        let signals = self.pins.iter().map(|(name, on)| (name.as_str(), *on));
+        let parts = self.parts.iter().map(|part| (part.name.as_str(), part.pin));
+        let sensors = self.line_sensors.iter();
+        let sensors = sensors.map(|sensor| (sensor.name.as_str(), sensor.pin));
+        let interrupts = self.bus.iter().filter_map(|device| match device.kind {
+            DeviceKind::Mpu6050 { interrupt, .. } => Some((device.name.as_str(), interrupt?)),
+            _ => None,
+        });
+        let lines = self.board.two_wire.map(|pin| ("the two-wire bus", pin));
+        let lines = lines.into_iter().filter(|_| !self.bus.is_empty());
+        let mut all = signals
+            .chain(parts)
+            .chain(sensors)
+            .chain(interrupts)
+            .chain(lines);
+        all.find(|(_, on)| *on == pin).map(|(name, _)| name)
+    }
 }
 
 /// Something at a pin that a person works or looks at.

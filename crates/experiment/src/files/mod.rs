@@ -20,6 +20,7 @@ mod names;
 pub(crate) mod near;
 pub mod new_robot;
 pub mod parameters;
+mod parts;
 mod pin;
 pub(crate) mod policy;
 pub(crate) mod read;

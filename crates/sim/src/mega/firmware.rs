@@ -3,6 +3,7 @@
 use super::pins::{LinkOn, Wires};
 use super::{CYCLES_PER_US, ON_PINS};
 use crate::boards::Board;
+use crate::bus::BusDevice;
 use crate::error::SimError;
 use crate::floor::LineSensor;
 use crate::wiring::{Part, Wiring};
@@ -49,6 +50,7 @@ pub struct Firmware {
     pins: BTreeMap<String, u8>,
     parts: Vec<Part>,
     line_sensors: Vec<LineSensor>,
+    bus: Vec<BusDevice>,
 }
 
 impl Firmware {
@@ -72,6 +74,7 @@ impl Firmware {
             pins: pins.pins.clone(),
             parts: pins.parts.clone(),
             line_sensors: pins.line_sensors.clone(),
+            bus: pins.bus.clone(),
             link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
         })
     }
@@ -118,6 +121,11 @@ impl Firmware {
     /// Its sensors for lines on the floor.
     pub fn line_sensors(&self) -> &[LineSensor] {
         &self.line_sensors
+    }
+
+    /// The devices on its two-wire bus.
+    pub fn bus(&self) -> &[BusDevice] {
+        &self.bus
     }
 
     /// What else is at its pins.

@@ -10,6 +10,7 @@
 //! | file | part |
 //! |---|---|
 //! | [`pins`] | a wiring as pins of the chip |
+//! | `bus` | the two-wire bus and its devices |
 //! | `bridge`, `servo`, `module` | what driver, servo and Bluetooth module make of their lines |
 //! | `inputs` | the edges that the plant announces, scheduled for the chip |
 //! | `outputs` | the chip's outputs as actions on the robot |
@@ -32,6 +33,7 @@ pub mod firmware;
 pub mod pins;
 
 mod bridge;
+mod bus;
 mod echo;
 mod floor;
 mod inputs;
@@ -45,6 +47,7 @@ mod servo;
 mod uart;
 mod wheels;
 
+use crate::bus::Bus;
 use crate::sonar_fault::SonarFaults;
 use crate::wire_fault::WireFaults;
 use crate::wiring::Divider;
@@ -71,10 +74,10 @@ use wheels::Driven;
 pub const USB: u8 = 0;
 /// In place of a USART: the Bluetooth module on other pins.
 pub const ON_PINS: u8 = 4;
-/// The consoles: of the USARTs, and of the module on other pins.
-pub const CONSOLES: u8 = 5;
-/// In place of a USART: what a person works at the robot, by lines `name=value`.
+/// In place of a USART: what a person works at the robot, and what its displays show, by lines `name=value`.
 pub const PARTS: u8 = 5;
+/// The consoles: of the USARTs, of the module on other pins, of the displays.
+pub const CONSOLES: u8 = 6;
 /// The boards' clock is 16 MHz.
 pub const CYCLES_PER_US: u64 = 16;
 /// Battery at which the chip's brown-out detector, set to 2.7 V by the boards' fuses, resets it: the regulator drops 1.1 V.
@@ -134,6 +137,8 @@ pub struct Mega {
     /// What the module hears on the pin of `link_tx`, where that is no USART's.
     module: uart::Receiver,
     meters: Meters,
+    /// The devices on the two-wire bus.
+    bus: Bus,
     /// How dark it is below each line sensor, and the level that it gives.
     floor: Vec<(f64, bool)>,
     /// What has been set of each part.
@@ -158,6 +163,7 @@ impl Mega {
     pub(crate) fn new(firmware: Arc<Firmware>, encoders: [bool; 4]) -> Self {
         let mut chip = Chip::new(firmware.image());
         chip.watch(&firmware.wires().felt());
+        chip.watch_two_wire(!firmware.bus().is_empty());
         let Wires {
             driver, bridges, ..
         } = *firmware.wires();
@@ -176,6 +182,7 @@ impl Mega {
             consoles: Default::default(),
             module: uart::Receiver::new(firmware.link_baud()),
             meters: Meters::at(firmware.metered()),
+            bus: Bus::new(firmware.bus()),
             floor: Vec::new(),
             worked: Vec::new(),
             verdict: None,
@@ -277,6 +284,7 @@ impl Mega {
     pub(crate) fn read_meters(&mut self) -> Vec<(String, f64)> {
         let mut shown = self.meters.read(self.chip.cycle());
         shown.extend(self.read_floor());
+        shown.extend(self.read_imus());
         shown
     }
 

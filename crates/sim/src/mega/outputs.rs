@@ -22,6 +22,7 @@ impl Mega {
                 }
                 Event::Duty { pin, pwm } => self.modulate(cycle, pin, pwm),
                 Event::Byte { usart, byte, baud } => self.byte_sent(cycle, usart, byte as u8, baud),
+                Event::TwoWire(transfer) => self.transfer(cycle, transfer),
                 // What it does to the pins comes as their own events.
                 Event::Reset(cause) => self.oddities.reset(cause),
             }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 /// A folder with a robot on a Uno, wired so, in an open world, and a sketch. `None` where no compiler is installed.
-fn kit(name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
+pub(super) fn kit(name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
     driven_by("l298n", name, wiring, sketch)
 }
 
@@ -24,7 +24,7 @@ fn driven_by(driver: &str, name: &str, wiring: &str, sketch: &str) -> Option<Pat
     Some(bench)
 }
 
-fn drive(bench: &PathBuf, more: &[&str]) -> Output {
+pub(super) fn drive(bench: &PathBuf, more: &[&str]) -> Output {
     let run = [
         "run",
         "floor.toml",
@@ -38,7 +38,7 @@ fn drive(bench: &PathBuf, more: &[&str]) -> Output {
 }
 
 /// A column of the true signals.
-fn column(bench: &Path, name: &str) -> Vec<f64> {
+pub(super) fn column(bench: &Path, name: &str) -> Vec<f64> {
     let csv = std::fs::read_to_string(bench.join("out/floor-1.truth.csv")).unwrap();
     let mut lines = csv.lines().map(|line| line.split(','));
     let at = lines.next().unwrap().position(|each| each == name).unwrap();
@@ -48,7 +48,7 @@ fn column(bench: &Path, name: &str) -> Vec<f64> {
 }
 
 /// The last value of a column of the true signals.
-fn last(bench: &Path, name: &str) -> f64 {
+pub(super) fn last(bench: &Path, name: &str) -> f64 {
     *column(bench, name).last().unwrap()
 }
 

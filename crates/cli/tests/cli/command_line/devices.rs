@@ -1,0 +1,257 @@
+//! Devices on the two-wire bus of a sketch's board, driven register by register.
+
+use super::kits::{column, drive, kit, last};
+use super::sketch::rumbo;
+use crate::support::{stderr, stdout};
+use std::path::Path;
+
+const DRIVES: &str = "left_enable = 5\nleft_forward = 7\nleft_backward = 8\nright_enable = 6\nright_forward = 12\n\
+                      right_backward = 11\ndebug_tx = 1\ndebug_rx = 0\n";
+
+/// A master of the two-wire bus at 400 kHz: `send` tells whether it was acknowledged.
+const BUS: &str = "
+void wait() { while (!(TWCR & _BV(TWINT))) {} }
+bool send(byte value) {
+  TWDR = value; TWCR = _BV(TWINT) | _BV(TWEN); wait();
+  byte status = TWSR & 0xF8;
+  return status == 0x18 || status == 0x28 || status == 0x40;
+}
+bool start(byte address) { TWCR = _BV(TWINT) | _BV(TWSTA) | _BV(TWEN); wait(); return send(address); }
+void stop() { TWCR = _BV(TWINT) | _BV(TWSTO) | _BV(TWEN); while (TWCR & _BV(TWSTO)) {} }
+byte receive(bool more) { TWCR = _BV(TWINT) | _BV(TWEN) | (more ? _BV(TWEA) : 0); wait(); return TWDR; }
+";
+
+/// What a display has shown, one content after the other.
+fn shown(bench: &Path, name: &str) -> Vec<serde_json::Value> {
+    let text = std::fs::read_to_string(bench.join("out/floor-1-displays.txt")).unwrap();
+    let lines = text.lines().filter_map(|line| line.split_once('='));
+    lines
+        .filter(|(of, _)| *of == name)
+        .map(|(_, content)| serde_json::from_str(content).unwrap())
+        .collect()
+}
+
+#[test]
+fn a_sketch_that_integrates_the_gyroscope_knows_how_far_the_robot_has_turned() {
+    let sketch = "
+void set(byte reg, byte value) { start(0xD0); send(reg); send(value); stop(); }
+int words[7];
+void measure() {
+  start(0xD0); send(0x3B); start(0xD1);
+  for (byte at = 0; at < 7; at++) { words[at] = receive(true) << 8; words[at] |= receive(at < 6); }
+  stop();
+}
+void setup() {
+  Serial.begin(115200);
+  TWBR = 12;
+  start(0xD0); send(0x75); start(0xD1); Serial.println(receive(false), HEX); stop();
+  Serial.println(start(0xD2) ? \"there\" : \"nobody\"); stop();
+  for (byte pin = 5; pin <= 12; pin++) pinMode(pin, OUTPUT);
+  set(0x6B, 1); set(0x1B, 0x08); set(0x1C, 0x08); set(0x1A, 3); set(0x19, 4);
+  delay(100);
+  long rest = 0, up = 0;
+  for (int n = 0; n < 200; n++) { measure(); rest += words[6]; up += words[2]; delay(2); }
+  rest /= 200;
+  digitalWrite(8, HIGH); digitalWrite(12, HIGH); analogWrite(5, 110); analogWrite(6, 110);
+  float degrees = 0;
+  unsigned long before = micros(), end = millis() + 1200;
+  while (millis() < end) {
+    measure();
+    unsigned long now = micros();
+    degrees += (words[6] - rest) / 65.5 * (now - before) * 1e-6;
+    before = now;
+    if (millis() + 400 > end) { digitalWrite(8, LOW); digitalWrite(12, LOW); }
+  }
+  Serial.println(degrees);
+  Serial.println(up / 200 / 8192.0);
+}
+void loop() {}";
+    let wiring = format!("{DRIVES}parts.imu = {{ mpu6050 = 0x68 }}\n");
+    let Some(bench) = kit("gyroscope", &wiring, &format!("{BUS}{sketch}")) else {
+        return;
+    };
+    let run = drive(&bench, &[]);
+    let said = std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
+    let lines: Vec<&str> = said.lines().collect();
+    assert_eq!(lines[..2], ["68", "nobody"], "{said}{}", stderr(&run));
+    let turned = last(&bench, "heading_rad").to_degrees();
+    let degrees: f64 = lines[2].parse().unwrap();
+    assert!(turned > 30.0, "{turned}");
+    assert!((degrees / turned - 1.0).abs() < 0.05, "{degrees} {turned}");
+    let up: f64 = lines[3].parse().unwrap();
+    assert!((up - 1.0).abs() < 0.12 && up != 1.0, "{up}");
+    let told = stdout(&run) + &stderr(&run);
+    for note in [
+        "MPU-6050 by its data sheet, not identified",
+        "nobody answers at 0x69 on the two-wire bus: there are imu at 0x68",
+    ] {
+        assert!(told.contains(note), "{told}");
+    }
+    assert!(
+        rumbo(&bench, &["rerun", "out/floor-1.mcap"])
+            .status
+            .success()
+    );
+    let export = rumbo(&bench, &["export", "out/floor-1.mcap", "--format", "csv"]);
+    assert!(export.status.success(), "{}", stderr(&export));
+    let csv = std::fs::read_to_string(bench.join("floor-1.instruments.csv")).unwrap();
+    assert!(
+        csv.lines().next().unwrap().contains("imu_yaw_rad_s"),
+        "{csv}"
+    );
+    assert!(!column(&bench, "heading_rad").is_empty());
+}
+
+#[test]
+fn an_interrupt_comes_with_every_value_of_the_inertial_sensor() {
+    let sketch = "
+volatile int count;
+void ready() { count++; }
+void set(byte reg, byte value) { start(0xD0); send(reg); send(value); stop(); }
+void setup() {
+  Serial.begin(115200);
+  attachInterrupt(digitalPinToInterrupt(2), ready, RISING);
+  set(0x6B, 1); set(0x1A, 3); set(0x19, 9); set(0x38, 1);
+  delay(1000);
+  Serial.println(count);
+}
+void loop() {}";
+    let wiring = format!("{DRIVES}parts.imu = {{ mpu6050 = 0x68, interrupt = 2 }}\n");
+    let Some(bench) = kit("data_ready", &wiring, &format!("{BUS}{sketch}")) else {
+        return;
+    };
+    drive(&bench, &[]);
+    let said = std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
+    let count: i64 = said.trim().parse().unwrap();
+    assert!((99..=101).contains(&count), "{said}");
+}
+
+#[test]
+fn a_screen_of_dots_shows_what_a_sketch_draws_and_the_run_says_so() {
+    let sketch = "
+const byte begin_[] = {0, 0xAE, 0xA8, 63, 0xD3, 0, 0x40, 0x8D, 0x14, 0x20, 0, 0xA1, 0xC8, 0xDA, 0x12, 0xA6, 0xAF};
+void window(byte left, byte right, byte top, byte bottom) {
+  start(0x78); send(0); send(0x21); send(left); send(right); send(0x22); send(top); send(bottom); stop();
+}
+void fill(byte dots, int count) { start(0x78); send(0x40); while (count--) send(dots); stop(); }
+void setup() {
+  TWBR = 12;
+  start(0x78); for (byte each : begin_) send(each); stop();
+  window(0, 127, 0, 7); fill(0, 1024);
+  window(8, 11, 1, 1); fill(0x81, 4);
+  delay(1000);
+  start(0x78); send(0x80); send(0xA7); send(0x80); send(0xE3); stop();
+  delay(1000);
+  start(0x78); send(0); send(0xA6); stop();
+}
+void loop() {}";
+    let wiring = format!("{DRIVES}parts.screen = {{ ssd1306 = 0x3c }}\n");
+    let Some(bench) = kit("dots", &wiring, &format!("{BUS}{sketch}")) else {
+        return;
+    };
+    let run = drive(&bench, &[]);
+    let contents = shown(&bench, "screen");
+    let dots = |content: &serde_json::Value| content["dots"].as_str().unwrap().to_owned();
+    // Columns 8 to 11 of the rows 8 and 15.
+    let mut expected = "0".repeat(64 * 32);
+    for row in [8, 15] {
+        expected.replace_range(row * 32 + 2..row * 32 + 3, "f");
+    }
+    assert_eq!(dots(contents.last().unwrap()), expected);
+    let inverted: String = expected
+        .chars()
+        .map(|digit| if digit == '0' { 'f' } else { '0' })
+        .collect();
+    assert!(contents.iter().any(|content| dots(content) == inverted));
+    let told = stdout(&run);
+    assert!(
+        told.contains("screen shows\n") && told.contains("\u{2809}\u{2809}"),
+        "{told}{}",
+        stderr(&run)
+    );
+    let again = rumbo(&bench, &["rerun", "out/floor-1.mcap"]);
+    assert!(
+        again.status.success(),
+        "{}{}",
+        stdout(&again),
+        stderr(&again)
+    );
+}
+
+#[test]
+fn a_display_of_letters_shows_text_and_characters_of_the_sketch_s_own() {
+    let sketch = "
+const byte arrow[] = {4, 14, 31, 4, 4, 4, 0, 0};
+void lines(byte value) { start(0x4E); send(value); stop(); }
+void half(byte value) { lines(value | 0x0C); lines(value | 0x08); delayMicroseconds(50); }
+void put(byte value, byte rs) { half(value & 0xF0 | rs); half(value << 4 | rs); }
+void print(byte at, const char *text) { put(0x80 | at, 0); while (*text) put(*text++, 1); }
+void setup() {
+  TWBR = 72;
+  delay(50);
+  half(0x30); delay(5); half(0x30); delay(1); half(0x30); half(0x20);
+  put(0x28, 0); put(0x0C, 0); put(0x06, 0); put(0x01, 0); delay(2);
+  put(0x40, 0);
+  for (byte row : arrow) put(row, 1);
+  print(0x00, \"Rumbo\");
+  print(0x14, \"third row\");
+  print(0x40, \"\"); put(0, 1); put(0xDF, 1);
+}
+void loop() {}";
+    let wiring = format!("{DRIVES}parts.text = {{ hd44780 = 0x27, size = \"20x4\" }}\n");
+    let Some(bench) = kit("letters_shown", &wiring, &format!("{BUS}{sketch}")) else {
+        return;
+    };
+    let run = drive(&bench, &[]);
+    let content = shown(&bench, "text").pop().unwrap();
+    let rows = ["Rumbo", "\u{e000}°", "third row", ""].map(|row| format!("{row:20}"));
+    assert_eq!(content["rows"], serde_json::json!(rows), "{content}");
+    assert_eq!(content["drawn"]["0"], "040e1f0404040000");
+    assert_eq!(content["light"], true);
+    let told = stdout(&run);
+    assert!(told.contains("|Rumbo               |"), "{told}");
+    assert!(told.contains("|▯°                  |"), "{told}");
+}
+
+#[test]
+fn an_address_that_is_taken_or_is_none_and_a_bus_on_taken_pins_are_named() {
+    for (number, (parts, why)) in [
+        (
+            "parts.eye = { ssd1306 = 0x3c }\nparts.screen = { ssd1306 = 0x3c }",
+            "ssd1306 = 0x3c: eye has that address already: set another one by its jumpers, 0x3c to 0x3d",
+        ),
+        (
+            "parts.imu = { mpu6050 = 0xD0 }",
+            "mpu6050 = 0xd0: is not within 7 bits: it is 0x68 with the bit for reading and writing behind it; write 0x68",
+        ),
+        (
+            "parts.text = { hd44780 = 0x68 }",
+            "hd44780 = 0x68: must be an address that it can have, 0x20 to 0x27 or 0x38 to 0x3f",
+        ),
+        (
+            "parts.text = { hd44780 = 0x27, size = \"40x4\" }",
+            "size = 40x4: did you mean `16x2` or `20x4`?",
+        ),
+        (
+            "servo = \"A4\"\nparts.imu = { mpu6050 = 0x68 }",
+            "servo on its pin A4 (SDA): put servo on another pin",
+        ),
+        (
+            "parts.imu = { mpu6050 = 0x68 }\nparts.start = { button = \"A5\" }",
+            "button = A5: the two-wire bus is on that pin already",
+        ),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let wiring = format!("{DRIVES}{parts}\n");
+        let Some(bench) = kit(&format!("address{number}"), &wiring, "void setup() {}\nvoid loop() {}\n")
+        else {
+            return;
+        };
+        let refused = drive(&bench, &[]);
+        assert_eq!(refused.status.code(), Some(2));
+        let said = stderr(&refused);
+        assert!(said.contains(why), "{said}");
+    }
+}
