@@ -10,6 +10,11 @@ import { t } from './text.js';
 /** The console that works parts and tells what displays show, by lines `name=value`. */
 export const PARTS = 5;
 
+/** Keys of a remote control that have arrows. */
+const ARROWS = new Map([['up', '▲'], ['left', '◀'], ['right', '▶'], ['down', '▼']]);
+/** A key that is held is pressed again before the receiver takes it for released. */
+const AGAIN_MS = 100;
+
 /** What is on the two-wire bus, and where. @param {Part} part */
 const onBus = ({ kind, address }) => t('{} at address {}', kind.toUpperCase(), `0x${(address ?? 0).toString(16)}`);
 
@@ -29,7 +34,7 @@ export class PartsPanel {
     this.#send = send;
   }
 
-  /** @param {string} name @param {number} value */
+  /** @param {string} name @param {number | string} value */
   #put(name, value) {
     this.#send({ type: 'type', usart: PARTS, text: `${name}=${value}`, ending: 'none' });
   }
@@ -50,7 +55,7 @@ export class PartsPanel {
 
   /** @param {Part[]} parts @param {(signal: string) => number | null} now the last value of a signal */
   show(parts, now) {
-    const kinds = JSON.stringify(parts.map(({ name, kind }) => [name, kind]));
+    const kinds = JSON.stringify(parts.map(({ name, kind, keys }) => [name, kind, keys]));
     if (kinds !== this.#made) {
       this.#made = kinds;
       this.#lights = [];
@@ -64,6 +69,32 @@ export class PartsPanel {
       light.textContent = words;
       light.style.setProperty('--level', String(level));
     }
+  }
+
+  /** A remote control: a key that is held says so again and again. @param {Part} part */
+  #remote({ name, keys = [] }) {
+    const panel = create('div', { className: 'remote' });
+    panel.setAttribute('role', 'group');
+    panel.setAttribute('aria-label', name);
+    panel.append(...keys.map((key) => {
+      const shown = ARROWS.get(key) ?? key;
+      const button = create('button', { type: 'button', className: `small key-${key}`, title: t('Held down, the key repeats') }, shown);
+      if (shown !== key) button.setAttribute('aria-label', key);
+      const press = () => this.#put(name, key);
+      let again = 0;
+      const release = () => clearInterval(again);
+      button.addEventListener('pointerdown', () => {
+        release();
+        press();
+        again = window.setInterval(press, AGAIN_MS);
+      });
+      for (const end of /** @type {const} */ (['pointerup', 'pointerleave', 'pointercancel', 'blur'])) button.addEventListener(end, release);
+      button.addEventListener('keydown', (event) => {
+        if (event.key === ' ' || event.key === 'Enter') press();
+      });
+      return button;
+    }));
+    return create('span', { className: 'part' }, `${name} `, panel);
   }
 
   /** @param {Part} part */
@@ -101,6 +132,7 @@ export class PartsPanel {
       range.addEventListener('input', () => this.#put(name, Number(range.value) / 100));
       return create('label', {}, `${name} `, range);
     }
+    if (kind === 'infrared') return this.#remote(part);
     if (kind === 'ssd1306') {
       const screen = create('canvas', { className: 'screen', width: 128, height: 64 });
       screen.setAttribute('role', 'img');

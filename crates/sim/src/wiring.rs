@@ -4,6 +4,7 @@ use crate::boards::Board;
 use crate::bus::{BusDevice, DeviceKind};
 use crate::drivers::Driver;
 use crate::floor::LineSensor;
+use crate::remote::Key;
 use std::collections::BTreeMap;
 
 /// The signals that a wiring may place: enable and direction inputs of the bridge, encoders, servo, sonars and UARTs.
@@ -89,6 +90,8 @@ pub struct Part {
     pub pin: u8,
     /// A button or switch closes to 5 V, over a resistor to GND, instead of to GND.
     pub to_supply: bool,
+    /// The keys of the remote control of an infrared receiver.
+    pub keys: &'static [Key],
 }
 
 /// What a part is.
@@ -104,16 +107,19 @@ pub enum PartKind {
     Led,
     /// A sound.
     Buzzer,
+    /// A receiver for the remote control in somebody's hand.
+    Infrared,
 }
 
 impl PartKind {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Button,
         Self::Switch,
         Self::Potentiometer,
         Self::Led,
         Self::Buzzer,
+        Self::Infrared,
     ];
 
     /// Its key in robot files.
@@ -125,13 +131,14 @@ impl PartKind {
             Self::Potentiometer => "potentiometer",
             Self::Led => "led",
             Self::Buzzer => "buzzer",
+            Self::Infrared => "infrared",
         }
     }
 
     /// Whether a person works it.
     #[must_use]
     pub const fn is_worked(self) -> bool {
-        matches!(self, Self::Button | Self::Switch | Self::Potentiometer)
+        !matches!(self, Self::Led | Self::Buzzer)
     }
 }
 

@@ -87,21 +87,21 @@ pub(super) fn usb_text(text: &str) -> Result<TimedText, Failure> {
     timed_text(text).map(|timed| TimedText { port, ..timed })
 }
 
-/// A part and when it is pressed, or put to a value: `start@2`, `speed=0.7@3`.
+/// A part and when it is pressed, or put to a value: `start@2`, `speed=0.7@3`, `remote=ok@4`.
 pub(super) fn press(text: &str) -> Result<Vec<TimedText>, Failure> {
     let wrong = || {
-        Failure::input("write it as NAME@SECONDS, or NAME=VALUE@SECONDS with a value from 0 to 1")
+        Failure::input(
+            "write it as NAME@SECONDS, or NAME=VALUE@SECONDS with a value from 0 to 1 or a key of a remote control",
+        )
     };
     let TimedText { at_s, text, .. } = timed_text(text).map_err(|_| wrong())?;
     let Some((name, value)) = text.split_once('=') else {
         return Ok(pressed(&text, None, at_s));
     };
-    let value = value
-        .trim()
-        .parse()
-        .ok()
-        .filter(|value| (0.0..=1.0).contains(value));
-    Ok(pressed(name.trim(), Some(value.ok_or_else(wrong)?), at_s))
+    match (name.trim(), value.trim()) {
+        ("", _) | (_, "") => Err(wrong()),
+        (name, value) => Ok(pressed(name, Some(value), at_s)),
+    }
 }
 
 /// What ends typed lines.

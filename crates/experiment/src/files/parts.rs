@@ -5,6 +5,7 @@
 //! parts.mode = { switch = "A2" }
 //! parts.speed = { potentiometer = "A0" }
 //! parts.lamp = { led = 13 }               # or buzzer
+//! parts.remote = { infrared = 11 }        # a remote control with arrows; with keys = 21 that of a car radio
 //! parts.imu = { mpu6050 = 0x68 }          # with x_m and y_m where it is, interrupt = 2 for its INT
 //! parts.screen = { ssd1306 = 0x3c }       # with size = "128x32"
 //! parts.text = { hd44780 = 0x27 }         # with size = "20x4"
@@ -14,6 +15,7 @@ use super::error::did_you_mean;
 use super::pin::read_pin;
 use super::read::{Allowed, Table};
 use rumbo_sim::bus::{BusDevice, DeviceKind};
+use rumbo_sim::remote::{ARROWS, Key, RADIO};
 use rumbo_sim::wiring::{Part, PartKind, Wiring};
 
 /// What is written as an address: one of 7 bits, or by mistake one of 8.
@@ -65,6 +67,7 @@ fn read_part(own: &Table<'_, '_>, name: &str, kind: PartKind, wiring: &mut Wirin
         }
         to.value == "5v"
     });
+    let keys = read_keys(own, kind);
     own.finish();
     let Some(pin) = pin else { return };
     is_free(own, kind.name(), pin, wiring);
@@ -73,7 +76,31 @@ fn read_part(own: &Table<'_, '_>, name: &str, kind: PartKind, wiring: &mut Wirin
         kind,
         pin,
         to_supply,
+        keys,
     });
+}
+
+/// The keys of a remote control, which are told by how many there are.
+fn read_keys(own: &Table<'_, '_>, kind: PartKind) -> &'static [Key] {
+    if kind != PartKind::Infrared {
+        return &[];
+    }
+    let Some(count) = own.placed_number("keys", Allowed::new(1.0, 99.0, "count")) else {
+        return &ARROWS;
+    };
+    let remotes = [&ARROWS[..], &RADIO];
+    let found = remotes
+        .into_iter()
+        .find(|keys| keys.len() == count.value as usize);
+    found.unwrap_or_else(|| {
+        let remedy = format!(
+            "there is one with arrows, {} keys, and that of a car radio, {}",
+            ARROWS.len(),
+            RADIO.len()
+        );
+        own.complain("keys", count.line, &count.value.to_string(), &remedy);
+        &ARROWS
+    })
 }
 
 /// Reports a pin that something else is on.

@@ -52,7 +52,8 @@ fn part_state((part, value): (&Part, f64)) -> PartState {
         name: part.name.clone(),
         kind: part.kind.name().to_owned(),
         percent: (100.0 * value).round() as u8,
-        address: None,
+        keys: part.keys.iter().map(|(key, _)| (*key).into()).collect(),
+        ..PartState::default()
     }
 }
 
@@ -60,8 +61,8 @@ fn device_state(device: &BusDevice) -> PartState {
     PartState {
         name: device.name.clone(),
         kind: device.kind.name().to_owned(),
-        percent: 0,
         address: Some(device.address),
+        ..PartState::default()
     }
 }
 

@@ -20,7 +20,7 @@
 //! | `meters` | what instruments at the wired pins show |
 //! | `marks` | when the program reaches some of its functions |
 //! | `floor` | line sensors |
-//! | `parts` | buttons, switches and potentiometers |
+//! | `parts` | buttons, switches, potentiometers and remote controls |
 //! | `wheels` | what the program did with each motor |
 //! | `notes` | oddities of a program, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
@@ -48,6 +48,7 @@ mod uart;
 mod wheels;
 
 use crate::bus::Bus;
+use crate::remote::Remote;
 use crate::sonar_fault::SonarFaults;
 use crate::wire_fault::WireFaults;
 use crate::wiring::Divider;
@@ -143,6 +144,8 @@ pub struct Mega {
     floor: Vec<(f64, bool)>,
     /// What has been set of each part.
     worked: Vec<f64>,
+    /// The remote controls, each with the number of its part.
+    remotes: Vec<(usize, Remote)>,
     verdict: Option<Verdict>,
     /// When the program reached the functions of interest.
     marks: Marks,
@@ -185,6 +188,7 @@ impl Mega {
             bus: Bus::new(firmware.bus()),
             floor: Vec::new(),
             worked: Vec::new(),
+            remotes: Vec::new(),
             verdict: None,
             marks: Marks::default(),
             driven_ways: Driven::default(),

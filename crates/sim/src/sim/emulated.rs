@@ -40,6 +40,7 @@ impl Sim {
                 mega.feel(motion, self.now_us(), &self.noise);
                 mega.look_at_displays(self.now_us());
             }
+            mega.send_infrared(self.now_us(), end_us);
             if !self.wire_faults.is_empty() {
                 let now_us = self.now_us();
                 mega.disturb(

@@ -255,3 +255,146 @@ fn an_address_that_is_taken_or_is_none_and_a_bus_on_taken_pins_are_named() {
         assert!(said.contains(why), "{said}");
     }
 }
+
+/// Drives by the keys of a remote, told by the time from one falling edge to the next.
+const REMOTE: &str = "
+volatile unsigned long last, bits;
+volatile byte count = 99;
+volatile int got = -1, repeats = 0;
+void fall() {
+  unsigned long now = micros(), gap = now - last;
+  last = now;
+  if (gap > 13000 && gap < 14000) { count = 0; return; }
+  if (gap > 11000 && gap < 11500) { repeats++; return; }
+  if (count > 31 || gap < 1000 || gap > 2400) { count = 99; return; }
+  bits = bits >> 1 | (gap > 1700 ? 0x80000000 : 0);
+  if (++count == 32 && (bits & 0xFFFF) == 0xFF00 && (byte)(bits >> 16) == (byte)~(bits >> 24)) got = bits >> 16 & 0xFF;
+}
+void setup() {
+  Serial.begin(115200);
+  for (byte pin = 5; pin <= 12; pin++) pinMode(pin, OUTPUT);
+  attachInterrupt(digitalPinToInterrupt(2), fall, FALLING);
+}
+void loop() {
+  if (repeats) { repeats--; Serial.println(\"again\"); }
+  if (got < 0) return;
+  Serial.println(got, HEX);
+  digitalWrite(7, got == 0x18); digitalWrite(12, got == 0x18);
+  analogWrite(5, 150); analogWrite(6, 150);
+  got = -1;
+}";
+
+#[test]
+fn a_remote_control_drives_the_robot_and_repeats_while_its_key_is_held() {
+    let wiring = format!("{DRIVES}parts.remote = {{ infrared = 2 }}\n");
+    let Some(bench) = kit("remote", &wiring, REMOTE) else {
+        return;
+    };
+    let run = drive(
+        &bench,
+        &["--press", "remote=up@0.5", "--press", "remote=0@2"],
+    );
+    let said = || std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
+    assert_eq!(
+        said(),
+        "18\nagain\n19\nagain\n",
+        "{}{}",
+        stdout(&run),
+        stderr(&run)
+    );
+    let (way_m, speed) = (last(&bench, "x_m"), last(&bench, "left_rad_s"));
+    assert!(way_m > 0.3 && speed.abs() < 0.1, "{way_m} {speed}");
+    assert!(
+        rumbo(&bench, &["rerun", "out/floor-1.mcap"])
+            .status
+            .success()
+    );
+    // Held: in the scenario, pressed again before it is up.
+    let scenario = std::fs::read_to_string(bench.join("floor.toml")).unwrap();
+    let held = (0..5).map(|n| {
+        let at_s = 1.0 + 0.1 * f64::from(n);
+        format!("[[command]]\nat_s = {at_s}\npress = \"remote\"\nto = \"ok\"\n")
+    });
+    std::fs::write(
+        bench.join("floor.toml"),
+        scenario.clone() + &held.collect::<String>(),
+    )
+    .unwrap();
+    drive(&bench, &[]);
+    assert_eq!(said(), format!("1C\n{}", "again\n".repeat(5)));
+    std::fs::write(bench.join("floor.toml"), scenario).unwrap();
+    for (press, why) in [
+        (
+            "remote=walk@1",
+            "`remote` is a remote control, and walk none of its keys: 1, 2,",
+        ),
+        ("remote@1", "and on none of its keys"),
+    ] {
+        let refused = drive(&bench, &["--press", press]);
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(stderr(&refused).contains(why), "{}", stderr(&refused));
+    }
+}
+
+#[test]
+fn a_remote_of_a_car_radio_is_read_by_samples_of_the_line() {
+    // As the common library does: a timer looks at the line every 50 us.
+    let sketch = "
+volatile byte state, bits;
+volatile unsigned int ticks;
+volatile unsigned long value;
+volatile bool done;
+ISR(TIMER2_COMPA_vect) {
+  bool mark = !(PINB & _BV(3));
+  ticks++;
+  if (done) return;
+  if (state == 0 && mark) { state = 1; ticks = 0; }
+  else if (state == 1 && !mark) { state = ticks > 160 ? 2 : 0; ticks = 0; }
+  else if (state == 2 && mark) { state = ticks > 70 ? 3 : 0; bits = 0; ticks = 0; }
+  else if (state == 3 && !mark) { state = 4; ticks = 0; }
+  else if (state == 4 && mark) {
+    value = value << 1 | (ticks > 22);
+    state = 3; ticks = 0;
+    if (++bits == 32) { done = true; state = 0; }
+  }
+}
+void setup() {
+  Serial.begin(115200);
+  pinMode(11, INPUT);
+  TCCR2A = _BV(WGM21); TCCR2B = _BV(CS21); OCR2A = 99; TIMSK2 = _BV(OCIE2A);
+}
+void loop() { if (done) { Serial.println(value, HEX); delay(150); done = false; } }";
+    let wiring = "left_enable = 5\nleft_forward = 7\ndebug_tx = 1\ndebug_rx = 0\n\
+                  parts.remote = { infrared = 11, keys = 21 }\n";
+    let Some(bench) = kit("radio", wiring, sketch) else {
+        return;
+    };
+    let keys = [
+        "--press",
+        "remote=ch-@0.5",
+        "--press",
+        "remote=100+@1",
+        "--press",
+        "remote=9@1.5",
+    ];
+    let run = drive(&bench, &keys);
+    let said = std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
+    assert_eq!(
+        said,
+        "FFA25D\nFF9867\nFF52AD\n",
+        "{}{}",
+        stdout(&run),
+        stderr(&run)
+    );
+    let robot = std::fs::read_to_string(bench.join("robot.toml")).unwrap();
+    std::fs::write(
+        bench.join("robot.toml"),
+        robot.replace("keys = 21", "keys = 20"),
+    )
+    .unwrap();
+    let refused = stderr(&drive(&bench, &[]));
+    assert!(
+        refused.contains("there is one with arrows, 17 keys"),
+        "{refused}"
+    );
+}
