@@ -12,10 +12,10 @@ export function shownOf({ name, kind }, now) {
 
 /** What an inertial sensor measures. @param {string} name @param {(signal: string) => number | null} now */
 function inertial(name, now) {
-  const shown = (/** @type {string} */ signal, /** @type {number} */ factor, /** @type {number} */ digits) => {
+  const shown = (/** @type {string} */ signal, /** @type {number} */ digits) => {
     const value = now(`${name}_${signal}`);
-    return value === null || Number.isNaN(value) ? '–' : (factor * value).toFixed(digits);
+    return value === null || Number.isNaN(value) ? '–' : value.toFixed(digits);
   };
-  const [forward, left, up] = ['forward_m_s2', 'left_m_s2', 'up_m_s2'].map((signal) => shown(signal, 1, 2));
-  return `${forward} ${left} ${up} m/s², ${shown('yaw_rad_s', 180 / Math.PI, 1)} °/s`;
+  const [forward, left, up] = ['forward_m_s2', 'left_m_s2', 'up_m_s2'].map((signal) => shown(signal, 2));
+  return `${forward} ${left} ${up} m/s², ${shown('yaw_deg_s', 1)} °/s`;
 }

@@ -23,7 +23,7 @@ test('an inertial sensor shows its accelerations and its turn rate, and nothing 
   const imu = { name: 'imu', kind: 'mpu6050', percent: 0, address: 0x68 };
   /** @param {Record<string, number>} values */
   const now = (values) => (/** @type {string} */ signal) => values[signal] ?? null;
-  const moving = { imu_forward_m_s2: 0.5, imu_left_m_s2: -1, imu_up_m_s2: 9.81, imu_yaw_rad_s: Math.PI / 2 };
+  const moving = { imu_forward_m_s2: 0.5, imu_left_m_s2: -1, imu_up_m_s2: 9.81, imu_yaw_deg_s: 90 };
   assert.deepEqual(shownOf(imu, now(moving)), ['0.50 -1.00 9.81 m/s², 90.0 °/s', 0]);
   assert.deepEqual(shownOf(imu, now({ imu_forward_m_s2: NaN })), ['– – – m/s², – °/s', 0]);
 });

@@ -28,7 +28,40 @@ pub enum Direction {
     Two,
     /// By one, high or low.
     One,
+    /// By two outputs of a shield's register: a wheel is on one of its motors.
+    Motor,
 }
+
+/// A shield whose register, a 74HC595, has the direction inputs.
+pub struct Shield {
+    /// The board's pins of the register: latch, clock, data, and enable, whose low switches its outputs on.
+    pub(crate) lines: [u8; 4],
+    /// Of each motor, M1 first, the board's pin of its PWM, and the register's outputs on its inputs.
+    motors: [(u8, [u8; 2]); 4],
+}
+
+impl Shield {
+    /// The number of a motor by its name, `M1` to `M4`.
+    #[must_use]
+    pub fn motor(&self, name: &str) -> Option<u8> {
+        let number: u8 = name.strip_prefix(['M', 'm'])?.parse().ok()?;
+        (1..=self.motors.len() as u8)
+            .contains(&number)
+            .then_some(number)
+    }
+
+    /// The pin of a motor's PWM, and the register's outputs on its inputs.
+    pub(crate) fn inputs_of(&self, motor: u8) -> (u8, [u8; 2]) {
+        let motors = &self.motors;
+        motors[usize::from(motor.saturating_sub(1)) % motors.len()]
+    }
+}
+
+/// The Adafruit motor shield, version 1, and its many copies: schematic and AFMotor.h.
+static MOTOR_SHIELD: Shield = Shield {
+    lines: [12, 4, 8, 7],
+    motors: [(11, [2, 3]), (3, [1, 4]), (6, [5, 7]), (5, [0, 6])],
+};
 
 /// A driver of two motors.
 pub struct Driver {
@@ -44,6 +77,8 @@ pub struct Driver {
     pub direction: Direction,
     /// Whether one input, low, switches both halves off.
     pub has_standby: bool,
+    /// The shield that it is on, if that decides its pins.
+    pub shield: Option<&'static Shield>,
     /// What a half does, by enable (low, high) and by inputs: none high, forward, backward, both.
     pub(crate) does: [[Stage; 4]; 2],
     drop_v: f64,
@@ -60,6 +95,7 @@ pub static L298N: Driver = Driver {
     has_enable: true,
     direction: Direction::Two,
     has_standby: false,
+    shield: None,
     // L298 data sheet, "bidirectional DC motor control".
     does: [[Coast; 4], [Brake, Forward, Backward, Brake]],
     drop_v: 1.4,
@@ -68,19 +104,31 @@ pub static L298N: Driver = Driver {
     brake_v: 1.6,
 };
 
+/// The L293D.
+static L293D: Driver = Driver {
+    name: "l293d",
+    title: "L293D",
+    // Saturation 1.4 V above and 1.2 V below at 0.6 A, diodes 1.3 V; a motor is shorted over one of each.
+    source: Some("its data sheet (TI SLRS008)"),
+    drop_v: 2.6,
+    drop_ohm: 0.0,
+    diode_v: 1.3,
+    brake_v: 2.5,
+    ..L298N
+};
+
 /// The drivers that there are.
-pub static DRIVERS: [&Driver; 5] = [
+pub static DRIVERS: [&Driver; 6] = [
     &L298N,
+    &L293D,
     &Driver {
-        name: "l293d",
-        title: "L293D",
-        // Saturation 1.4 V above and 1.2 V below at 0.6 A, diodes 1.3 V; a motor is shorted over one of each.
-        source: Some("its data sheet (TI SLRS008)"),
-        drop_v: 2.6,
-        drop_ohm: 0.0,
-        diode_v: 1.3,
-        brake_v: 2.5,
-        ..L298N
+        name: "motor-shield",
+        title: "motor shield with L293D and 74HC595",
+        source: Some("the data sheet of the L293D (TI SLRS008)"),
+        has_enable: false,
+        direction: Direction::Motor,
+        shield: Some(&MOTOR_SHIELD),
+        ..L293D
     },
     &Driver {
         name: "tb6612",

@@ -157,7 +157,7 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(byte), [0, 0xFF, ok, !ok]);
         assert_eq!(us[68..71], [113_000, 122_000, 124_250]);
         assert!(levels.iter().step_by(2).all(|(_, level)| !level));
-        assert_eq!(levels.last().unwrap().1, true);
+        assert!(levels.last().unwrap().1);
         for ms in (300..600).step_by(100) {
             remote.press(ok, ms * 1_000);
             let levels = sent(&mut remote, ms..ms + 100);

@@ -42,6 +42,8 @@ pub struct Wiring {
     pub driver: &'static Driver,
     /// Pin of each signal.
     pub pins: BTreeMap<String, u8>,
+    /// The motor of a shield that each wheel is on, left and right, where the driver is one.
+    pub motors: [Option<Motor>; 2],
     /// Inputs of the driver that are held high or low instead, as by a jumper.
     pub held: BTreeMap<String, bool>,
     /// Sensors for lines on the floor.
@@ -56,7 +58,25 @@ pub struct Wiring {
     pub battery: Option<Divider>,
 }
 
+/// A motor of a shield.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Motor {
+    /// 1 is M1.
+    pub number: u8,
+    /// What the shield calls forward drives the wheel backward.
+    pub reversed: bool,
+}
+
 impl Wiring {
+    /// The board's pins that a shield takes: those of its register, and the PWM of the motors that are wired.
+    pub fn shield_pins(&self) -> impl Iterator<Item = u8> {
+        let motors = self.motors.into_iter().flatten();
+        let shield = self.driver.shield.filter(|_| self.motors != [None; 2]);
+        let speeds = motors.filter_map(move |motor| Some(shield?.inputs_of(motor.number).0));
+        let lines = shield.map(|shield| shield.lines);
+        lines.into_iter().flatten().chain(speeds)
+    }
+
     /// The name of what is on a pin of the board, if anything is: a signal, a part, a line sensor, the two-wire bus.
     #[must_use]
     pub fn owner_of(&self, pin: u8) -> Option<&str> {
@@ -70,7 +90,9 @@ impl Wiring {
         });
         let lines = self.board.two_wire.map(|pin| ("the two-wire bus", pin));
         let lines = lines.into_iter().filter(|_| !self.bus.is_empty());
+        let shield = self.shield_pins().map(|pin| ("the motor shield", pin));
         let mut all = signals
+            .chain(shield)
             .chain(parts)
             .chain(sensors)
             .chain(interrupts)

@@ -122,7 +122,7 @@ export const PAGE = {
   '{}: not sent, a program has at most {} MB': '{}: no enviado, un programa tiene como mucho {} MB', 'drop another .ino, .elf or .hex here': 'suelta aquí otro .ino, .elf o .hex',
   'Plot the numbers that this port prints': 'Dibuja los números que escribe este puerto', 'Plot numbers': 'Dibujar números', '{} (Bluetooth)': '{} (Bluetooth)', 'STOP and OFF cut the supply of the motors, ON gives it back; the program gets them as text, too': 'STOP y OFF cortan la alimentación de los motores, ON la devuelve; al programa le llegan además como texto', 'motors without supply': 'motores sin alimentación', 'motors supplied': 'motores con alimentación', 'sonars': 'sonares',
   'levels of pins, 0 to 1': 'niveles de los pines, 0 a 1', 'encoders, edges': 'encoders, flancos', 'pulses, µs': 'pulsos, µs', 'printed by the program': 'escritas por el programa',
-  'edges': 'flancos', 'printed': 'escritas', 'µs': 'µs', 'level of the pin {}': 'nivel del pin {}', 'led': 'LED',
+  'edges': 'flancos', 'printed': 'escritas', 'µs': 'µs', 'level of the pin {}': 'nivel del pin {}', 'accelerations, m/s²': 'aceleraciones, m/s²', 'by the inertial sensor: {}': 'según el sensor inercial: {}', 'm/s²': 'm/s²', 'led': 'LED',
   'left enable': 'habilitación izq.', 'left forward': 'avance izq.', 'left backward': 'retroceso izq.', 'left encoder': 'encoder izq.',
   'right enable': 'habilitación der.', 'right forward': 'avance der.', 'right backward': 'retroceso der.', 'right encoder': 'encoder der.',
   'left trigger': 'disparo izq.', 'left echo': 'eco izq.', 'right trigger': 'disparo der.', 'right echo': 'eco der.', 'front trigger': 'disparo frontal', 'front echo': 'eco frontal',

@@ -50,6 +50,12 @@ fn meaning(signal: &str, driver: &Driver) -> String {
     let (side, input) = signal.split_once('_').unwrap_or(("", signal));
     match input {
         "enable" => format!("PWM of the {side} motor"),
+        "forward" if driver.direction == Direction::Motor => {
+            format!("motor of the {side} wheel: FORWARD drives it forward")
+        }
+        "backward" if driver.direction == Direction::Motor => {
+            format!("motor of the {side} wheel: FORWARD drives it backward")
+        }
         "forward" if driver.direction == Direction::One => {
             format!("direction of the {side} motor: high is forward")
         }

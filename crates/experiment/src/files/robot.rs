@@ -29,7 +29,7 @@ use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Direction, Driver};
-use rumbo_sim::wiring::{Divider, SIGNALS, Wiring, is_driver_input};
+use rumbo_sim::wiring::{Divider, Motor, SIGNALS, Wiring, is_driver_input};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Position of a sonar on the body.
@@ -221,6 +221,9 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
     let baud = table.number("link_baud", BAUD);
     wiring.link_baud = baud.map(|baud| baud as u32);
     for signal in SIGNALS {
+        if read_motor(table, signal, &mut wiring) {
+            continue;
+        }
         let Some((line, wired)) = read_wired(table, signal, board, false) else {
             continue;
         };
@@ -247,8 +250,54 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
     read_parts(&table.table("parts"), &mut wiring);
     read_line_sensors(&table.table("line"), &mut wiring);
     suits_driver(table, &wiring);
+    for (signal, pin) in &wiring.pins {
+        if wiring.shield_pins().any(|taken| taken == *pin) {
+            table.complain_here(&format!(
+                "{signal} = {}: the motor shield has that pin; take another one",
+                board.shown(*pin)
+            ));
+        }
+    }
     table.finish();
     wiring
+}
+
+/// Reads the motor of a shield that a wheel is on, if the driver is a shield and the signal tells of one.
+fn read_motor(table: &Table<'_, '_>, signal: &str, wiring: &mut Wiring) -> bool {
+    let Some(shield) = wiring.driver.shield else {
+        return false;
+    };
+    let (side, way) = signal.split_once('_').unwrap_or_default();
+    let side = ["left", "right"].iter().position(|known| *known == side);
+    let (Some(side), true) = (side, ["forward", "backward"].contains(&way)) else {
+        return false;
+    };
+    let name = match table.is_text(signal) {
+        true => table.text(signal),
+        false => None,
+    };
+    let motor = name.as_ref().and_then(|name| shield.motor(&name.value));
+    if let Some(number) = motor {
+        let reversed = way == "backward";
+        if wiring.motors[side]
+            .replace(Motor { number, reversed })
+            .is_some()
+        {
+            table.complain_here(&format!(
+                "{signal}: a wheel is on one motor; name it {signal} alone if its FORWARD drives {way}"
+            ));
+        }
+    } else if table.has(signal) {
+        let (line, value) = name.map_or((0, "a number".into()), |name| (name.line, name.value));
+        table.value(signal);
+        table.complain(
+            signal,
+            line,
+            &value,
+            "must be a motor of the shield, \"M1\" to \"M4\"",
+        );
+    }
+    true
 }
 
 /// Reports inputs of the driver that it lacks, and inputs that are missing.

@@ -427,7 +427,7 @@ mod tests {
         }
         let noise = Noise::new(1, 0);
         let pulse = Some(Interrupt::Pulse { active: true });
-        let mut run = |imu: &mut Mpu6050, from: u64| {
+        let run = |imu: &mut Mpu6050, from: u64| {
             let pulses = (from..from + 100).filter(|ms| {
                 let due_us = imu.next_us();
                 imu.measure(Motion::default(), [0.0; 2], ms * 1_000, &noise);

@@ -6,7 +6,7 @@ use crate::boards::Board;
 use crate::bus::BusDevice;
 use crate::error::SimError;
 use crate::floor::LineSensor;
-use crate::wiring::{Part, Wiring};
+use crate::wiring::{Motor, Part, Wiring};
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::ports::Drive;
@@ -51,6 +51,7 @@ pub struct Firmware {
     parts: Vec<Part>,
     line_sensors: Vec<LineSensor>,
     bus: Vec<BusDevice>,
+    motors: [Option<Motor>; 2],
 }
 
 impl Firmware {
@@ -75,6 +76,7 @@ impl Firmware {
             parts: pins.parts.clone(),
             line_sensors: pins.line_sensors.clone(),
             bus: pins.bus.clone(),
+            motors: pins.motors,
             link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
         })
     }
@@ -126,6 +128,11 @@ impl Firmware {
     /// The devices on its two-wire bus.
     pub fn bus(&self) -> &[BusDevice] {
         &self.bus
+    }
+
+    /// The motors of a shield, left and right.
+    pub(super) fn motors(&self) -> [Option<Motor>; 2] {
+        self.motors
     }
 
     /// What else is at its pins.

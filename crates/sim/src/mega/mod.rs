@@ -21,6 +21,7 @@
 //! | `marks` | when the program reaches some of its functions |
 //! | `floor` | line sensors |
 //! | `parts` | buttons, switches, potentiometers and remote controls |
+//! | `register` | the register of a motor shield |
 //! | `wheels` | what the program did with each motor |
 //! | `notes` | oddities of a program, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
@@ -43,6 +44,7 @@ mod module;
 mod notes;
 mod outputs;
 mod parts;
+mod register;
 mod servo;
 mod uart;
 mod wheels;
@@ -60,6 +62,7 @@ use inputs::Announced;
 use marks::Marks;
 use meters::Meters;
 use pins::{LinkOn, Wires};
+use register::Register;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::{Cause, Input};
@@ -124,6 +127,8 @@ pub struct Mega {
     /// The chip's cycle at the plant's time 0.
     zero_cycle: u64,
     bridges: [HalfBridge; 2],
+    /// That of a motor shield.
+    register: Register,
     driven: [(Bridge, Modulation); 2],
     servo: ServoInput,
     triggers: [Option<u64>; 3],
@@ -173,6 +178,7 @@ impl Mega {
         let mut mega = Self {
             chip,
             zero_cycle: 0,
+            register: Register::default(),
             bridges: bridges.map(|inputs| HalfBridge::new(driver, inputs)),
             driven: [(Bridge::Released, Modulation::default()); 2],
             servo: ServoInput::default(),

@@ -1,6 +1,6 @@
-//! Devices on the two-wire bus of a sketch's board, driven register by register.
+//! Devices on the two-wire bus of a sketch's board, a remote control and a motor shield, driven register by register.
 
-use super::kits::{column, drive, kit, last};
+use super::kits::{column, drive, driven_by, kit, last, there_and_back, to_and_fro};
 use super::sketch::rumbo;
 use crate::support::{stderr, stdout};
 use std::path::Path;
@@ -396,5 +396,126 @@ void loop() { if (done) { Serial.println(value, HEX); delay(150); done = false; 
     assert!(
         refused.contains("there is one with arrows, 17 keys"),
         "{refused}"
+    );
+}
+
+/// Shifts eight bits into the register of a motor shield.
+const SHIFT: &str = "
+void put(byte bits) {
+  digitalWrite(12, LOW);
+  for (int bit = 7; bit >= 0; bit--) {
+    digitalWrite(4, LOW); digitalWrite(8, bits >> bit & 1); digitalWrite(4, HIGH);
+  }
+  digitalWrite(12, HIGH);
+  digitalWrite(7, LOW);
+}
+";
+
+#[test]
+fn a_motor_shield_drives_the_motors_that_the_wheels_are_on() {
+    // M3 and M4, and then the other way.
+    let sketch = to_and_fro(
+        "4, 5, 6, 7, 8, 12",
+        "put(0x21); analogWrite(6, 150); analogWrite(5, 150);",
+        "put(0xC0);",
+    );
+    let sketch = format!("{SHIFT}{sketch}");
+    let wiring = "left_forward = \"M3\"\nright_forward = \"M4\"\n";
+    there_and_back(driven_by("motor-shield", "shield", wiring, &sketch));
+    // One motor's wires exchanged: it turns on the spot.
+    let wiring = "left_forward = \"M3\"\nright_backward = \"M4\"\n";
+    let Some(bench) = driven_by("motor-shield", "shield_turns", wiring, &sketch) else {
+        return;
+    };
+    let run = drive(&bench, &[]);
+    let heading = column(&bench, "heading_rad");
+    let farthest = heading.iter().copied().fold(0.0, f64::min);
+    assert!(farthest < -1.0, "{farthest} {}", stderr(&run));
+    // While pin 7 is high nothing moves, and a run says which motor.
+    let asleep = sketch.replace("digitalWrite(7, LOW);", "digitalWrite(7, HIGH);");
+    std::fs::write(bench.join("car.ino"), asleep).unwrap();
+    let run = drive(&bench, &[]);
+    let told = stdout(&run) + &stderr(&run);
+    assert!(
+        told.contains("it never drove the left motor: left_forward of M3"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_pin_that_a_motor_shield_has_and_a_motor_that_it_has_not_are_named() {
+    for (number, (wiring, why)) in [
+        (
+            "left_forward = \"M5\"",
+            "left_forward = M5: must be a motor of the shield, \"M1\" to \"M4\"",
+        ),
+        ("left_forward = 6", "must be a motor of the shield"),
+        (
+            "left_forward = \"M1\"\nleft_backward = \"M1\"",
+            "left_backward: a wheel is on one motor",
+        ),
+        (
+            "left_forward = \"M1\"\nservo = 12",
+            "servo = 12: the motor shield has that pin",
+        ),
+        (
+            "left_forward = \"M1\"\nfront_echo = 11\nfront_trigger = 2",
+            "front_echo = 11: the motor shield has that pin",
+        ),
+        (
+            "left_forward = \"M1\"\nparts.start = { button = 8 }",
+            "the motor shield is on that pin already",
+        ),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let name = format!("shield{number}");
+        let Some(bench) = driven_by(
+            "motor-shield",
+            &name,
+            wiring,
+            "void setup() {}\nvoid loop() {}\n",
+        ) else {
+            return;
+        };
+        let refused = drive(&bench, &[]);
+        assert_eq!(refused.status.code(), Some(2), "{wiring}");
+        assert!(stderr(&refused).contains(why), "{}", stderr(&refused));
+    }
+}
+
+#[test]
+fn a_new_robot_with_a_motor_shield_has_its_wheels_on_motors() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path().to_path_buf();
+    let new = [
+        "new",
+        "robot",
+        "car",
+        "--board",
+        "uno",
+        "--driver",
+        "motor-shield",
+        "--pins",
+        "left_forward=M3,right_backward=M4,servo=10,front_trigger=A0,front_echo=A1",
+    ];
+    let made = rumbo(&folder, &new);
+    assert!(made.status.success(), "{}", stderr(&made));
+    let text = std::fs::read_to_string(folder.join("car.toml")).unwrap();
+    assert!(
+        text.contains(
+            "right_backward = \"M4\"   # motor of the right wheel: FORWARD drives it backward"
+        ),
+        "{text}"
+    );
+    let bare = rumbo(
+        &folder,
+        &["new", "robot", "bare", "--driver", "motor-shield"],
+    );
+    assert!(
+        stderr(&bare).contains("needs the pins left_forward, right_forward"),
+        "{}",
+        stderr(&bare)
     );
 }

@@ -11,7 +11,7 @@ pub(super) fn kit(name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
 }
 
 /// The same with another driver.
-fn driven_by(driver: &str, name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
+pub(super) fn driven_by(driver: &str, name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
     let bench = bench(name)?;
     let robot = format!(
         "title = \"A car\"\nboard = \"uno\"\ndriver = \"{driver}\"\n[rig.front_single.front]\nx_m = 0.13\n[wiring.car]\n{wiring}"
@@ -111,7 +111,7 @@ fn a_letter_without_a_line_ending_is_obeyed_until_the_next_one() {
 }
 
 /// Forward for a second and a half, then backward.
-fn to_and_fro(pins: &str, forward: &str, backward: &str) -> String {
+pub(super) fn to_and_fro(pins: &str, forward: &str, backward: &str) -> String {
     format!(
         "const byte pins[] = {{{pins}}};\nvoid setup() {{ for (byte pin : pins) pinMode(pin, OUTPUT); }}\n\
          void loop() {{ {forward} delay(1500); {backward} delay(100000); }}\n"
@@ -210,7 +210,7 @@ fn a_drv8833_drives_by_pwm_on_its_inputs_and_has_no_enable() {
 }
 
 /// It drives forward for half of the run and back in the other half.
-fn there_and_back(bench: Option<PathBuf>) {
+pub(super) fn there_and_back(bench: Option<PathBuf>) {
     let Some(bench) = bench else { return };
     let run = drive(&bench, &[]);
     let x_m = column(&bench, "x_m");
