@@ -52,6 +52,17 @@ pub(super) fn pin(text: &str) -> Result<(String, String), String> {
     Ok((signal.to_owned(), pin.to_owned()))
 }
 
+/// A part of a robot with its kind and its place: `start=button:8`.
+pub(super) fn part(text: &str) -> Result<[String; 3], String> {
+    let split = text.split_once('=').and_then(|(name, rest)| {
+        let (kind, place) = rest.split_once(':')?;
+        Some([name, kind, place].map(|each| each.trim().to_owned()))
+    });
+    split
+        .filter(|words| words.iter().all(|word| !word.is_empty()))
+        .ok_or_else(|| "write it as start=button:8,screen=ssd1306:0x3c".to_owned())
+}
+
 /// Seconds of simulation or of a log per second.
 pub(super) fn speed(text: &str) -> Result<f64, Failure> {
     match text.parse() {

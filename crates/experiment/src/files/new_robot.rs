@@ -27,6 +27,8 @@ pub struct NewRobot {
     pub jumpers: bool,
     /// Signals and their pins, as they were given: numbers or names.
     pub pins: Vec<(String, String)>,
+    /// Parts: name, kind, and pin or address.
+    pub parts: Vec<[String; 3]>,
 }
 
 /// The signals that a robot with such a driver needs to drive, for people; `-` stands for both ways of a direction input.
@@ -130,6 +132,17 @@ impl NewRobot {
                 false => meaning(signal, driver),
             };
             put(format!("{:24}# {about}", format!("{signal} = {value}")));
+        }
+        for [name, kind, place] in &self.parts {
+            let number = match place.strip_prefix("0x") {
+                Some(digits) => u8::from_str_radix(digits, 16),
+                None => place.parse(),
+            };
+            let place = match number {
+                Ok(_) => place.clone(),
+                Err(_) => format!("{place:?}"),
+            };
+            put(format!("parts.{name} = {{ {kind} = {place} }}"));
         }
         let _ = write!(
             text,

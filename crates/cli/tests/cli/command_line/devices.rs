@@ -499,6 +499,8 @@ fn a_new_robot_with_a_motor_shield_has_its_wheels_on_motors() {
         "motor-shield",
         "--pins",
         "left_forward=M3,right_backward=M4,servo=10,front_trigger=A0,front_echo=A1",
+        "--parts",
+        "remote=infrared:2,knob=potentiometer:A2,screen=ssd1306:0x3c",
     ];
     let made = rumbo(&folder, &new);
     assert!(made.status.success(), "{}", stderr(&made));
@@ -509,6 +511,8 @@ fn a_new_robot_with_a_motor_shield_has_its_wheels_on_motors() {
         ),
         "{text}"
     );
+    let parts = "parts.remote = { infrared = 2 }\nparts.knob = { potentiometer = \"A2\" }\nparts.screen = { ssd1306 = 0x3c }\n";
+    assert!(text.contains(parts), "{text}");
     let bare = rumbo(
         &folder,
         &["new", "robot", "bare", "--driver", "motor-shield"],
