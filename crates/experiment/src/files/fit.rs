@@ -50,7 +50,7 @@ pub(super) fn has_its_parts(
 }
 
 /// Whether a part can be put to a value; if not, why.
-fn takes(part: &Part, value: &str) -> Result<(), String> {
+pub(crate) fn takes(part: &Part, value: &str) -> Result<(), String> {
     let name = &part.name;
     if part.kind == PartKind::Infrared {
         let keys: Vec<&str> = part.keys.iter().map(|(key, _)| *key).collect();

@@ -81,14 +81,18 @@ pub fn pressed(name: &str, value: Option<&str>, at_s: f64) -> Vec<TimedText> {
     }
 }
 
+/// What a part is put to: a number, or the key of a remote control.
+pub(crate) fn read_value(table: &Table<'_, '_>) -> Option<String> {
+    if table.is_text(VALUE) {
+        return table.text(VALUE).map(|key| key.value);
+    }
+    let value = table.number(VALUE, Allowed::new(0.0, 9.0, ""));
+    value.map(|value| value.to_string())
+}
+
 /// The command that has the key [`PRESS`].
 pub(super) fn read_press(table: &Table<'_, '_>, at_s: f64) -> Vec<TimedText> {
-    let value = match table.is_text(VALUE) {
-        true => table.text(VALUE).map(|key| key.value),
-        false => table
-            .number(VALUE, Allowed::new(0.0, 9.0, ""))
-            .map(|value| value.to_string()),
-    };
+    let value = read_value(table);
     let name = table.text(PRESS);
     name.map_or_else(Vec::new, |name| {
         pressed(&name.value, value.as_deref(), at_s)

@@ -211,6 +211,16 @@ void loop() {}";
     let told = stdout(&run);
     assert!(told.contains("|Rumbo               |"), "{told}");
     assert!(told.contains("|▯°                  |"), "{told}");
+    let tests = "sketch = \"car.ino\"\nscenario = \"floor.toml\"\n[[test]]\nname = \"says where it is\"\n\
+                 step = [{ expect = \"third row\", port = \"displays\" }]\n";
+    std::fs::write(bench.join("tests.toml"), tests).unwrap();
+    let checked = rumbo(&bench, &["check", "tests.toml"]);
+    assert!(
+        checked.status.success(),
+        "{}{}",
+        stdout(&checked),
+        stderr(&checked)
+    );
 }
 
 #[test]
@@ -309,6 +319,19 @@ fn a_remote_control_drives_the_robot_and_repeats_while_its_key_is_held() {
             .status
             .success()
     );
+    let tests = "sketch = \"car.ino\"\nscenario = \"floor.toml\"\n[[test]]\nname = \"drives\"\n\
+                 step = [{ press = \"remote\", to = \"up\" }, { expect = \"18\" }, { press = \"remote\", to = 5 }, { expect = \"40\" }]\n";
+    std::fs::write(bench.join("tests.toml"), tests).unwrap();
+    let checked = rumbo(&bench, &["check", "tests.toml"]);
+    assert!(
+        checked.status.success(),
+        "{}{}",
+        stdout(&checked),
+        stderr(&checked)
+    );
+    std::fs::write(bench.join("tests.toml"), tests.replace("up", "walk")).unwrap();
+    let refused = stderr(&rumbo(&bench, &["check", "tests.toml"]));
+    assert!(refused.contains("and walk none of its keys"), "{refused}");
     // Held: in the scenario, pressed again before it is up.
     let scenario = std::fs::read_to_string(bench.join("floor.toml")).unwrap();
     let held = (0..5).map(|n| {
