@@ -161,6 +161,7 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
         driver,
         jumpers,
         pins,
+        four_wheels: args.wheels == 4,
         parts: args.parts.clone(),
     })
 }

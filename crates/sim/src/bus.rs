@@ -4,11 +4,13 @@
 
 mod hd44780;
 mod mpu6050;
+mod pca9685;
 mod ssd1306;
 
 use hd44780::Text;
 use mpu6050::Mpu6050;
 pub(crate) use mpu6050::{Interrupt, Motion};
+use pca9685::Pca9685;
 use rumbo_emulator::devices::{Reply, Transfer};
 use ssd1306::Pixels;
 use std::collections::BTreeSet;
@@ -114,15 +116,18 @@ enum Device {
 pub(crate) struct Bus {
     devices: Vec<(BusDevice, Device)>,
     addressed: Option<usize>,
+    shield_addressed: bool,
     /// Where nobody answered.
     in_vain: BTreeSet<u8>,
     /// What each display showed when it was last looked at.
     shown: Vec<String>,
+    /// The chip of a motor shield, and its address.
+    shield: Option<(u8, Box<Pca9685>)>,
 }
 
 impl Bus {
-    /// The bus with these devices, just switched on.
-    pub(crate) fn new(devices: &[BusDevice]) -> Self {
+    /// The bus with these devices, and a motor shield at this address, just switched on.
+    pub(crate) fn new(devices: &[BusDevice], shield: Option<u8>) -> Self {
         let made = |(number, device): (usize, &BusDevice)| {
             let made = match device.kind {
                 DeviceKind::Mpu6050 { .. } => Device::Mpu6050(Mpu6050::new(number as u32)),
@@ -135,8 +140,26 @@ impl Bus {
         Self {
             shown: vec![String::new(); devices.len()],
             devices,
+            shield: shield.map(|address| (address, Box::new(Pca9685::new()))),
             ..Self::default()
         }
+    }
+
+    /// The chip of a motor shield.
+    pub(crate) fn shield(&self) -> Option<&Pca9685> {
+        self.shield.as_ref().map(|(_, chip)| &**chip)
+    }
+
+    /// The same for the shield, if it is the one that is addressed.
+    fn serve_shield(&mut self, transfer: Transfer) -> Option<Reply> {
+        let (_, chip) = self.shield.as_mut()?;
+        match transfer {
+            Transfer::Address(_) => chip.address(),
+            Transfer::Write(byte) => chip.write(byte),
+            Transfer::Read => return Some(Reply::Byte(chip.read())),
+            Transfer::End => return None,
+        }
+        Some(Reply::Acknowledge)
     }
 
     /// A byte begins in this cycle: the reply of the device that it is for.
@@ -145,9 +168,14 @@ impl Bus {
             let address = byte >> 1;
             let found = |(device, _): &(BusDevice, Device)| device.address == address;
             self.addressed = self.devices.iter().position(found);
-            if self.addressed.is_none() {
+            let of_shield = self.shield.as_ref().map(|(address, _)| *address);
+            self.shield_addressed = of_shield == Some(address);
+            if self.addressed.is_none() && !self.shield_addressed {
                 self.in_vain.insert(address);
             }
+        }
+        if self.shield_addressed {
+            return self.serve_shield(transfer);
         }
         let (_, device) = self.devices.get_mut(self.addressed?)?;
         match transfer {
@@ -167,6 +195,7 @@ impl Bus {
                 }
                 Some(Reply::Acknowledge)
             }
+            Transfer::End => None,
             Transfer::Read => Some(Reply::Byte(match device {
                 Device::Mpu6050(imu) => imu.read(),
                 Device::Pixels(pixels) => pixels.read(),
@@ -226,10 +255,12 @@ impl Bus {
                 .in_vain
                 .iter()
                 .map(|address| format!("0x{address:02x}"));
-            let there = self
-                .devices
-                .iter()
-                .map(|(device, _)| format!("{} at 0x{:02x}", device.name, device.address));
+            let devices = self.devices.iter();
+            let devices = devices.map(|(device, _)| (device.name.as_str(), device.address));
+            let shield = self.shield.iter();
+            let shield = shield.map(|(address, _)| ("the motor shield", *address));
+            let there = devices.chain(shield);
+            let there = there.map(|(name, address)| format!("{name} at 0x{address:02x}"));
             let there = there.collect::<Vec<_>>().join(", ");
             let there = match there.is_empty() {
                 true => "nothing is; the robot file has devices, e.g. parts.imu = { mpu6050 = 0x68 } in its [wiring.NAME]".into(),

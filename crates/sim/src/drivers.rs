@@ -32,11 +32,14 @@ pub enum Direction {
     Motor,
 }
 
-/// A shield whose register, a 74HC595, has the direction inputs.
+/// A shield on which a chip has the inputs of the motors: a register, 74HC595, those of their directions; or a PCA9685 all.
 pub struct Shield {
     /// The board's pins of the register: latch, clock, data, and enable, whose low switches its outputs on.
-    pub(crate) lines: [u8; 4],
-    /// Of each motor, M1 first, the board's pin of its PWM, and the register's outputs on its inputs.
+    pub(crate) lines: Option<[u8; 4]>,
+    /// The address of the PCA9685 on the two-wire bus.
+    pub(crate) address: Option<u8>,
+    /// Of each motor, M1 first, where its PWM is, the board's pin or the PCA9685's output, and the chip's outputs on its inputs, that
+    /// of forward first.
     motors: [(u8, [u8; 2]); 4],
 }
 
@@ -50,7 +53,7 @@ impl Shield {
             .then_some(number)
     }
 
-    /// The pin of a motor's PWM, and the register's outputs on its inputs.
+    /// Where a motor's PWM is, and the chip's outputs on its inputs.
     pub(crate) fn inputs_of(&self, motor: u8) -> (u8, [u8; 2]) {
         let motors = &self.motors;
         motors[usize::from(motor.saturating_sub(1)) % motors.len()]
@@ -59,8 +62,16 @@ impl Shield {
 
 /// The Adafruit motor shield, version 1, and its many copies: schematic and AFMotor.h.
 static MOTOR_SHIELD: Shield = Shield {
-    lines: [12, 4, 8, 7],
+    lines: Some([12, 4, 8, 7]),
+    address: None,
     motors: [(11, [2, 3]), (3, [1, 4]), (6, [5, 7]), (5, [0, 6])],
+};
+
+/// The Adafruit motor shield, version 2: schematic and Adafruit_MotorShield.cpp.
+static MOTOR_SHIELD_V2: Shield = Shield {
+    lines: None,
+    address: Some(0x60),
+    motors: [(8, [10, 9]), (13, [11, 12]), (2, [4, 3]), (7, [5, 6])],
 };
 
 /// A driver of two motors.
@@ -117,8 +128,26 @@ static L293D: Driver = Driver {
     ..L298N
 };
 
+/// The TB6612FNG.
+static TB6612: Driver = Driver {
+    name: "tb6612",
+    title: "TB6612FNG",
+    // 0.5 ohm above and below together, diodes 1.0 V at 1 A.
+    source: Some("its data sheet (Toshiba TB6612FNG, 2014-10-01)"),
+    has_standby: true,
+    does: [
+        [Coast, Brake, Brake, Brake],
+        [Coast, Forward, Backward, Brake],
+    ],
+    drop_v: 0.0,
+    drop_ohm: 0.5,
+    diode_v: 1.0,
+    brake_v: 0.0,
+    ..L298N
+};
+
 /// The drivers that there are.
-pub static DRIVERS: [&Driver; 6] = [
+pub static DRIVERS: [&Driver; 7] = [
     &L298N,
     &L293D,
     &Driver {
@@ -130,21 +159,16 @@ pub static DRIVERS: [&Driver; 6] = [
         shield: Some(&MOTOR_SHIELD),
         ..L293D
     },
+    &TB6612,
     &Driver {
-        name: "tb6612",
-        title: "TB6612FNG",
-        // 0.5 ohm above and below together, diodes 1.0 V at 1 A.
-        source: Some("its data sheet (Toshiba TB6612FNG, 2014-10-01)"),
-        has_standby: true,
-        does: [
-            [Coast, Brake, Brake, Brake],
-            [Coast, Forward, Backward, Brake],
-        ],
-        drop_v: 0.0,
-        drop_ohm: 0.5,
-        diode_v: 1.0,
-        brake_v: 0.0,
-        ..L298N
+        name: "motor-shield-v2",
+        title: "motor shield with TB6612FNG and PCA9685",
+        source: Some("the data sheet of the TB6612FNG"),
+        has_enable: false,
+        direction: Direction::Motor,
+        has_standby: false,
+        shield: Some(&MOTOR_SHIELD_V2),
+        ..TB6612
     },
     &Driver {
         name: "drv8833",

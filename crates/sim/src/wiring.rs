@@ -72,9 +72,15 @@ impl Wiring {
     pub fn shield_pins(&self) -> impl Iterator<Item = u8> {
         let motors = self.motors.into_iter().flatten();
         let shield = self.driver.shield.filter(|_| self.motors != [None; 2]);
-        let speeds = motors.filter_map(move |motor| Some(shield?.inputs_of(motor.number).0));
-        let lines = shield.map(|shield| shield.lines);
-        lines.into_iter().flatten().chain(speeds)
+        let lines = shield.and_then(|shield| shield.lines);
+        let speeds = motors.filter_map(move |motor| {
+            lines?;
+            Some(shield?.inputs_of(motor.number).0)
+        });
+        let bus = shield.filter(|shield| shield.address.is_some());
+        let bus = bus.map(|_| self.board.two_wire);
+        let (lines, bus) = (lines.into_iter().flatten(), bus.into_iter().flatten());
+        lines.chain(bus).chain(speeds)
     }
 
     /// The name of what is on a pin of the board, if anything is: a signal, a part, a line sensor, the two-wire bus.

@@ -52,6 +52,15 @@ pub(super) fn pin(text: &str) -> Result<(String, String), String> {
     Ok((signal.to_owned(), pin.to_owned()))
 }
 
+/// How many wheels a robot has.
+pub(super) fn wheels(text: &str) -> Result<u8, &'static str> {
+    match text {
+        "2" => Ok(2),
+        "4" => Ok(4),
+        _ => Err("must be 2, with a castor, or 4"),
+    }
+}
+
 /// A part of a robot with its kind and its place: `start=button:8`.
 pub(super) fn part(text: &str) -> Result<[String; 3], String> {
     let split = text.split_once('=').and_then(|(name, rest)| {

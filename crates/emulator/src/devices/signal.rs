@@ -61,6 +61,8 @@ pub enum Transfer {
     Write(u8),
     /// The addressed device is to send one.
     Read,
+    /// The transmission ends: a stop.
+    End,
 }
 
 /// Something to the outside, at its cycle.

@@ -249,7 +249,8 @@ impl Twi {
             Action::Write(WRITTEN) => Transfer::Write(self.data),
             Action::Write(_) => Transfer::Address(self.data),
             Action::Read => Transfer::Read,
-            Action::Start | Action::RepeatedStart | Action::Stop => return,
+            Action::Stop => Transfer::End,
+            Action::Start | Action::RepeatedStart => return,
         };
         core.emit(cycle, Event::TwoWire(transfer));
     }

@@ -141,6 +141,7 @@ fn read_device(own: &Table<'_, '_>, name: &str, kind: DeviceKind, wiring: &mut W
     let board = wiring.board;
     for (pin, line) in board.two_wire.into_iter().zip(["SDA", "SCL"]) {
         let owner = wiring.owner_of(pin).filter(|_| wiring.bus.is_empty());
+        let owner = owner.filter(|_| !wiring.shield_pins().any(|own| own == pin));
         if let Some(other) = owner {
             own.complain_here(&format!(
                 "{} is on the two-wire bus, and {other} on its pin {} ({line}): put {other} on another pin",

@@ -1,8 +1,9 @@
 //! The two-wire bus at the chip: bytes to its devices and back, what they measure, what they show.
 
+use super::pins::DriverInput;
 use super::{CYCLES_PER_US, Mega, PARTS};
 use crate::bus::{DeviceKind, Interrupt, Motion};
-use rumbo_emulator::devices::{Input, Transfer};
+use rumbo_emulator::devices::{Input, Pwm, Transfer};
 use rumbo_plant::noise::Noise;
 
 /// How often it is looked whether a display has changed [us].
@@ -13,10 +14,35 @@ const PULSE_CYCLES: u64 = 50 * CYCLES_PER_US;
 impl Mega {
     /// A byte begins on the bus in this cycle.
     pub(super) fn transfer(&mut self, cycle: u64, transfer: Transfer) {
+        if transfer == Transfer::End {
+            self.switch_shield(cycle);
+        }
         if let Some(reply) = self.bus.transfer(transfer, cycle) {
             self.chip.input(cycle, Input::TwoWire(reply));
             if transfer == Transfer::Read {
                 self.raise_interrupts(cycle, |_| false);
+            }
+        }
+    }
+
+    /// The inputs of the motors that are on the outputs of a shield's chip.
+    fn switch_shield(&mut self, cycle: u64) {
+        let Some(chip) = self.bus.shield() else {
+            return;
+        };
+        let period_cycles = Some(chip.period_cycles());
+        let wired = self.firmware.wires().bridges;
+        for (half, inputs) in self.bridges.iter_mut().zip(wired) {
+            for (line, input) in half.lines.iter_mut().zip(inputs) {
+                if let DriverInput::Output(output) = input {
+                    let share = chip.share(output);
+                    let moves = share > 0.0 && share < 1.0;
+                    line.set(cycle, share == 1.0);
+                    line.modulate(moves.then_some(Pwm {
+                        share,
+                        period_cycles,
+                    }));
+                }
             }
         }
     }

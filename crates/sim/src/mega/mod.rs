@@ -173,7 +173,9 @@ impl Mega {
     pub(crate) fn new(firmware: Arc<Firmware>, encoders: [bool; 4]) -> Self {
         let mut chip = Chip::new(firmware.image());
         chip.watch(&firmware.wires().felt());
-        chip.watch_two_wire(!firmware.bus().is_empty());
+        let shield = firmware.wires().driver.shield;
+        let shield = shield.and_then(|shield| shield.address);
+        chip.watch_two_wire(!firmware.bus().is_empty() || shield.is_some());
         let Wires {
             driver, bridges, ..
         } = *firmware.wires();
@@ -193,7 +195,7 @@ impl Mega {
             consoles: Default::default(),
             module: uart::Receiver::new(firmware.link_baud()),
             meters: Meters::at(firmware.metered()),
-            bus: Bus::new(firmware.bus()),
+            bus: Bus::new(firmware.bus(), shield),
             floor: Vec::new(),
             worked: Vec::new(),
             remotes: Vec::new(),

@@ -20,13 +20,15 @@ pub(super) enum DriverInput {
     Pin(Pin),
     /// On this output of a shield's register.
     Register(u8),
+    /// On this output of a shield's chip on the two-wire bus.
+    Output(u8),
 }
 
 impl DriverInput {
     pub(super) fn pin(self) -> Option<Pin> {
         match self {
             Self::Pin(pin) => Some(pin),
-            Self::Low | Self::High | Self::Register(_) => None,
+            Self::Low | Self::High | Self::Register(_) | Self::Output(_) => None,
         }
     }
 }
@@ -107,6 +109,11 @@ impl Wires {
                 true => (second, first),
                 false => (first, second),
             };
+            if driver.shield?.address.is_some() {
+                let [speed, forward, backward] =
+                    [speed, forward, backward].map(DriverInput::Output);
+                return Some([speed, forward, backward, DriverInput::High]);
+            }
             let [forward, backward] = [forward, backward].map(DriverInput::Register);
             let speed = DriverInput::Pin(on_board(speed)?);
             Some([speed, forward, backward, DriverInput::High])
@@ -130,7 +137,7 @@ impl Wires {
         Ok(Self {
             driver,
             register: driver.shield.and_then(|shield| {
-                let lines = shield.lines.map(on_board);
+                let lines = shield.lines?.map(on_board);
                 let [Some(latch), Some(clock), Some(data), Some(enable)] = lines else {
                     return None;
                 };

@@ -105,7 +105,7 @@ impl Mega {
             format!("{} was never high, and the driver slept", called(3))
         } else if low(0) {
             let held = match inputs[0].pin() {
-                Some(_) if self.wires().register.is_none() => {
+                Some(_) if self.wires().driver.shield.is_none() => {
                     ", unless a jumper holds it: then write \"high\" in the wiring"
                 }
                 _ => "",

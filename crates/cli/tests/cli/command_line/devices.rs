@@ -546,3 +546,89 @@ fn a_new_robot_with_a_motor_shield_has_its_wheels_on_motors() {
         stderr(&bare)
     );
 }
+
+#[test]
+fn a_motor_shield_on_the_two_wire_bus_drives_and_turns_as_it_is_told() {
+    // M3 and M4: PWM, and the inputs of forward and backward.
+    let sketch = "
+void set(byte output, unsigned int on, unsigned int off) {
+  start(0xC0); send(6 + 4 * output); send(on); send(on >> 8); send(off); send(off >> 8); stop();
+}
+void run(bool forward) {
+  set(2, 0, 2400); set(7, 0, 2400);
+  set(4, forward ? 4096 : 0, 0); set(3, forward ? 0 : 4096, 0);
+  set(5, forward ? 4096 : 0, 0); set(6, forward ? 0 : 4096, 0);
+}
+void setup() {
+  TWBR = 72;
+  start(0xC0); send(0xFE); send(3); stop();
+  start(0xC0); send(0); send(0x20); stop();
+  delay(1);
+}
+void loop() { run(true); delay(1500); run(false); delay(100000); }";
+    let sketch = format!("{BUS}{sketch}");
+    let wiring = "left_forward = \"M3\"\nright_forward = \"M4\"\n";
+    there_and_back(driven_by("motor-shield-v2", "shield_v2", wiring, &sketch));
+    let taken = format!("{wiring}servo = \"A4\"\n");
+    let Some(bench) = driven_by("motor-shield-v2", "shield_v2_taken", &taken, &sketch) else {
+        return;
+    };
+    let refused = stderr(&drive(&bench, &[]));
+    assert!(
+        refused.contains("servo = A4: the motor shield has that pin"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn a_car_on_four_wheels_goes_straight_as_one_on_two_and_turns_less() {
+    let Some(bench) = super::sketch::bench("four_wheels") else {
+        return;
+    };
+    let sketch = to_and_fro(
+        "5, 6, 7, 8, 9, 11",
+        "digitalWrite(7, HIGH); digitalWrite(9, HIGH); analogWrite(5, 150); analogWrite(6, 150);",
+        "digitalWrite(9, LOW); digitalWrite(11, HIGH);",
+    );
+    std::fs::write(bench.join("car.ino"), sketch).unwrap();
+    let scenario =
+        "title = \"On the floor\"\nrobot = \"car.toml\"\nworld = \"open\"\nduration_s = 3\n";
+    std::fs::write(bench.join("floor.toml"), scenario).unwrap();
+    let driven = |wheels: &str| {
+        let _ = std::fs::remove_file(bench.join("car.toml"));
+        let made = rumbo(
+            &bench,
+            &[
+                "new",
+                "robot",
+                "car",
+                "--board",
+                "uno",
+                "--driver",
+                "l298n",
+                "--wheels",
+                wheels,
+                "--pins",
+                "left_enable=5,left_forward=7,left_backward=8,right_enable=6,right_forward=9,right_backward=11",
+            ],
+        );
+        assert!(made.status.success(), "{}", stderr(&made));
+        let run = drive(&bench, &[]);
+        assert!(run.status.success(), "{}", stderr(&run));
+        let x_m = column(&bench, "x_m").into_iter().fold(0.0, f64::max);
+        let headings = column(&bench, "heading_rad");
+        let pairs = headings.windows(2);
+        let turned = pairs.map(|pair| {
+            let turned = pair[1] - pair[0];
+            turned - (turned / std::f64::consts::TAU).round() * std::f64::consts::TAU
+        });
+        (x_m, turned.sum::<f64>().abs())
+    };
+    let (two_m, two_turn) = driven("2");
+    let (four_m, four_turn) = driven("4");
+    assert!((four_m / two_m - 1.0).abs() < 0.15, "{two_m} {four_m}");
+    assert!(
+        four_turn > 0.5 && four_turn < 0.7 * two_turn,
+        "{two_turn} {four_turn}"
+    );
+}
