@@ -126,7 +126,10 @@ impl Board {
                 self.shown.clear();
                 self.printed.clear();
                 self.consoles.clear();
-                self.displays.set(BTreeMap::new());
+                // Of a robot without displays there is no news.
+                if !self.displays.value().is_empty() {
+                    self.displays.set(BTreeMap::new());
+                }
                 self.bytes.clear();
                 false
             }
@@ -300,6 +303,10 @@ mod tests {
         let last = 2 * CONSOLES_KEPT - 1;
         assert_eq!(shown[0].text, "Ready\n");
         assert_eq!(shown[1].text, format!("eye=1\nscreen={last}\n"));
+        assert!(board.news(&mut cursor).consoles.is_empty());
+        board.take(&Event::Run, 0.0);
+        assert_eq!(board.news(&mut cursor).consoles[0].text, "");
+        board.take(&Event::Run, 0.0);
         assert!(board.news(&mut cursor).consoles.is_empty());
     }
 

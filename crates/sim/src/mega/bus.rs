@@ -8,6 +8,8 @@ use rumbo_plant::noise::Noise;
 
 /// How often it is looked whether a display has changed [us].
 const LOOK_US: u64 = 200_000;
+/// How often inertial sensors measure [us].
+const MEASURING_US: u64 = 1_000;
 /// How long INT is active where it is a pulse (register map, INT_PIN_CFG).
 const PULSE_CYCLES: u64 = 50 * CYCLES_PER_US;
 
@@ -47,8 +49,11 @@ impl Mega {
         }
     }
 
-    /// The robot moves so: its inertial sensors measure it.
+    /// The robot moves so: its inertial sensors measure it, in whole milliseconds.
     pub(crate) fn feel(&mut self, motion: Motion, now_us: u64, noise: &Noise) {
+        if !now_us.is_multiple_of(MEASURING_US) {
+            return;
+        }
         let mut fresh = Vec::new();
         for (device, imu) in self.bus.imus() {
             let DeviceKind::Mpu6050 { at_m, .. } = device.kind else {
