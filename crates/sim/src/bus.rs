@@ -33,10 +33,12 @@ pub struct BusDevice {
 /// What a device is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DeviceKind {
-    /// An MPU-6050: accelerometer and gyroscope, x forward, y left, z up.
+    /// An MPU-6050: accelerometer and gyroscope.
     Mpu6050 {
         /// Where it is on the robot, ahead of the wheels' axis and to the left \[m\].
         at_m: [f64; 2],
+        /// Where its x, y and z point: 1 forward, 2 left, 3 up; negative the opposite.
+        axes: [i8; 3],
         /// The board's pin of its INT output.
         interrupt: Option<u8>,
     },
@@ -59,6 +61,7 @@ impl DeviceKind {
     pub const ALL: [Self; 3] = [
         Self::Mpu6050 {
             at_m: [0.0; 2],
+            axes: [1, 2, 3],
             interrupt: None,
         },
         Self::Ssd1306 { rows: 64 },
@@ -76,6 +79,19 @@ impl DeviceKind {
             Self::Ssd1306 { .. } => "ssd1306",
             Self::Hd44780 { .. } => "hd44780",
         }
+    }
+
+    /// The directions that its axes can point to, by their numbers.
+    #[must_use]
+    pub fn directions() -> [(&'static str, i8); 6] {
+        [
+            ("forward", 1),
+            ("backward", -1),
+            ("left", 2),
+            ("right", -2),
+            ("up", 3),
+            ("down", -3),
+        ]
     }
 
     /// The addresses that its jumpers can give it.
@@ -130,7 +146,9 @@ impl Bus {
     pub(crate) fn new(devices: &[BusDevice], shield: Option<u8>) -> Self {
         let made = |(number, device): (usize, &BusDevice)| {
             let made = match device.kind {
-                DeviceKind::Mpu6050 { .. } => Device::Mpu6050(Mpu6050::new(number as u32)),
+                DeviceKind::Mpu6050 { axes, .. } => {
+                    Device::Mpu6050(Mpu6050::new(number as u32, axes))
+                }
                 DeviceKind::Ssd1306 { rows } => Device::Pixels(Pixels::new(rows)),
                 DeviceKind::Hd44780 { columns, rows } => Device::Text(Text::new(columns, rows)),
             };

@@ -6,7 +6,8 @@
 //! parts.speed = { potentiometer = "A0" }
 //! parts.lamp = { led = 13 }               # or buzzer
 //! parts.remote = { infrared = 11 }        # a remote control with arrows; with keys = 21 that of a car radio
-//! parts.imu = { mpu6050 = 0x68 }          # with x_m and y_m where it is, interrupt = 2 for its INT
+//! parts.imu = { mpu6050 = 0x68 }          # with x_m and y_m where it is, interrupt = 2 for its INT, and where
+//!                                         # its x, y and z point where not so: axes = "forward left up"
 //! parts.screen = { ssd1306 = 0x3c }       # with size = "128x32"
 //! parts.text = { hd44780 = 0x27 }         # with size = "20x4"
 //! ```
@@ -127,7 +128,13 @@ fn read_device(own: &Table<'_, '_>, name: &str, kind: DeviceKind, wiring: &mut W
             }
         }
     }
-    if let DeviceKind::Mpu6050 { at_m, interrupt } = &mut kind {
+    if let DeviceKind::Mpu6050 {
+        at_m,
+        axes,
+        interrupt,
+    } = &mut kind
+    {
+        *axes = read_axes(own).unwrap_or(*axes);
         *at_m = ["x_m", "y_m"].map(|key| own.number(key, MOUNT).unwrap_or(0.0));
         *interrupt = own
             .has("interrupt")
@@ -157,6 +164,37 @@ fn read_device(own: &Table<'_, '_>, name: &str, kind: DeviceKind, wiring: &mut W
             address,
         });
     }
+}
+
+/// Where the axes of a sensor point.
+fn read_axes(own: &Table<'_, '_>) -> Option<[i8; 3]> {
+    let text = own.text("axes")?;
+    let directions = DeviceKind::directions();
+    let words = text.value.split_whitespace();
+    let axes = words.map(|word| {
+        let found = directions.iter().find(|(name, _)| *name == word);
+        found.map(|(_, axis)| *axis)
+    });
+    let axes: Option<Vec<i8>> = axes.collect();
+    let axes = axes.and_then(|axes| <[i8; 3]>::try_from(axes).ok());
+    // Forward, left, up, and what is turned about one of them: an even order, as many opposites as that.
+    let right_handed = |axes: &[i8; 3]| {
+        let order = axes.map(i8::unsigned_abs);
+        let even = [[1, 2, 3], [2, 3, 1], [3, 1, 2]].contains(&order);
+        let odd = [[1, 3, 2], [2, 1, 3], [3, 2, 1]].contains(&order);
+        let opposites = axes.iter().filter(|axis| **axis < 0).count();
+        even && opposites.is_multiple_of(2) || odd && !opposites.is_multiple_of(2)
+    };
+    let axes = axes.filter(right_handed);
+    if axes.is_none() {
+        let names: Vec<&str> = directions.iter().map(|(name, _)| *name).collect();
+        let remedy = format!(
+            "must be where x, y and z of the chip point, right-handed, of {}, e.g. \"up left backward\"",
+            names.join(", ")
+        );
+        own.complain("axes", text.line, &format!("{:?}", text.value), &remedy);
+    }
+    axes
 }
 
 /// The address of a device, one that it can have and no other one has.

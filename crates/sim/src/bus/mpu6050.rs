@@ -93,6 +93,8 @@ pub(crate) enum Interrupt {
 #[derive(Clone, Debug)]
 pub(crate) struct Mpu6050 {
     source: u32,
+    /// Where x, y and z point: 1 forward, 2 left, 3 up; negative the opposite.
+    axes: [i8; 3],
     registers: [u8; 128],
     pointer: u8,
     /// The next byte written is the number of a register.
@@ -115,8 +117,9 @@ fn after_reset() -> [u8; 128] {
 
 impl Mpu6050 {
     /// The sensor of this number, asleep as after power-on.
-    pub(super) fn new(number: u32) -> Self {
+    pub(super) fn new(number: u32, axes: [i8; 3]) -> Self {
         Self {
+            axes,
             source: SOURCE + SOURCES * number,
             registers: after_reset(),
             pointer: 0,
@@ -196,7 +199,7 @@ impl Mpu6050 {
         let ahead = (motion.forward_m_s - before.forward_m_s) / dt_s;
         let turning = (turn - before.yaw_rad_s) / dt_s;
         let [x_m, y_m] = at_m;
-        let truth = [
+        let felt = [
             ahead - turning * y_m - turn * turn * x_m,
             motion.forward_m_s * turn + turning * x_m - turn * turn * y_m,
             GRAVITY,
@@ -204,6 +207,13 @@ impl Mpu6050 {
             0.0,
             turn,
         ];
+        let axes = [0, 3].map(|from| {
+            self.axes.map(|axis| {
+                let part: f64 = felt[from + usize::from(axis.unsigned_abs() - 1) % 3];
+                f64::from(axis.signum()) * part
+            })
+        });
+        let truth = axes.concat();
         let filter = BANDWIDTH[usize::from(self.register(CONFIG) & 7)];
         for (axis, truth) in truth.into_iter().enumerate() {
             let source = self.source + axis as u32;
@@ -291,10 +301,17 @@ impl Mpu6050 {
     /// What it measures, in the axes of the robot: forward, left and up \[m/s2\], the turn rate \[rad/s\]. Not a number while it
     /// sleeps.
     pub(crate) fn shown(&self) -> [f64; 4] {
-        match self.wakes() {
-            true => [0, 1, 2, 5].map(|axis| self.filtered[axis]),
-            false => [f64::NAN; 4],
+        if !self.wakes() {
+            return [f64::NAN; 4];
         }
+        let mut shown = [0.0; 6];
+        for (index, axis) in self.axes.iter().enumerate() {
+            for from in [0, 3] {
+                let part = f64::from(axis.signum()) * self.filtered[from + index];
+                shown[from + usize::from(axis.unsigned_abs() - 1) % 3] = part;
+            }
+        }
+        [0, 1, 2, 5].map(|part| shown[part])
     }
 
     /// What a program asked for that is not modelled.
@@ -343,7 +360,7 @@ mod tests {
 
     #[test]
     fn it_sleeps_until_it_is_woken_and_says_who_it_is() {
-        let mut imu = Mpu6050::new(0);
+        let mut imu = Mpu6050::new(0, [1, 2, 3]);
         assert_eq!(means(&mut imu, 1, |_| Motion::default()), [0.0; 7]);
         imu.address();
         imu.write(WHO_AM_I);
@@ -363,7 +380,7 @@ mod tests {
             yaw_rad_s,
         };
         for (bits, range) in [(0, 1.0), (0x08, 2.0), (0x10, 4.0), (0x18, 8.0)] {
-            let mut imu = Mpu6050::new(0);
+            let mut imu = Mpu6050::new(0, [1, 2, 3]);
             set(&mut imu, PWR_MGMT_1, 1);
             set(&mut imu, ACCEL_CONFIG, bits);
             set(&mut imu, GYRO_CONFIG, bits);
@@ -381,10 +398,27 @@ mod tests {
     }
 
     #[test]
+    fn a_sensor_that_is_mounted_upright_feels_gravity_and_turns_about_its_x() {
+        let curve = |_| Motion {
+            forward_m_s: 0.5,
+            yaw_rad_s: 1.0,
+        };
+        let mut imu = Mpu6050::new(0, [3, 2, -1]);
+        set(&mut imu, PWR_MGMT_1, 0);
+        let rest = means(&mut imu, 3, |_| Motion::default());
+        let turning = means(&mut imu, 3, curve);
+        assert!((rest[0] - 16_384.0).abs() < 2_000.0, "{rest:?}");
+        assert!(rest[2].abs() < 2_000.0, "{rest:?}");
+        assert!((RATE * (turning[4] - rest[4]) - 1.0).abs() < 0.04);
+        let [_, left, up, yaw] = imu.shown();
+        assert!((left - 0.5).abs() < 0.8 && (up - GRAVITY).abs() < 1.0 && (yaw - 1.0).abs() < 0.4);
+    }
+
+    #[test]
     fn its_errors_are_those_of_its_data_sheet_and_others_for_every_seed() {
         let mut offsets = Vec::new();
         for seed in 0..300 {
-            let mut imu = Mpu6050::new(0);
+            let mut imu = Mpu6050::new(0, [1, 2, 3]);
             set(&mut imu, PWR_MGMT_1, 0);
             let noise = Noise::new(seed, 0);
             (1..=300).for_each(|ms| imu.measure(Motion::default(), [0.0; 2], ms * 1_000, &noise));
@@ -398,7 +432,7 @@ mod tests {
     #[test]
     fn the_filter_takes_noise_away_as_the_data_sheet_says() {
         // 0.05 deg/s rms in 100 Hz.
-        let mut imu = Mpu6050::new(0);
+        let mut imu = Mpu6050::new(0, [1, 2, 3]);
         set(&mut imu, PWR_MGMT_1, 0);
         set(&mut imu, CONFIG, 2);
         let noise = Noise::new(5, 0);
@@ -416,7 +450,7 @@ mod tests {
 
     #[test]
     fn values_come_at_the_divided_rate_and_each_with_a_pulse_or_until_it_is_read() {
-        let mut imu = Mpu6050::new(0);
+        let mut imu = Mpu6050::new(0, [1, 2, 3]);
         for (register, value) in [
             (PWR_MGMT_1, 0),
             (CONFIG, 3),

@@ -243,6 +243,10 @@ fn an_address_that_is_taken_or_is_none_and_a_bus_on_taken_pins_are_named() {
             "size = 40x4: did you mean `16x2` or `20x4`?",
         ),
         (
+            "parts.imu = { mpu6050 = 0x68, axes = \"up left forward\" }",
+            "axes = \"up left forward\": must be where x, y and z of the chip point, right-handed",
+        ),
+        (
             "servo = \"A4\"\nparts.imu = { mpu6050 = 0x68 }",
             "servo on its pin A4 (SDA): put servo on another pin",
         ),
