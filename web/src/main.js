@@ -29,7 +29,7 @@ import { ParameterTable } from './parameters.js';
 import { PlotDialog } from './plot_dialog.js';
 import { Plots } from './plots.js';
 import { ProfilePanel } from './profile.js';
-import { PartsPanel } from './parts.js';
+import { PARTS, PartsPanel } from './parts.js';
 import { ProgramPanel, isOwn } from './program.js';
 import { Recordings } from './recordings.js';
 import { ReplayBar } from './replay.js';
@@ -325,9 +325,13 @@ function receive(message) {
       events.add(message.events);
       break;
     case 'consoles':
-      if (message.run !== consoleRun) consoles.clear();
+      if (message.run !== consoleRun) {
+        consoles.clear();
+        parts.clear();
+      }
       consoleRun = message.run;
-      consoles.add(message.said);
+      consoles.add(message.said.filter(({ usart }) => usart !== PARTS));
+      for (const { text } of message.said.filter(({ usart }) => usart === PARTS)) parts.tell(text);
       break;
     case 'bytes':
       meter.add(message.bytes);

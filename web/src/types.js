@@ -121,7 +121,7 @@
  *
  * @typedef {{ticket: number, model: import('./world_shapes.js').World | null, toml: string, problem: string | null, driven: boolean}} EditedWorld A world to edit: what its file holds, its text, what is wrong with it.
  *
- * @typedef {{name: string, kind: 'button' | 'switch' | 'potentiometer' | 'led' | 'buzzer', percent: number}} Part Something at a pin of an emulated robot.
+ * @typedef {{name: string, kind: 'button' | 'switch' | 'potentiometer' | 'led' | 'buzzer' | 'infrared' | 'mpu6050' | 'ssd1306' | 'hd44780', percent: number, address?: number, keys?: string[]}} Part Something at a pin of an emulated robot, or at an address of its two-wire bus.
  * @typedef {{usart: number, text: string}} ConsoleText Output of a USART of an emulated chip.
  *
  * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[], robots?: string[], robot: number}

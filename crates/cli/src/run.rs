@@ -236,7 +236,11 @@ fn report(setup: &Setup, results: &[RunResult]) -> Result<(), Failure> {
             output::line(&format!("  FAILED, seed {}: {failure}", result.seed))?;
         }
         for note in &result.notes {
-            output::line(&format!("  note, seed {}: {note}", result.seed))?;
+            // What a display shows has lines of its own.
+            let mut lines = note.lines();
+            let first = lines.next().unwrap_or_default();
+            output::line(&format!("  note, seed {}: {first}", result.seed))?;
+            lines.try_for_each(|line| output::line(&format!("    {line}")))?;
         }
     }
     Ok(())

@@ -4,7 +4,7 @@ pub(crate) mod describe;
 
 use crate::client::{LinkEvent, RobotClient};
 use crate::commands::{Fate, Outcome};
-use crate::console::{ConsoleText, LINK_CONSOLE, readable};
+use crate::console::{ConsoleText, LINK_CONSOLE, PARTS_CONSOLE, readable};
 use crate::event::Event;
 use crate::origin::Origin;
 use crate::printed::Printed;
@@ -248,7 +248,7 @@ impl Observer {
 
     /// Records what crossed a USART of an emulated chip, and the numbers that its program printed.
     pub(crate) fn said(&mut self, said: Said) {
-        if !said.to_chip {
+        if !said.to_chip && said.usart != PARTS_CONSOLE {
             self.read_numbers(said.usart, &said.bytes, (said.t_us / 1_000) as i64);
         }
         self.emit(Entry::Said(said));

@@ -36,6 +36,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/curves.js": SCRIPT,
     "src/decimal.js": SCRIPT,
     "src/dialog.js": SCRIPT,
+    "src/displays.js": SCRIPT,
     "src/dom.js": SCRIPT,
     "src/enlarge.js": SCRIPT,
     "src/events.js": SCRIPT,

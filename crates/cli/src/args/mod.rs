@@ -143,14 +143,20 @@ pub(crate) struct NewArgs {
     /// Board: mega, uno or nano; a sketch's is a mega where it is left out
     #[arg(long, value_name = "BOARD", value_parser = values::board)]
     pub(crate) board: Option<&'static Board>,
-    /// Driver of the robot's motors: l298n, l298n-jumpers, l293d, tb6612, drv8833 or dir-pwm
+    /// Driver of the robot's motors: l298n, l298n-jumpers, l293d, motor-shield, tb6612, motor-shield-v2, drv8833 or dir-pwm
     #[arg(long, value_name = "DRIVER", value_parser = values::driver_named)]
     pub(crate) driver: Option<(&'static Driver, bool)>,
-    /// Pins of the robot's parts, e.g. left_forward=7,servo=9,front_echo=A1
+    /// Pins of the robot's signals, e.g. left_forward=7,servo=9,front_echo=A1
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,
+    /// Wheels, 2 or 4; the two of a side are driven alike
+    #[arg(long, value_name = "COUNT", default_value_t = 2, value_parser = values::wheels)]
+    pub(crate) wheels: u8,
+    /// Parts of the robot at a pin or an address, e.g. start=button:8,remote=infrared:2,screen=ssd1306:0x3c
+    #[arg(long, value_name = "NAME=KIND:PLACE", value_delimiter = ',', value_parser = values::part)]
+    pub(crate) parts: Vec<[String; 3]>,
     /// Begin with the file of this robot (`rumbo list robots`)
-    #[arg(long, value_name = "ROBOT", conflicts_with_all = ["board", "driver", "pins"])]
+    #[arg(long, value_name = "ROBOT", conflicts_with_all = ["board", "driver", "pins", "parts", "wheels"])]
     pub(crate) like: Option<String>,
 }
 
