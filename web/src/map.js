@@ -77,6 +77,8 @@ export class WorldMap {
   #followButton = element('follow', HTMLButtonElement);
   /** The robot is also shown where it was then [s]. @type {number | null} */
   #hover_s = null;
+  /** The same run with other seeds. @type {Store[]} */
+  #seeds = [];
   servo_rad = 0;
   /** The place of the route that the robot goes to now, from its origin. @type {Point | null} */
   target = null;
@@ -153,6 +155,12 @@ export class WorldMap {
     this.#redraw();
   }
 
+  /** Shows the robots of other seeds, faint. @param {Store[]} seeds */
+  setSeeds(seeds) {
+    this.#seeds = seeds;
+    this.#redraw();
+  }
+
   /** Shows the robot also where it was then [s]. @param {number | null} t_s */
   hover(t_s) {
     if (t_s === this.#hover_s) return;
@@ -211,7 +219,7 @@ export class WorldMap {
     sketch.drawGrid(view, px);
     if (this.#tool) return this.#tool.draw(sketch, px);
     sketch.drawWorld(px, this.#store.latest?.t_s ?? 0);
-    for (const { other, at } of this.others()) sketch.drawOther(other, at, px);
+    this.others().forEach(({ other, at }, number) => sketch.drawOther(other, at, number, px));
     sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
     sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
     sketch.drawTrail(this.#store.trails.ghost, colours.goal, px);
@@ -220,6 +228,10 @@ export class WorldMap {
     this.#drawTask(px);
     const latest = this.#store.latest;
     const then = this.#hover_s === null ? null : this.#store.poseAt(this.#hover_s);
+    for (const seed of this.#seeds) {
+      const at = seed.poseAt(latest?.t_s ?? 0);
+      if (at) sketch.drawOutline(at, px);
+    }
     if (then) sketch.drawRobot(then, px, 'estimated', false);
     if (!latest) return;
     const estimated = latest.estimated && compose(latest.origin, latest.estimated);

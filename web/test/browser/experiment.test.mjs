@@ -6,7 +6,7 @@ import { readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { violations } from '../axe.mjs';
-import { folder, open, program, rare } from '../dashboard.mjs';
+import { eventually, folder, open, program, rare } from '../dashboard.mjs';
 
 test('the experiment is run, and its verdict has the numbers of rumbo run; the session runs again byte for byte', async () => {
   const out = folder();
@@ -55,6 +55,58 @@ rare('changed parameters are part of the experiment, and STOP ends it without a 
     await page.keyboard.press('Space');
     await page.locator('#experiment-words', { hasText: 'stopped, no verdict' }).waitFor();
     await page.locator('#armed', { hasText: 'off' }).waitFor();
+  } finally {
+    await dashboard.close();
+  }
+});
+
+test('a kept run stays behind the curves and is compared with the next, which is explained; twenty seeds are driven beside it, and one becomes it', async () => {
+  const dashboard = await open(['lab', '--scenario', 'mode1', '--speed', '8', '--out', folder()]);
+  const { page } = dashboard;
+  const passed = () => page.locator('#experiment-words', { hasText: /passed|failed/ }).waitFor();
+  const shot = (/** @type {string} */ name) => process.env['SCREENSHOTS'] && page.screenshot({ path: `${process.env['SCREENSHOTS']}/${name}.png` });
+  try {
+    await page.waitForSelector('#connection.good');
+    await page.locator('#play').click();
+    await passed();
+    await page.locator('#keep-run').click();
+    await page.locator('#runs', { hasText: 'Runs: 1' }).waitFor();
+    // Later and harder than friction can brake.
+    for (const [name, value] of [['front_kp', '15'], ['front_brake_m_s2', '2']]) {
+      const gain = page.locator('#parameters tr', { hasText: name }).locator('input').first();
+      await gain.fill(value ?? '');
+      await gain.press('Enter');
+    }
+    await page.waitForFunction(() => ![...document.querySelectorAll('#parameters tr.pending')].length);
+    await page.getByRole('tab', { name: 'Law' }).click();
+    await page.locator('#play').click();
+    await page.locator('#law .law', { hasText: 'forward_ref_m_s' }).locator('.lit', { hasText: 'front_cruise_m_s' }).waitFor();
+    await passed();
+    await page.locator('#law button', { hasText: 'front_kp' }).first().click();
+    const slider = page.getByRole('slider', { name: 'front_kp' });
+    assert.deepEqual([await slider.getAttribute('min'), await slider.getAttribute('max')], ['3.75', '20']);
+    await shot('overlay');
+    await page.locator('#explain').click();
+    await page.locator('#why', { hasText: /friction slowed the robot by [\d.]+ m\/s²; front_brake_m_s2 counts on 2/ }).waitFor();
+    assert.deepEqual(await violations(page, '#event-section'), []);
+    await shot('explain');
+    await page.locator('#runs').click();
+    const cells = (/** @type {string} */ row) => page.locator('#comparison tr', { hasText: row }).first().locator('td').allInnerTexts();
+    await eventually(async () => assert.deepEqual((await cells('front_kp')).slice(1, 3), ['5', '15']));
+    const [, one, other] = (await cells('step 1: overshoot')).map(Number);
+    assert.ok(Number(other) > Number(one) + 1, 'it goes beyond the setpoint');
+    assert.deepEqual(await violations(page, '#runs-dialog'), []);
+    await shot('runs');
+    await page.locator('#seeds-start').click();
+    await page.locator('#seeds button', { hasText: /^7$/ }).waitFor();
+    assert.equal(await page.locator('#seeds button').count(), 21);
+    await page.locator('#play').click();
+    await page.waitForFunction(() => /** @type {any} */ (window).rumbo.shown()?.t_s > 2);
+    await shot('seeds');
+    await page.locator('#seeds button', { hasText: /^7$/ }).click();
+    await page.waitForFunction(() => /** @type {HTMLInputElement} */ (document.getElementById('seed')).value === '7');
+    await passed();
+    assert.deepEqual(dashboard.complaints, []);
   } finally {
     await dashboard.close();
   }

@@ -1,6 +1,6 @@
-//! Tuning from the dashboard of the lab: the search of `rumbo tune`, for a page, on some of the cores.
+//! Work for the dashboard of the lab, on some of the cores: the search of `rumbo tune`, and the experiment with many seeds.
 
-use super::as_json;
+use super::{as_json, seeds};
 use crate::calibrate::rewritten;
 use rayon::ThreadPoolBuilder;
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup, unknown};
@@ -57,7 +57,7 @@ pub(crate) fn in_dashboard(robot: Option<&str>, scenario: &str) -> Box<dyn Tuner
     })
 }
 
-fn refused(error: impl Display) -> NotTuned {
+pub(super) fn refused(error: impl Display) -> NotTuned {
     NotTuned(error.to_string())
 }
 
@@ -175,6 +175,10 @@ impl Tuner for OfLab {
         progress: &(dyn Fn(f64) + Sync),
         goes_on: &(dyn Fn() -> bool + Sync),
     ) -> Result<Value, NotTuned> {
+        if let Ok(asked) = serde_json::from_str(request) {
+            let names = self.names(&Library::new());
+            return seeds::drive(asked, (&self.robot, &names), threads(), progress, goes_on);
+        }
         let asked = serde_json::from_str(request).map_err(refused)?;
         let plan = self.plan(asked)?;
         let pool = ThreadPoolBuilder::new().num_threads(threads());

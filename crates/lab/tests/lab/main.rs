@@ -8,6 +8,7 @@
 
 mod bench;
 mod calibration;
+mod explain;
 mod fleet;
 mod play;
 mod programs;
