@@ -45,12 +45,12 @@ pub enum Kind {
     Held,
     /// The robot touched something.
     Contact,
+    /// Single readings of a sonar were far off.
+    Outliers,
     /// A fault that the robot reported.
     Fault,
     /// STOP or OFF.
     Stopped,
-    /// Single readings of a sonar were far off.
-    Outliers,
     /// Wheels rolled farther than the robot went.
     Slip,
     /// A wheel stood although it was driven.
@@ -59,10 +59,10 @@ pub enum Kind {
     Saturation,
     /// Friction brakes otherwise than the parameters say.
     Braking,
-    /// The integral stands in for a wrong feedforward.
-    Feedforward,
     /// The pose that the robot believes in drifted away.
     Drift,
+    /// The integral stands in for a wrong feedforward.
+    Feedforward,
 }
 
 /// What is known of a stretch.

@@ -57,7 +57,7 @@ pub(crate) fn in_dashboard(robot: Option<&str>, scenario: &str) -> Box<dyn Tuner
     })
 }
 
-pub(super) fn refused(error: impl Display) -> NotTuned {
+fn refused(error: impl Display) -> NotTuned {
     NotTuned(error.to_string())
 }
 

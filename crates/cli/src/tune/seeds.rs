@@ -1,6 +1,5 @@
 //! A scenario's experiment with many seeds, for a page that draws those robots beside its own.
 
-use super::dashboard::refused;
 use crate::failure::Failure;
 use crate::run_log::Source;
 use rumbo_experiment::files::{Kind, Library, Overrides, unknown};
@@ -11,6 +10,7 @@ use rumbo_station::NotTuned;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::io::Cursor;
 
 /// Most seeds of a request.
@@ -109,4 +109,8 @@ pub(super) fn drive(
         Err(Failure::Input(why)) => Err(NotTuned(why)),
         Err(_) => Err(refused("ended before all seeds were driven")),
     }
+}
+
+fn refused(error: impl Display) -> NotTuned {
+    NotTuned(error.to_string())
 }

@@ -8,30 +8,30 @@ const BRAKES: Option<&str> = Some("2-front-distance");
 const ODOMETRY: Option<&str> = Some("4-odometry");
 /// PWM at its limit, of 255.
 const LIMIT: f64 = 250.0;
-/// It says something when it lasts so long: each start reaches it for a moment \[s\].
+/// It says something when it lasts so long: each start reaches it for a moment [s].
 const SATURATED_S: f64 = 0.4;
 /// Share of the wanted speed that counts as reached.
 const REACHED: f64 = 0.9;
-/// A wheel stands below this, and is driven above this PWM and reference \[rad/s\].
+/// A wheel stands below this [rad/s], and is driven above this PWM.
 const STANDS_RAD_S: f64 = 0.1;
 const DRIVEN: f64 = 8.0;
-const WANTED_RAD_S: f64 = 0.4;
-const STOOD_S: f64 = 0.25;
+const STOOD_S: f64 = 0.2;
 /// No friction stands against this PWM: something holds the wheel.
 const HELD: f64 = 150.0;
-/// Window of the slip \[s\], least way in it \[m\], and the share of the way that is lost.
+/// Window of the slip [s], least way in it [m], and the share of the way that is lost.
 const SLIP_S: f64 = 0.5;
 const ROLLED_M: f64 = 0.05;
 const SLIPPED: f64 = 0.12;
-/// Rolling out with released wheels: least time \[s\], and how much less than planned it slows.
-const ROLLS_S: f64 = 0.12;
+/// Rolling out with released wheels: least time [s], and how much less than planned it slows.
+const ROLLS_S: f64 = 0.1;
 const LESS: f64 = 0.85;
-/// What the integral adds to the PWM, in counts and as a share, for so long \[s\].
-const ADDED: f64 = 12.0;
-const ADDED_SHARE: f64 = 0.15;
+/// What the integral adds to the PWM, in counts and as a share, for so long [s].
+const ADDED: f64 = 15.0;
+const ADDED_SHARE: f64 = 0.2;
 const ADDED_S: f64 = 0.5;
-/// The believed pose drifts by this much \[m\].
+/// The believed pose drifts by this much [m], and share of the way.
 const DRIFTED_M: f64 = 0.05;
+const DRIFTED_SHARE: f64 = 0.04;
 
 const RPM: f64 = 30.0 / PI;
 
@@ -54,7 +54,7 @@ impl Seen<'_> {
         wheels.chain(all.into_iter().flatten()).collect()
     }
 
-    /// The true speed of both wheels over the floor \[m/s\]; 0 where it is not known.
+    /// The true speed of both wheels over the floor [m/s]; 0 where it is not known.
     pub(super) fn speed_m_s(&self) -> Vec<f64> {
         let radius_m = |side| self.parameter(&format!("radius_{side}_m")).unwrap_or(0.0);
         let [left, right] =
@@ -95,13 +95,8 @@ impl Seen<'_> {
     fn stood(&self, side: &str) -> Option<Cause> {
         let times_s = self.times_s();
         let pwm = self.signal(&format!("{side}_pwm"));
-        let wanted = self.signal(&format!("{side}_ref_rad_s"));
         let speed = self.wheel_rad_s(side);
-        let stands = |at: usize| {
-            pwm[at].abs() > DRIVEN
-                && wanted[at].abs() > WANTED_RAD_S
-                && speed[at].abs() < STANDS_RAD_S
-        };
+        let stands = |at: usize| pwm[at].abs() > DRIVEN && speed[at].abs() < STANDS_RAD_S;
         let span = longest(&times_s, stands, STOOD_S)?;
         let most = pwm[span.0..=span.1]
             .iter()
@@ -166,7 +161,7 @@ impl Seen<'_> {
             from_s: times_s[from],
             to_s: times_s[to],
             text: format!(
-                "the {side} wheel needs {more} than its feedforward believes: the integral adds {} to a PWM of {}; friction, battery, kv or static_{side} are other",
+                "the {side} wheel needs {more} than its feedforward believes: the integral adds {} to a PWM of {}; friction, battery, kv or ks_{side} are other",
                 digits(integral[to], 0),
                 digits(forward[to], 0)
             ),
@@ -265,7 +260,11 @@ impl Seen<'_> {
             .collect();
         let from = offs.iter().position(|value| value.is_finite())?;
         let to = offs.iter().rposition(|value| value.is_finite())?;
-        if offs[to] - offs[from] < DRIFTED_M {
+        let (times_s, speed) = (self.times_s(), self.speed_m_s());
+        let rolled_m: f64 = (from..to)
+            .map(|at| speed[at].abs() * (times_s[at + 1] - times_s[at]))
+            .sum();
+        if offs[to] - offs[from] < DRIFTED_M.max(DRIFTED_SHARE * rolled_m) {
             return None;
         }
         let text = format!(

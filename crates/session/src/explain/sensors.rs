@@ -8,17 +8,17 @@ const LESSON: Option<&str> = Some("5-lying-sensor");
 const OFF_M: f64 = 0.08;
 const OFF_SHARE: f64 = 0.12;
 const LAG_S: f64 = 0.25;
-/// What a sonar can hear for sure \[m\].
+/// What a sonar can hear for sure [m].
 const HEARD_M: f64 = 2.0;
-/// A sonar fails when it does so for this long \[s\].
+/// A sonar fails when it does so for this long [s].
 const FAILS_S: f64 = 0.35;
-/// Repeated, while the truth has gone on so far \[m\].
+/// Repeated, while the truth has gone on so far [m].
 const REPEATED_M: f64 = 0.03;
-/// Of wheels: a lag of the estimate is no fault \[rad/s\], share, \[s\].
+/// Of wheels: a lag of the estimate is no fault [rad/s], share, [s].
 const WHEEL_RAD_S: f64 = 3.0;
 const WHEEL_SHARE: f64 = 0.3;
-const WHEEL_S: f64 = 0.15;
-/// A servo that turns no more than this between frames stands \[rad\].
+const WHEEL_S: f64 = 0.08;
+/// A servo that turns no more than this between frames stands [rad].
 const STANDS_RAD: f64 = 0.02;
 
 impl Seen<'_> {
@@ -123,7 +123,7 @@ impl Seen<'_> {
                 Kind::Outliers,
                 (outliers[0], outliers[outliers.len() - 1]),
                 format!(
-                    "the {side} sonar was far off {} times, most at {} s: {} cm instead of {} cm",
+                    "readings of the {side} sonar that were far off: {}, the worst at {} s: {} cm instead of {} cm",
                     outliers.len(),
                     digits(times_s[worst], 2),
                     cm(said[worst]),
