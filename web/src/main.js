@@ -107,6 +107,14 @@ function send(order) {
   complain(isSite ? 'not sent: the lab of this page is not there' : order.type === 'stop' ? 'STOP was not sent: there is no connection to the station' : 'not sent: there is no connection to the station');
 }
 
+/** In place of a USART: a hand. */
+const HAND = 6;
+
+/** Puts the simulated robot down elsewhere. @param {import('./types.js').Pose} at */
+function lift({ x_m, y_m, heading_rad }) {
+  send({ type: 'type', usart: HAND, text: `robot=${[x_m, y_m, heading_rad].map((each) => each.toFixed(4)).join(' ')}`, ending: 'none' });
+}
+
 /** @param {string} text */
 function complain(text) {
   events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text }]);
@@ -329,6 +337,7 @@ function receive(message) {
       // Check and calibration use commands that such a robot does not have.
       document.body.classList.toggle('foreign', state.robot.foreign || Boolean(state.robot.text));
       map.servo_rad = state.robot.servo_rad;
+      map.lift = simulated && !state.replay && state.experiment?.phase !== 'running' && !document.body.classList.contains('viewer') ? lift : null;
       break;
     case 'parameters':
       parameters.show(message.parameters);

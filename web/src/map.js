@@ -47,6 +47,8 @@ const KEY_PAN_PX = 40;
 const CLICK_PX = 4;
 /** A tool holds what is so near [px]; a finger is thicker. */
 const REACH_PX = { mouse: 8, touch: 18 };
+/** Minimum time between two places of a robot that is carried [ms]. */
+const LIFT_MS = 100;
 /** The goal in the robot's frame is drawn separately from this distance on [px]. */
 const APART_PX = 3;
 
@@ -79,6 +81,10 @@ export class WorldMap {
   #hover_s = null;
   /** The same run with other seeds. @type {Store[]} */
   #seeds = [];
+  /** Puts the robot down elsewhere; null: it cannot be lifted. @type {((at: Pose) => void) | null} */
+  lift = null;
+  /** Where it is held, and how from its middle it was taken. @type {{at: Pose, by: Point, sent_ms: number} | null} */
+  #lifted = null;
   servo_rad = 0;
   /** The place of the route that the robot goes to now, from its origin. @type {Point | null} */
   target = null;
@@ -241,6 +247,7 @@ export class WorldMap {
     if (estimated) sketch.drawRobot(estimated, px, latest.truth ? 'estimated' : 'real', false);
     if (latest.truth) sketch.drawRobot(latest.truth, px, 'real', latest.contact);
     if (estimated && latest.spread) sketch.drawSpread(estimated, latest.origin, latest.spread, px);
+    if (this.#lifted) sketch.drawRobot(this.#lifted.at, px, 'ghost', false);
     if (this.#pick && canvas.matches(':focus-visible')) sketch.drawAim();
   }
 
@@ -436,6 +443,28 @@ export class WorldMap {
     return [this.#canvas.clientWidth / 2, this.#canvas.clientHeight / 2];
   }
 
+  /** A press on the robot holds it. @param {Point} at */
+  #take([x_m, y_m]) {
+    const truth = this.#store.latest?.truth;
+    if (!this.lift || this.#tool || !truth || this.#store.playhead_s !== Infinity) return;
+    const by = place(inverse(truth), [x_m, y_m]);
+    const reach_m = Math.max(...(this.#sketch.scene?.footprint_m ?? []).map(([x, y]) => Math.hypot(x, y)), 0);
+    if (Math.hypot(...by) < reach_m) this.#lifted = { at: truth, by, sent_ms: -Infinity };
+  }
+
+  /** It follows the hand, or turns to it. @param {Point} at @param {boolean} turns */
+  #carry([x_m, y_m], turns) {
+    const held = this.#lifted;
+    if (!held) return;
+    const { at, by } = held;
+    const { cos, sin } = { cos: Math.cos(at.heading_rad), sin: Math.sin(at.heading_rad) };
+    held.at = turns ? { ...at, heading_rad: Math.atan2(y_m - at.y_m, x_m - at.x_m) } : { ...at, x_m: x_m - cos * by[0] + sin * by[1], y_m: y_m - sin * by[0] - cos * by[1] };
+    this.#redraw();
+    if (performance.now() - held.sent_ms < LIFT_MS) return;
+    held.sent_ms = performance.now();
+    this.lift?.(held.at);
+  }
+
   #makePickable() {
     const canvas = this.#canvas;
     /** Where the button went down, until it has moved too far for a click [px]. @type {Point | null} */
@@ -443,6 +472,8 @@ export class WorldMap {
     /** The tool holds something. */
     let held = false;
     const release = () => {
+      if (this.#lifted && !pressed) this.lift?.(this.#lifted.at);
+      this.#lifted = null;
       if (held) this.#tool?.release();
       held = false;
       pressed = null;
@@ -451,6 +482,7 @@ export class WorldMap {
       canvas.setPointerCapture(event.pointerId);
       // A second finger zooms.
       if (!event.isPrimary) return release();
+      if (event.button === 0) this.#take(this.#toWorld([event.offsetX, event.offsetY]));
       pressed = event.button === 0 ? [event.offsetX, event.offsetY] : null;
       const reach_px = event.pointerType === 'touch' ? REACH_PX.touch : REACH_PX.mouse;
       held = pressed !== null && (this.#tool?.press(this.#toWorld(pressed), reach_px / (this.#view ?? this.#fitted()).px_per_m) ?? false);
@@ -461,6 +493,7 @@ export class WorldMap {
       if (!canvas.hasPointerCapture(event.pointerId) || !event.isPrimary) return;
       if (pressed && Math.hypot(event.offsetX - pressed[0], event.offsetY - pressed[1]) <= CLICK_PX) return;
       pressed = null;
+      if (this.#lifted) return this.#carry(this.#toWorld([event.offsetX, event.offsetY]), event.shiftKey);
       if (held) return this.#tool?.drag(this.#toWorld([event.offsetX, event.offsetY]));
       this.#pan(event.movementX, event.movementY);
     });

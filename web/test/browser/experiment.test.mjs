@@ -111,3 +111,43 @@ test('a kept run stays behind the curves and is compared with the next, which is
     await dashboard.close();
   }
 });
+
+test('the robot is carried on the map, its program does not notice, and the session runs again byte for byte', async () => {
+  const out = folder();
+  const dashboard = await open(['lab', '--scenario', 'mode1', '--out', out]);
+  const { page } = dashboard;
+  const shown = () => page.evaluate(() => {
+    const { truth, estimated } = /** @type {any} */ (window).rumbo.shown();
+    return { x_m: truth.x_m, y_m: truth.y_m, heading_rad: truth.heading_rad, believed_m: estimated.x_m };
+  });
+  try {
+    await page.waitForSelector('#connection.good');
+    await page.waitForFunction(() => /** @type {any} */ (window).rumbo.shown()?.truth);
+    const before = await shown();
+    const box = await page.locator('#map').boundingBox();
+    const at = async (/** @type {number} */ x_m, /** @type {number} */ y_m) => {
+      const [x = 0, y = 0] = await page.evaluate((to) => /** @type {any} */ (window).rumbo.worldOnMap(to), [x_m, y_m]);
+      return /** @type {const} */ ([(box?.x ?? 0) + x, (box?.y ?? 0) + y]);
+    };
+    const [from, to] = [await at(before.x_m, before.y_m), await at(before.x_m + 0.2, before.y_m + 0.1)];
+    await page.mouse.move(...from);
+    await page.mouse.down();
+    await page.mouse.move((from[0] + to[0]) / 2, to[1]);
+    await page.mouse.move(...to);
+    await page.mouse.up();
+    await eventually(async () => {
+      const after = await shown();
+      assert.ok(Math.abs(after.x_m - before.x_m - 0.2) < 0.03 && Math.abs(after.y_m - before.y_m - 0.1) < 0.03, JSON.stringify(after));
+      assert.ok(Math.abs(after.believed_m - before.believed_m) < 0.001, 'its odometry has not moved');
+    });
+    await page.locator('#on').click();
+    await page.locator('#end', { hasText: 'reached' }).waitFor();
+    assert.deepEqual(dashboard.complaints, []);
+    await page.locator('#simulation button[type="submit"]').click();
+    await page.locator('#events li', { hasText: 'reset: mode1' }).waitFor();
+    const carried = readdirSync(out).filter((name) => name.endsWith('.mcap')).sort()[0] ?? '';
+    assert.match(execFileSync(program(), ['rerun', join(out, carried)], { encoding: 'utf8' }), /: equal, \d{3,} bytes/);
+  } finally {
+    await dashboard.close();
+  }
+});

@@ -10,6 +10,7 @@ mod bench;
 mod calibration;
 mod explain;
 mod fleet;
+mod hand;
 mod play;
 mod programs;
 mod supply;
