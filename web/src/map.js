@@ -83,7 +83,7 @@ export class WorldMap {
   #seeds = [];
   /** Puts the robot down elsewhere; null: it cannot be lifted. @type {((at: Pose) => void) | null} */
   lift = null;
-  /** Where it is held, and how from its middle it was taken. @type {{at: Pose, by: Point, sent_ms: number} | null} */
+  /** Where it is held, how from its middle it was taken, and the view before, which stands still meanwhile. @type {{at: Pose, by: Point, sent_ms: number, view: View | null} | null} */
   #lifted = null;
   servo_rad = 0;
   /** The place of the route that the robot goes to now, from its origin. @type {Point | null} */
@@ -449,7 +449,9 @@ export class WorldMap {
     if (!this.lift || this.#tool || !truth || this.#store.playhead_s !== Infinity) return;
     const by = place(inverse(truth), [x_m, y_m]);
     const reach_m = Math.max(...(this.#sketch.scene?.footprint_m ?? []).map(([x, y]) => Math.hypot(x, y)), 0);
-    if (Math.hypot(...by) < reach_m) this.#lifted = { at: truth, by, sent_ms: -Infinity };
+    if (Math.hypot(...by) >= reach_m) return;
+    this.#lifted = { at: truth, by, sent_ms: -Infinity, view: this.#view };
+    this.#view ??= this.#fitted();
   }
 
   /** It follows the hand, or turns to it. @param {Point} at @param {boolean} turns */
@@ -473,6 +475,7 @@ export class WorldMap {
     let held = false;
     const release = () => {
       if (this.#lifted && !pressed) this.lift?.(this.#lifted.at);
+      if (this.#lifted) this.#view = this.#lifted.view;
       this.#lifted = null;
       if (held) this.#tool?.release();
       held = false;

@@ -86,7 +86,7 @@ fn compiler(args: &GradeArgs, assignment: &Assignment) -> Result<Compiler, Sketc
         true => Sandbox::trusting(limits),
         false => Sandbox::walled(&toolchain, limits)?,
     };
-    let cache = crate::sketch::cache();
+    let cache = rumbo_sketch::cache();
     Compiler::new(crate::sketch::target(board), toolchain, sandbox, cache)
 }
 

@@ -30,7 +30,7 @@ mod source;
 mod toolchain;
 
 pub use board::{BOARDS, Board};
-pub use compiler::{Compiler, Image};
+pub use compiler::{Compiler, EXAMPLE, Image, cache, image_of};
 pub use diagnostics::{Diagnostic, Severity};
 pub use error::SketchError;
 pub use examples::{example, examples, starter};
