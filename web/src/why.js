@@ -17,14 +17,21 @@ export class Why {
   #words = create('span', { className: 'hint' });
   #plots;
   #open;
+  #ask;
 
-  /** @param {import('./plots.js').Plots} plots @param {(lesson: string) => void} openLesson @param {() => void} show makes them seen */
-  constructor(plots, openLesson, show) {
+  /**
+   * @param {import('./plots.js').Plots} plots
+   * @param {((from_s: number, to_s: number) => Promise<string>) | null} askLab asks the lab of the site
+   * @param {(lesson: string) => void} openLesson
+   * @param {() => void} show makes them seen
+   */
+  constructor(plots, askLab, openLesson, show) {
     this.#plots = plots;
     this.#open = openLesson;
+    const robot = () => /^#(robot=.*)/.exec(location.hash)?.[1];
+    this.#ask = askLab ?? ((from_s, to_s) => ask(`/explain?from=${from_s}&to=${to_s}${robot() ? `&${robot()}` : ''}`));
     element('why', HTMLDivElement).append(create('div', { className: 'row' }, this.#words), this.#list);
     const button = element('explain', HTMLButtonElement);
-    button.hidden = isSite;
     button.addEventListener('click', () => {
       show();
       this.#explain();
@@ -34,10 +41,9 @@ export class Why {
   async #explain() {
     // What the plots show: all of it, or what was zoomed into.
     const [from_s, to_s] = this.#plots.range_s;
-    const robot = /^#(robot=.*)/.exec(location.hash)?.[1];
     try {
       /** @type {Cause[]} */
-      const causes = JSON.parse(await ask(`/explain?from=${from_s}&to=${to_s}${robot ? `&${robot}` : ''}`));
+      const causes = JSON.parse(await this.#ask(from_s, to_s));
       setText(this.#words, t(causes.length > 0 ? 'from {} to {} s, what explains most first:' : 'from {} to {} s no rule finds anything unusual', format(Math.max(0, from_s), 1), format(to_s, 1)));
       this.#list.replaceChildren(...causes.map((cause) => this.#line(cause)));
     } catch (error) {
@@ -52,6 +58,6 @@ export class Why {
     at.addEventListener('click', () => this.#plots.zoom(from_s - AROUND_S, to_s + AROUND_S));
     const learn = create('button', { type: 'button', className: 'link', textContent: t('lesson {}', lesson?.split('-')[0] ?? '') });
     learn.addEventListener('click', () => this.#open(`${lesson}.md`));
-    return create('li', {}, at, ` ${said(text)} `, ...(lesson === null ? [] : [learn]));
+    return create('li', {}, at, ` ${said(text)} `, ...(lesson === null || isSite ? [] : [learn]));
   }
 }
