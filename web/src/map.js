@@ -9,6 +9,7 @@
  */
 import { element } from './dom.js';
 import { IDENTITY, compose, inverse, nextTo, place } from './geometry.js';
+import { on_s } from './kept.js';
 import { Sketch } from './sketch.js';
 import { colours, onThemeChange } from './theme.js';
 import { watchFingers } from './touch.js';
@@ -234,8 +235,10 @@ export class WorldMap {
     this.#drawTask(px);
     const latest = this.#store.latest;
     const then = this.#hover_s === null ? null : this.#store.poseAt(this.#hover_s);
+    const began_s = on_s(this.#store);
     for (const seed of this.#seeds) {
-      const at = seed.poseAt(latest?.t_s ?? 0);
+      // From ON on, as this one.
+      const at = seed.poseAt((latest?.t_s ?? 0) - (began_s === null ? 0 : began_s - (on_s(seed) ?? 0)));
       if (at) sketch.drawOutline(at, px);
     }
     if (then) sketch.drawRobot(then, px, 'estimated', false);

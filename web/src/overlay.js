@@ -27,11 +27,16 @@ export class Overlay {
     this.#ranges.clear();
   }
 
+  /** When the seeds were switched on, in the time of the run that is shown: as that one was, once it was [s]. @param {Store} store */
+  shift_s(store) {
+    return on_s(store) ?? (this.seeds[0] ? on_s(this.seeds[0]) ?? 0 : 0);
+  }
+
   /** @param {string} name */
   #range(name) {
     const known = this.#ranges.get(name);
     if (known) return known;
-    const made = rangeOf(this.seeds.map((store) => linesOf(store, name)), STEP_S);
+    const made = rangeOf(this.seeds.map((store) => sinceOn(store, name)), STEP_S);
     this.#ranges.set(name, made);
     return made;
   }
@@ -49,9 +54,10 @@ export class Overlay {
     const measured = curves.filter(({ kind }) => kind !== 'reference');
     for (const curve of this.seeds.length > 0 ? measured : []) {
       const { t, low, high } = this.#range(curve.name);
+      const from_s = this.shift_s(store);
       ctx.beginPath();
-      t.forEach((t_s, index) => ctx.lineTo(x(t_s), y(curve, low[index] ?? 0)));
-      for (let index = t.length - 1; index >= 0; index--) ctx.lineTo(x(t[index] ?? 0), y(curve, high[index] ?? 0));
+      t.forEach((t_s, index) => ctx.lineTo(x(from_s + t_s), y(curve, low[index] ?? 0)));
+      for (let index = t.length - 1; index >= 0; index--) ctx.lineTo(x(from_s + (t[index] ?? 0)), y(curve, high[index] ?? 0));
       ctx.fillStyle = colours[curve.colour];
       ctx.globalAlpha = 0.18;
       ctx.fill();
@@ -85,8 +91,9 @@ export class Overlay {
   }
 }
 
-/** @param {Store} store @param {string} name */
-const linesOf = (store, name) => {
+/** A signal from ON on. @param {Store} store @param {string} name */
+const sinceOn = (store, name) => {
   const table = store.tableOf(name);
-  return { t: table.t, y: table.columns.get(name) ?? [] };
+  const from_s = on_s(store) ?? 0;
+  return { t: table.t.map((t_s) => t_s - from_s), y: table.columns.get(name) ?? [] };
 };

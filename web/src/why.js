@@ -30,6 +30,7 @@ export class Why {
     this.#open = openLesson;
     const robot = () => /^#(robot=.*)/.exec(location.hash)?.[1];
     this.#ask = askLab ?? ((from_s, to_s) => ask(`/explain?from=${from_s}&to=${to_s}${robot() ? `&${robot()}` : ''}`));
+    setText(this.#words, t('What explains the time that the plots show: zoom into a piece first'));
     element('why', HTMLDivElement).append(create('div', { className: 'row' }, this.#words), this.#list);
     const button = element('explain', HTMLButtonElement);
     button.addEventListener('click', () => {
