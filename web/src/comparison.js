@@ -43,13 +43,13 @@ export class Comparison {
     this.#signal.replaceChildren(...all.map(({ name, about, unit }) => create('option', { value: name, textContent: `${t(about)} [${t(unit)}]` })));
     const first = [chosen, 'range_front_cm', 'left_rpm'].find((wanted) => all.some(({ name }) => name === wanted));
     if (first) this.#signal.value = first;
-    this.#legend.replaceChildren(...runs.flatMap(({ name }, index) => [create('span', { className: `swatch ${ink(index)}${index >= INKS.length ? ' dashed' : ''}` }), `${index + 1}: ${name}`]));
+    this.#legend.replaceChildren(...runs.map(({ name }, index) => create('span', {}, create('span', { className: `swatch ${ink(index)}${index >= INKS.length ? ' dashed' : ''}` }), ` ${index + 1}: ${name}`)));
     const steps = Math.min(...runs.map(({ store }) => stepsOf(store).length));
     const armed = runs.every(({ store }) => on_s(store) !== null);
     this.#align.replaceChildren(create('option', { value: '', textContent: t('power-on') }), ...(armed ? [create('option', { value: 'on', textContent: 'ON', selected: true })] : []),
       ...Array.from({ length: steps }, (_, index) => create('option', { value: String(index), textContent: t('step {}', index + 1) })));
     this.#tables.replaceChildren(
-      table(t('what differs'), [...differences(runs.map(({ about }) => about)).map(([name, values]) => /** @type {[string, Value[]]} */ ([t(name), values])), ...differences(runs.map(({ parameters }) => parameters))], runs.length),
+      table(t('what differs'), [...differences(runs.map(({ about }) => about)).map(([name, values]) => /** @type {[string, Value[]]} */ ([t(name), values])), ...differences(runs.map(({ parameters }) => parameters)).filter(([, values]) => !values.includes(undefined))], runs.length),
       table(t('step'), figuresOf(runs, steps), runs.length),
       table(t('metric'), [...new Set(runs.flatMap(({ metrics }) => Object.keys(metrics)))].sort().map((name) => [name, runs.map(({ metrics }) => metrics[name])]), runs.length),
     );

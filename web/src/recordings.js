@@ -25,7 +25,7 @@ export class Recordings {
   page = 0;
   /** Titles of scenarios by their names. @type {Map<string, string>} */
   titles = new Map();
-  /** Shows some side by side, with what people call them. @type {(contents: import('./types.js').RecordingContent[], names: string[]) => void} */
+  /** Shows some side by side. @type {(contents: (import('./types.js').RecordingContent & {about: import('./kept.js').About})[]) => void} */
   compare = () => {};
 
   /**
@@ -156,13 +156,15 @@ export class Recordings {
   }
 
   async #compareChosen() {
-    const contents = await Promise.all(this.#chosen.map(async (name) => JSON.parse(await ask(`/recordings/${encodeURIComponent(name)}`))));
-    const names = this.#chosen.map((name) => {
+    const contents = await Promise.all(this.#chosen.map(async (name) => {
+      const content = JSON.parse(await ask(`/recordings/${encodeURIComponent(name)}`));
       const recording = this.#list.find((each) => each.name === name);
-      return recording ? [this.#title(recording), ...(recording.seed === null ? [] : [t('seed {}', recording.seed)]), when(recording)].join(', ') : name;
-    });
+      if (!recording) return { ...content, about: {} };
+      const { scenario, robot, seed } = recording;
+      return { ...content, about: { scenario, robot, seed }, name: [this.#title(recording), ...(seed === null ? [] : [t('seed {}', seed)]), when(recording)].join(', ') };
+    }));
     this.#dialog.dialog.close();
-    this.compare(contents, names);
+    this.compare(contents);
   }
 }
 

@@ -40,6 +40,8 @@ export class Runs {
   #seeds = element('seeds', HTMLDivElement);
   /** @type {Run[]} */
   #kept = [];
+  /** They are recordings: this run is not beside them. */
+  #recorded = false;
   #now;
   #modes;
   #send;
@@ -73,6 +75,7 @@ export class Runs {
     this.#dialog.body.append(create('div', { className: 'row' }, this.#chips, this.#many, this.#part), this.#hint, this.#complaint, this.#comparison.body);
     this.#keep.addEventListener('click', () => {
       const run = now();
+      this.#recorded = false;
       if (run) this.#take([run]);
     });
     this.#open.addEventListener('click', () => this.open());
@@ -85,10 +88,11 @@ export class Runs {
     this.#show();
   }
 
-  /** Compares recordings. @param {Content[]} contents @param {string[]} names what people call them */
-  compare(contents, names) {
+  /** Compares recordings. @param {(Content & {about: import('./kept.js').About})[]} contents with what people call them */
+  compare(contents) {
     this.#kept = [];
-    this.#take(contents.map((content, index) => ({ ...content, name: names[index] ?? content.name, store: storeOf(content, this.#modes()), about: {} })));
+    this.#recorded = true;
+    this.#take(contents.map((content) => ({ ...content, store: storeOf(content, this.#modes()) })));
     this.open();
   }
 
@@ -124,7 +128,7 @@ export class Runs {
     }));
     setText(this.#hint, this.#kept.length === 0 ? t('Keep a run, change something, and run again: the kept one stays behind the curves, from ON on, and is compared here with the new one.') : '');
     // What is not open has no width for a plot.
-    const current = this.#dialog.dialog.open && this.#kept.length > 0 && this.#kept.some(({ about }) => Object.keys(about).length > 0) ? this.#now() : null;
+    const current = this.#dialog.dialog.open && this.#kept.length > 0 && !this.#recorded ? this.#now() : null;
     if (this.#dialog.dialog.open) this.#comparison.show([...this.#kept, ...(current ? [{ ...current, name: t('this run') }] : [])]);
     this.#plots.draw();
   }

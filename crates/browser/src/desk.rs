@@ -164,7 +164,7 @@ impl<T: Target + ?Sized> Desk<T> {
     }
 
     /// What explains a stretch \[s\] of what the page sees.
-    pub(crate) fn explain(&self, shown: Option<&Board>, from_s: f64, to_s: f64) -> Vec<Cause> {
+    pub(crate) fn explain(&mut self, shown: Option<&Board>, from_s: f64, to_s: f64) -> Vec<Cause> {
         let board = shown.unwrap_or(&self.driver.host().board);
         explain_news(&board.news(&mut Cursor::default()), from_s, to_s)
     }

@@ -141,7 +141,7 @@ export const ROBOT = {
   'something held the {} wheel: it stood for {} s with a PWM of up to {}': 'algo sujetó la rueda {}: estuvo parada {} s con una PWM de hasta {}',
   'the {} wheel stood for {} s: a PWM of {} does not overcome its friction': 'la rueda {} estuvo parada {} s: una PWM de {} no vence su rozamiento',
   'the PWM of the {} wheel was at its limit for {} s: the wheel came to {} of {} rpm': 'la PWM de la rueda {} estuvo en su límite {} s: la rueda llegó a {} de {} rpm',
-  'the {} wheel needs {} than its feedforward believes: the integral adds {} to a PWM of {}; friction, battery, kv or ks_{} are other': 'la rueda {} necesita {} de lo que cree su prealimentación: la integral suma {} a una PWM de {}; rozamiento, batería, kv o ks_{} son otros',
+  'the {} wheel needs {} than its feedforward believes: the integral adds {} to a PWM of {}; friction, battery, kv or ks are other': 'la rueda {} necesita {} de lo que cree su prealimentación: la integral suma {} a una PWM de {}; rozamiento, batería, kv o ks son otros',
   'more': 'más', 'less': 'menos',
   'the robot touched something, at {} s first': 'el robot tocó algo, primero a los {} s',
   'the wheels slipped: in {} s they rolled {} cm, and the robot went {} cm': 'las ruedas patinaron: en {} s rodaron {} cm y el robot avanzó {} cm',

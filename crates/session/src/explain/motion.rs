@@ -161,7 +161,7 @@ impl Seen<'_> {
             from_s: times_s[from],
             to_s: times_s[to],
             text: format!(
-                "the {side} wheel needs {more} than its feedforward believes: the integral adds {} to a PWM of {}; friction, battery, kv or ks_{side} are other",
+                "the {side} wheel needs {more} than its feedforward believes: the integral adds {} to a PWM of {}; friction, battery, kv or ks are other",
                 digits(integral[to], 0),
                 digits(forward[to], 0)
             ),
