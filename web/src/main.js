@@ -419,6 +419,8 @@ Object.assign(window, {
     others: () => map.others().map(({ other: { name }, at }) => ({ name, ...at })),
     /** The plots and what is seen of them. */
     plots: () => ({ layout: plots.layout, range_s: plots.range_s, mark_s: plots.mark_s, following: plots.following }),
+    /** The modes, as the control core describes them. */
+    modes: () => plots.modes,
     /** The figures of every step of the setpoint. */
     figures: () => store.steps.map((step) => figures(store, step)),
     /** What is seen of a plot's axes. @param {string} title */

@@ -5,6 +5,8 @@
 
 mod motion;
 mod sensors;
+#[cfg(test)]
+mod tests;
 
 use crate::board::News;
 use rumbo_log::{Level, Log, LoggedEvent, Reading, Row, Source};

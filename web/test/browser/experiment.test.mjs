@@ -6,6 +6,7 @@ import { readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { violations } from '../axe.mjs';
+import { parse, work } from '../../src/law.js';
 import { eventually, folder, open, program, rare } from '../dashboard.mjs';
 
 test('the experiment is run, and its verdict has the numbers of rumbo run; the session runs again byte for byte', async () => {
@@ -60,6 +61,38 @@ rare('changed parameters are part of the experiment, and STOP ends it without a 
   }
 });
 
+/** The equations that the control core has for people give what the robot computed: of the wheels' PWM and mode 1's speed. @param {import('playwright-core').Page} page */
+async function lawsHold(page) {
+  const { laws, parameters, series } = await page.evaluate(() => {
+    const rumbo = /** @type {any} */ (window).rumbo;
+    const rows = [...document.querySelectorAll('#parameters tr')].flatMap((row) => {
+      const [name, value] = [row.querySelector('td')?.textContent, row.querySelector('input')?.value];
+      return name && value ? [[name.trim(), Number(value)]] : [];
+    });
+    const names = ['left_pwm', 'left_p_pwm', 'left_i_pwm', 'left_d_pwm', 'left_feedforward_pwm', 'forward_ref_m_s', 'range_front_cm', 'reference_cm'];
+    return { laws: rumbo.modes().find((/** @type {any} */ { id }) => id === 1).laws, parameters: Object.fromEntries(rows), series: Object.fromEntries(names.map((name) => [name, rumbo.series(name)])) };
+  });
+  /** @param {string} name @param {number} t_s */
+  const at = (name, t_s) => {
+    const own = { range_front_m: 'range_front_cm', reference_m: 'reference_cm' }[name] ?? name;
+    const { t, y } = series[own];
+    return y[t.findLastIndex((/** @type {number} */ each) => each <= t_s)] / (own === name ? 1 : 100);
+  };
+  const lawOf = (/** @type {string} */ gives) => parse(laws.find((/** @type {any} */ [name]) => name === gives)[1]);
+  for (const [gives, near] of /** @type {[string, number][]} */ ([['forward_ref_m_s', 0.01], ['left_pwm', 10]])) {
+    const { t, y } = series[gives];
+    const off = t.flatMap((/** @type {number} */ t_s, /** @type {number} */ index) => {
+      const given = y[index];
+      const value = (/** @type {string} */ name) => (name === 'error_m' ? work(lawOf('error_m'), value) : parameters[name] ?? at(name, t_s));
+      const own = work(lawOf(gives), value);
+      return typeof given === 'number' && given !== 0 && Number.isFinite(own) ? [Math.abs(own - given)] : [];
+    });
+    // Telemetry and loops are of instants up to 40 ms apart: where the PWM jumps they differ.
+    const middle = off.sort((/** @type {number} */ one, /** @type {number} */ other) => one - other)[off.length >> 1];
+    assert.ok(off.length > 50 && middle < near, `${gives}: ${middle}, of ${off.length}`);
+  }
+}
+
 test('a kept run stays behind the curves and is compared with the next, which is explained; twenty seeds are driven beside it, and one becomes it', async () => {
   const dashboard = await open(['lab', '--scenario', 'mode1', '--speed', '8', '--out', folder()]);
   const { page } = dashboard;
@@ -69,6 +102,7 @@ test('a kept run stays behind the curves and is compared with the next, which is
     await page.waitForSelector('#connection.good');
     await page.locator('#play').click();
     await passed();
+    await lawsHold(page);
     await page.locator('#keep-run').click();
     await page.locator('#runs', { hasText: 'Runs: 1' }).waitFor();
     // Later and harder than friction can brake.
