@@ -218,7 +218,7 @@ new Why(plots, isSite ? (from_s, to_s) => (link instanceof WorkerLink ? link.exp
 recordings.compare = runs.compare.bind(runs);
 const calibration = new CalibrationDialog(send);
 new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
-new ReportDialog();
+const report = new ReportDialog();
 const tune = new TuneDialog(send);
 const robotPort = new RobotPort(askLab);
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
@@ -379,7 +379,7 @@ function receive(message) {
       break;
     case 'control':
       seat.show(message);
-      recordings.page = runs.page = message.page;
+      recordings.page = runs.page = report.page = message.page;
       tune.setControl(message);
       break;
     case 'error':
