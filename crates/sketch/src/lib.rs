@@ -26,6 +26,7 @@ mod options;
 mod preprocess;
 mod product;
 pub mod sandbox;
+pub mod similar;
 mod source;
 mod toolchain;
 
