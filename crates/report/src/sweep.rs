@@ -215,7 +215,9 @@ impl Page<'_> {
             let shown = self.shown(language, key);
             Some(format!(
                 "{}{}: {}, {} ({}/{})",
-                key.strip_suffix(metrics::bare(key)).unwrap_or_default(),
+                key.strip_suffix(metrics::bare(key))
+                    .unwrap_or_default()
+                    .replace('.', ": "),
                 shown.name,
                 judge::value(language, &shown, median(&beyond)),
                 judge::bounds(language, &shown, *limit),
