@@ -17,6 +17,7 @@
  * @property {boolean} lane Follows a lane on command.
  * @property {string[]} rigs The rigs it can drive with.
  * @property {[string, number[]][]} parameters Title and numbers of each group, the most important first.
+ * @property {[string, string, number[]][]} laws Its equations: the signal that each gives, what it is, and the parameters within its terms.
  * @property {string[]} plots Titles of the default plots.
  * @property {string[]} states
  * @property {[number, number, string][]} ways Between the states: from, to, when.
@@ -78,7 +79,7 @@
  * @property {boolean} lane
  * @property {Route | null} route
  * @property {[number, number, number] | null} from Where it stood when it was armed: x, y [m] and heading [rad].
- * @property {'reached' | 'unreachable' | null} end
+ * @property {'reached' | 'unreachable' | 'gave_up' | null} end
  *
  * @typedef {{rows: {name: string, found: number, standard_error: number | null}[], parameters: [number, number][], before: [number, number][]}} Findings Of a calibration: what was found, and the parameters set, with their values before.
  *

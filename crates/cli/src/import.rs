@@ -56,10 +56,13 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
             .with_extension("mcap"),
     };
     let guard = Guard::new([&args.file], args.overwrite.force);
-    if capture::is_one(&text) {
+    if args.columns.is_empty() && capture::is_one(&text) {
         return capture::import(args, &text, &out, &guard);
     }
-    let recording = csv_rows::parse(&args.file, &text)?;
+    let recording = match args.columns.is_empty() {
+        true => csv_rows::parse(&args.file, &text)?,
+        false => csv_rows::parse_renamed(&args.file, &text, &args.columns)?,
+    };
     recording.left_out.report(&args.file);
     let log = encode(&recording, &args.file, &bytes).map_err(Failure::input)?;
     guard.make_equal(&out, |place| {
@@ -148,10 +151,7 @@ fn encode(recording: &Recording, path: &Path, bytes: &[u8]) -> mcap::McapResult<
         attach(&name, CSV, recording.sound.as_bytes())?;
         attach(&format!("{name}.original"), AS_IT_WAS, bytes)?;
     }
-    let about = [
-        ("source", name),
-        ("program", format!("original, {}", recording.modes)),
-    ];
+    let about = [("source", name), ("program", recording.program.clone())];
     let metadata = about.map(|(key, value)| (key.to_owned(), value)).into();
     log.write_metadata(&Metadata {
         name: "origin".into(),
@@ -163,10 +163,10 @@ fn encode(recording: &Recording, path: &Path, bytes: &[u8]) -> mcap::McapResult<
 
 fn summary(recording: &Recording, out: &Path, as_json: bool) -> Result<(), Failure> {
     let duration_s = recording.rows.last().map_or(0.0, |(time_s, _)| *time_s);
-    let (rows, gap_s, modes) = (
+    let (rows, gap_s, program) = (
         recording.rows.len(),
         recording.longest_gap_s,
-        recording.modes,
+        &recording.program,
     );
     let columns = recording
         .columns
@@ -200,12 +200,12 @@ fn summary(recording: &Recording, out: &Path, as_json: bool) -> Result<(), Failu
             })
             .collect();
         return output::json(&json!({
-            "log": output::shown(out), "program": modes, "rows": rows, "duration_s": duration_s,
+            "log": output::shown(out), "program": program, "rows": rows, "duration_s": duration_s,
             "longest_gap_s": gap_s, "columns": columns, "left_out": recording.left_out.json(),
         }));
     }
     output::line(&format!(
-        "{}: {modes} of the original program, {} in {} s, longest gap {} s",
+        "{}: {program}, {} in {} s, longest gap {} s",
         out.display(),
         output::counted(rows, "row"),
         figure(duration_s),

@@ -222,11 +222,12 @@ fn report(setup: &Setup, results: &[RunResult]) -> Result<(), Failure> {
                 .to_vec(),
         );
     }
-    rows.extend(
-        values
-            .into_iter()
-            .map(|(metric, values)| row(scenario, metric, values)),
-    );
+    // What is judged comes first.
+    let (judged, others): (Vec<_>, Vec<_>) = values
+        .into_iter()
+        .partition(|(metric, _)| scenario.limits.contains_key(*metric));
+    let both = judged.into_iter().chain(others);
+    rows.extend(both.map(|(metric, values)| row(scenario, metric, values)));
     output::table(&rows)?;
     for table in of_robots {
         output::table(&table)?;

@@ -280,6 +280,8 @@ pub enum End {
     Reached,
     /// There is no path to the goal.
     Unreachable,
+    /// The time for a way to the goal is over.
+    GaveUp,
 }
 
 /// The robot's task: goal, lane or route, and its outcome. Positions are relative to the robot's origin.

@@ -15,6 +15,7 @@ mod console;
 mod driver;
 mod error;
 mod event;
+pub mod explain;
 pub mod fault;
 mod guest;
 pub mod headless;

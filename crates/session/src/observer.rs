@@ -414,14 +414,19 @@ impl Observer {
                 self.status.fault = Some(fault);
                 Level::Fault
             }
-            EventKind::Unreachable => Level::Warning,
+            EventKind::Unreachable | EventKind::GaveUp { .. } => Level::Warning,
             EventKind::Cleared(_) => {
                 self.status.fault = None;
                 Level::Info
             }
         };
         let text = match kind.detail() {
-            Some(detail) => format!("{}: {detail}", kind.title()),
+            Some(detail) => match kind {
+                EventKind::GaveUp { after_s } => {
+                    format!("gave up after {after_s} s: {detail}")
+                }
+                _ => format!("{}: {detail}", kind.title()),
+            },
             None => kind.title().into(),
         };
         self.note(t_ms, level, text);

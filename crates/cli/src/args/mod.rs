@@ -10,7 +10,7 @@ mod values;
 pub(crate) use groups::{OverwriteArgs, ServeArgs, board};
 pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs};
 pub(crate) use logs::{
-    CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
+    CompareArgs, ExplainArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
 };
 pub(crate) use runs::{
     CalibrateArgs, CheckArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, RunArgs,
@@ -80,6 +80,8 @@ pub(crate) enum Command {
     Replay(ReplayArgs),
     /// Write a log as CSV or SVG
     Export(ExportArgs),
+    /// Say what explains a stretch of a log: what friction, sonars, wheels, link and limits did
+    Explain(ExplainArgs),
     /// Make a policy of a learned network: integers that the robot evaluates in mode 9
     ExportPolicy(ExportPolicyArgs),
     /// Run a recorded simulation again and compare it bit for bit

@@ -146,3 +146,13 @@ pub(super) fn parameter(text: &str) -> Result<(String, f64), Failure> {
     let value = parameters::parse(name, value.trim()).map_err(Failure::input)?;
     Ok((name.to_owned(), value))
 }
+
+/// Two names, `A=B`.
+pub(super) fn pair(text: &str) -> Result<(String, String), Failure> {
+    match text.split_once('=') {
+        Some((one, other)) if !one.trim().is_empty() && !other.trim().is_empty() => {
+            Ok((one.trim().to_owned(), other.trim().to_owned()))
+        }
+        _ => Err(Failure::input("write it as THEIRS=OURS, such as time=t_s")),
+    }
+}

@@ -43,6 +43,40 @@ fn an_imported_recording_is_in_si_units_with_the_original_attached() {
 }
 
 #[test]
+fn a_table_of_another_program_is_imported_once_its_columns_have_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = "time,left,right,note\n1.0,50,40,a\n1.1,49,41,b\n1.3,48,x,c\n1.4,47,43,d\n";
+    std::fs::write(folder.path().join("own.csv"), table).unwrap();
+    let import = |columns: &[&str]| {
+        let mut import = program();
+        let given = columns.iter().flat_map(|column| ["--column", column]);
+        import
+            .current_dir(&folder)
+            .args(["import", "own.csv", "--json"]);
+        import.args(given).output().unwrap()
+    };
+    let done = import(&["time=t_s", "left=left_cm", "right=right_cm"]);
+    let summary: serde_json::Value = serde_json::from_str(&stdout(&done)).unwrap();
+    assert_eq!(summary["rows"], 3, "{summary}");
+    assert!((summary["duration_s"].as_f64().unwrap() - 0.4).abs() < 1e-9);
+    assert!((summary["columns"]["left_range_m"]["max"].as_f64().unwrap() - 0.5).abs() < 1e-9);
+    // The damaged line is named as it is in the file.
+    assert!(stderr(&done).contains("4"), "{}", stderr(&done));
+    for (columns, said) in [
+        (
+            &["zeit=t_s"][..],
+            "no column `zeit`; there are time, left, right, note",
+        ),
+        (&["left=left_cm"], "no column is the time"),
+        (&["time=t_s", "left=links"], "left=links: no such column"),
+        (&["time=t_s"], "no column is one of ours"),
+    ] {
+        let refused = import(columns);
+        assert!(stderr(&refused).contains(said), "{}", stderr(&refused));
+    }
+}
+
+#[test]
 fn a_csv_that_a_spanish_spreadsheet_saved_is_imported_and_another_log_of_its_name_stays() {
     let folder = tempfile::tempdir().unwrap();
     let import = |name: &str, text: &str| {
