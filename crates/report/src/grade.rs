@@ -255,7 +255,16 @@ pub fn pair(assignment: &Assignment, alike: &Alike<'_>, language: Language) -> S
     );
     for (name, text, common) in alike.of {
         let lines = text.lines().enumerate().map(|(number, line)| {
-            let line = escape(line);
+            // What a terminal would obey is shown as what it is: no text.
+            let plain = |c: char| {
+                if c.is_control() && c != '\t' {
+                    '\u{fffd}'
+                } else {
+                    c
+                }
+            };
+            let line: String = line.chars().map(plain).collect();
+            let line = escape(&line);
             match common.contains(&number) {
                 true => format!("<mark>{line}</mark>\n"),
                 false => line + "\n",
