@@ -95,24 +95,37 @@ fn header_of(kind: RowKind) -> String {
         .join(",")
 }
 
-/// The columns that an unknown header lacks.
-fn unknown(header: &str) -> String {
+/// Whether a text is such a recording, or nearly.
+pub(crate) fn is_one(text: &str) -> bool {
+    let header = text.lines().next().unwrap_or_default();
+    csv::recognise(header).is_some()
+        || nearest(header).is_some()
+        || kind_by_rows(header, text).is_some()
+}
+
+/// The kind whose header a line nearly is.
+fn nearest(header: &str) -> Option<RowKind> {
     let found: Vec<&str> = header.split(',').map(str::trim).collect();
     let matching = |kind: &RowKind| {
         let due = kind.columns().iter().map(|column| column.name);
         due.filter(|name| found.contains(name)).count()
     };
     let nearest = RowKind::ALL.into_iter().max_by_key(matching);
+    nearest.filter(|kind| matching(kind) > 2)
+}
+
+/// The columns that an unknown header lacks.
+fn unknown(header: &str) -> String {
     // Where lines end otherwise, all of the file is its first line.
     let shown: String = header.chars().take(MOST_SHOWN).collect();
-    match nearest.filter(|kind| matching(kind) > 2) {
+    match nearest(header) {
         Some(kind) => format!(
-            "`{shown}` is no header of the original program; the nearest is that of {}: {}",
+            "`{shown}` is no header of the original program; the nearest is that of {}: {}; --columns takes any table",
             modes(kind),
             header_of(kind)
         ),
         None => format!(
-            "`{shown}` is neither a header of the original program nor a line of a capture; `rumbo import --help` shows the headers"
+            "`{shown}` is neither the beginning of a table nor a line of a capture; `rumbo import --help` shows what is read"
         ),
     }
 }
