@@ -126,9 +126,11 @@ pub(crate) struct ExportPolicyArgs {
 Examples:
   rumbo new sketch my_sketch
   rumbo run mode1 --sketch my_sketch              drive it
+  rumbo new sketch my_line --like line            begin with an example
   rumbo new sketch small --board uno
   rumbo run mode1 --robot uno --sketch small      the robot with an Arduino Uno
   rumbo new robot my_car --board uno --driver l298n-jumpers --pins left_forward=5,left_backward=6,right_forward=9,right_backward=10
+  rumbo new robot my_car --board nano --driver drv8833 --pins left_forward=3,...,line_left=A0,line_right=A1,button_start=2
   rumbo new robot my_car --like kit_elegoo_v3
   rumbo run free --robot my_car.toml --sketch my_sketch")]
 pub(crate) struct NewArgs {
@@ -144,10 +146,11 @@ pub(crate) struct NewArgs {
     /// Driver of the robot's motors: l298n, l298n-jumpers, l293d, tb6612, drv8833 or dir-pwm
     #[arg(long, value_name = "DRIVER", value_parser = values::driver_named)]
     pub(crate) driver: Option<(&'static Driver, bool)>,
-    /// Pins of the robot's parts, e.g. left_forward=7,servo=9,front_echo=A1
+    /// Pins of the robot's parts, e.g. left_forward=7,servo=9,front_echo=A1; line sensors from left to right, and other parts by a name
+    /// of yours: line_left=2,line_right=A1,line_dark=low,button_start=8,pot_speed=A3,led_front=13,buzzer=11
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,
-    /// Begin with the file of this robot (`rumbo list robots`)
+    /// Begin with the file of this robot (`rumbo list robots`), or with this example (`rumbo list sketches`)
     #[arg(long, value_name = "ROBOT", conflicts_with_all = ["board", "driver", "pins"])]
     pub(crate) like: Option<String>,
 }

@@ -14,6 +14,28 @@ const ALIKE: f64 = 0.5;
 /// Name of the wiring and the rig.
 const OWN: &str = "own";
 
+/// What is at pins besides motors, sonars and links, by how its name begins: the key of a robot file.
+pub const ACCESSORIES: [(&str, &str); 6] = [
+    ("line", "line"),
+    ("button", "button"),
+    ("switch", "switch"),
+    ("pot", "potentiometer"),
+    ("led", "led"),
+    ("buzzer", "buzzer"),
+];
+/// Says in place of a line sensor that a dark floor is `low` or `high`.
+const DARK: &str = "line_dark";
+/// Line sensors are so far apart \[m\].
+const PITCH_M: f64 = 0.015;
+
+/// What an accessory is and what it is called: `line_left` is a line sensor `left`.
+#[must_use]
+pub fn accessory(signal: &str) -> Option<(&'static str, &str)> {
+    let (prefix, name) = signal.split_once('_').unwrap_or((signal, signal));
+    let (_, kind) = ACCESSORIES.iter().find(|(known, _)| *known == prefix)?;
+    Some((kind, name))
+}
+
 /// What a robot is made of.
 #[derive(Clone, Debug)]
 pub struct NewRobot {
@@ -125,6 +147,7 @@ impl NewRobot {
             };
             put(format!("{:24}# {about}", format!("{signal} = {value}")));
         }
+        text.push_str(&self.accessories());
         let _ = write!(
             text,
             "\n# Measure it. What is left out, motors, friction and sonars, is nominal and not identified.\n[plant.body]\n\
@@ -136,6 +159,54 @@ impl NewRobot {
                 "\n# A disc on the wheel; of a sensor on the motor's shaft edges_per_motor_turn, and gear_ratio in [plant.motor].\n\
                  [plant.encoder]\nslots = 20\n",
             );
+        }
+        text
+    }
+
+    /// Line sensors, from left to right as they were given, and what a person works or looks at.
+    fn accessories(&self) -> String {
+        let pin = |pin: &str| match pin.parse::<u8>() {
+            Ok(_) => pin.to_owned(),
+            Err(_) => format!("{pin:?}"),
+        };
+        let given = |of_line: bool| {
+            let given = self.pins.iter().filter(|(signal, _)| signal != DARK);
+            given.filter_map(move |(signal, at)| {
+                let (kind, name) = accessory(signal)?;
+                ((kind == "line") == of_line).then(|| (kind, name, pin(at), at))
+            })
+        };
+        let dark = self.pins.iter().find(|(signal, _)| signal == DARK);
+        let dark = dark.map_or_else(String::new, |(_, level)| format!(", dark = {level:?}"));
+        let mut text = String::new();
+        let sensors = given(true).count();
+        for (index, (_, name, pin, at)) in given(true).enumerate() {
+            if index == 0 {
+                let _ = write!(
+                    text,
+                    "\n# Sensors that look down, from left to right: measure where they are. Over a dark floor they are high, unless\n\
+                     # dark = \"low\".\n[wiring.{OWN}.line]\n"
+                );
+            }
+            let y_m = PITCH_M * (0.5 * (sensors as f64 - 1.0) - index as f64);
+            let analogue = if at.starts_with(['A', 'a']) {
+                ", analogue = true"
+            } else {
+                ""
+            };
+            let _ = writeln!(
+                text,
+                "{name} = {{ pin = {pin}, x_m = 0.09, y_m = {y_m:.4}{analogue}{dark} }}"
+            );
+        }
+        for (index, (kind, name, pin, _)) in given(false).enumerate() {
+            if index == 0 {
+                let _ = write!(
+                    text,
+                    "\n# To press, to turn and to look at.\n[wiring.{OWN}.parts]\n"
+                );
+            }
+            let _ = writeln!(text, "{name} = {{ {kind} = {pin} }}");
         }
         text
     }
