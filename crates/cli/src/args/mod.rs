@@ -147,7 +147,7 @@ pub(crate) struct NewArgs {
     #[arg(long, value_name = "DRIVER", value_parser = values::driver_named)]
     pub(crate) driver: Option<(&'static Driver, bool)>,
     /// Pins of the robot's parts, e.g. left_forward=7,servo=9,front_echo=A1; line sensors from left to right, and other parts by a name
-    /// of yours: line_left=2,line_right=A1,line_dark=low,button_start=8,pot_speed=A3,led_front=13,buzzer=11
+    /// of yours: line_left=2,line_right=A1,line_dark=low,button_start=8,pot_speed=A3,led_front=13,buzzer=11; link_baud=38400 is the rate of a Bluetooth module
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,
     /// Begin with the file of this robot (`rumbo list robots`), or with this example (`rumbo list sketches`)

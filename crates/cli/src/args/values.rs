@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
-use rumbo_experiment::files::new_robot::{ACCESSORIES, JUMPERS, accessory};
+use rumbo_experiment::files::new_robot::{ACCESSORIES, JUMPERS, LINK_BAUD, accessory};
 use rumbo_experiment::files::{Port, TimedText, check_line, parameters, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Driver};
@@ -43,9 +43,9 @@ pub(super) fn pin(text: &str) -> Result<(String, String), String> {
         .split_once('=')
         .ok_or("write it as left_forward=7,left_backward=8")?;
     let (signal, pin) = (signal.trim(), pin.trim());
-    if !SIGNALS.contains(&signal) && accessory(signal).is_none() {
+    if !SIGNALS.contains(&signal) && accessory(signal).is_none() && signal != LINK_BAUD {
         return Err(format!(
-            "no signal `{signal}`; there are {}, and with a name of yours {}",
+            "no signal `{signal}`; there are {}, {LINK_BAUD}, and with a name of yours {}",
             SIGNALS.join(", "),
             ACCESSORIES
                 .map(|(prefix, _)| format!("{prefix}_NAME"))

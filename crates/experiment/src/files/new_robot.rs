@@ -25,6 +25,8 @@ pub const ACCESSORIES: [(&str, &str); 6] = [
 ];
 /// Says in place of a line sensor that a dark floor is `low` or `high`.
 const DARK: &str = "line_dark";
+/// Rate of the Bluetooth module in place of a pin \[baud\].
+pub const LINK_BAUD: &str = "link_baud";
 /// Line sensors are so far apart \[m\].
 const PITCH_M: f64 = 0.015;
 
@@ -146,6 +148,13 @@ impl NewRobot {
                 false => meaning(signal, driver),
             };
             put(format!("{:24}# {about}", format!("{signal} = {value}")));
+        }
+        if let Some((_, baud)) = self.pins.iter().find(|(signal, _)| signal == LINK_BAUD) {
+            let _ = writeln!(
+                text,
+                "{:24}# rate of the Bluetooth module",
+                format!("link_baud = {baud}")
+            );
         }
         text.push_str(&self.accessories());
         let _ = write!(
@@ -271,6 +280,27 @@ pub fn remarks(wiring: &Wiring) -> Vec<String> {
         }
     }
     remarks
+}
+
+/// What a turn of a wheel counts, of a robot with encoders.
+#[must_use]
+pub fn counted(robot: &RobotFile) -> Option<String> {
+    let has = |wiring: &Wiring| {
+        wiring
+            .pins
+            .keys()
+            .any(|signal| signal.ends_with("_encoder"))
+    };
+    robot.wirings.values().any(has).then(|| {
+        let edges = match robot.plant.encoder.slots {
+            0.0 => robot.plant.encoder.edges_per_motor_turn * robot.plant.motor.gear_ratio,
+            slots => 2.0 * slots,
+        };
+        format!(
+            "a turn of a wheel gives {edges} edges on each output of its encoder, half of them rising: [plant.encoder], and \
+             gear_ratio in [plant.motor]; the sketch must count with the same"
+        )
+    })
 }
 
 /// The signal of the same side for another input.

@@ -93,6 +93,9 @@ fn a_letter_without_a_line_ending_is_obeyed_until_the_next_one() {
         stdout(&again),
         stderr(&again)
     );
+    // A car that is driven by bytes: 0x46 is that letter.
+    drive(&bench, &["--usb", "\\x46@1", "--line-ending", "none"]);
+    assert!(last(&bench, "x_m") > 0.3);
     // The same in the scenario.
     let scenario = std::fs::read_to_string(bench.join("floor.toml")).unwrap();
     let typed = "[[command]]\nat_s = 1\nusb = \"F\"\nline_ending = \"none\"\n";
@@ -541,6 +544,8 @@ fn a_new_robot_names_what_is_missing_and_what_its_pins_cannot_do() {
     ] {
         assert!(notes.contains(note), "{notes}");
     }
+    let said = stdout(&unable);
+    assert!(said.contains("a turn of a wheel gives 40 edges"), "{said}");
 }
 
 #[test]
@@ -852,4 +857,32 @@ void loop() {
         "{}",
         stderr(&unknown)
     );
+}
+
+#[test]
+fn a_program_that_begins_again_and_again_is_told_why() {
+    let by_new = "#include <new.h>\nstruct Part { int a, b; };\nPart *volatile part;\n\
+                  void setup() { part = new Part; }\nvoid loop() { }\n";
+    let by_interrupt = "void setup() { TCCR2B = 1; TIMSK2 = 1; }\nvoid loop() { }\n";
+    for (name, sketch, why) in [
+        (
+            "anew_new",
+            by_new,
+            "in main: a function that is not there was called",
+        ),
+        (
+            "anew_interrupt",
+            by_interrupt,
+            "in __bad_interrupt: an interrupt was on that no function handles",
+        ),
+    ] {
+        let Some(bench) = kit(name, LETTERS_WIRING, sketch) else {
+            return;
+        };
+        let said = stdout(&drive(&bench, &[]));
+        assert!(
+            said.contains("it began anew") && said.contains(why),
+            "{said}"
+        );
+    }
 }
