@@ -79,7 +79,7 @@ fn no_tick_of_a_run_is_late_or_longer_than_its_period() {
         ("mode8-obstacles", 1),
         ("mode8-obstacles", 19),
         // Obstacles with others beside their ends, and silences to ingest: the longest ticks.
-        ("mode8-random", 13),
+        ("mode8-random", 11),
         // The origin moves to the goal.
         ("mode8-random", 19),
         ("mode9-random", 1),

@@ -1,8 +1,9 @@
 """Rumbo's simulator of a small differential-drive robot.
 
 `run` repeats a scenario with many seeds, `sweep` over its parameters, `compare` as variants, `tune` searches for
-values, `Sim`, `Batch` and `Fleet` step robots by hand, `read_log` reads what was recorded, `identify` finds a robot's
-parameters in it; `rumbo.envs` has environments for Gymnasium and PettingZoo, `rumbo.ray` clusters for sweeps.
+values, `Sim`, `Batch` and `Fleet` step robots by hand, `Sim` also one that an Arduino sketch drives, with its pins and
+ports; `read_log` reads what was recorded, `identify` finds a robot's parameters in it; `rumbo.envs` has environments
+for Gymnasium and PettingZoo, `rumbo.ray` clusters for sweeps, `rumbo.pytest_plugin` a fixture for tests of sketches.
 Units are SI and stand in the names: ``range_m``, ``speed_rad_s``. x is forward, y to the left, angles
 counter-clockwise.
 """
@@ -13,13 +14,14 @@ import json
 from typing import Any, Literal
 
 from . import _rumbo
+from ._board import ExpectationError, Pin, Serial
 from ._fleet import Fleet, FleetSnapshot
 from ._identify import Identification, Identified, identify
 from ._log import Log, read_log
 from ._policy import Policy, export_policy
 from ._rumbo import Snapshot
 from ._run import Run, Runs, run
-from ._setup import Source
+from ._setup import Source, compile_sketch
 from ._sim import OBSERVED, TRUE, Batch, Sim
 from ._study import Comparison, Difference, Interrupted, Sweep, compare, sweep
 from ._tune import Tuning, tune
@@ -44,15 +46,18 @@ __all__ = [
     "Batch",
     "Comparison",
     "Difference",
+    "ExpectationError",
     "Fleet",
     "FleetSnapshot",
     "Identification",
     "Identified",
     "Interrupted",
     "Log",
+    "Pin",
     "Policy",
     "Run",
     "Runs",
+    "Serial",
     "Sim",
     "Snapshot",
     "Source",
@@ -60,6 +65,7 @@ __all__ = [
     "Tuning",
     "__version__",
     "compare",
+    "compile_sketch",
     "export_policy",
     "identify",
     "load",

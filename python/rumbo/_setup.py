@@ -9,6 +9,7 @@ import operator
 import os
 import pathlib
 import tempfile
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, TypeAlias
 
@@ -115,6 +116,43 @@ def make_setup(
         randomize=randomize,
         held=held.files,
     )
+
+
+def compile_sketch(
+    sketch: str | os.PathLike[str],
+    *,
+    scenario: Source = "free",
+    robot: Source | None = None,
+    libraries: Iterable[str | os.PathLike[str]] = (),
+) -> pathlib.Path:
+    """Compiles an Arduino sketch for the board of a robot, unless it has not changed, and gives the path of its image.
+
+    It takes the compiler and the core of arduino-cli or the Arduino IDE, else Debian's (``apt install gcc-avr avr-libc
+    arduino-core-avr``). The compiler's warnings are Python's.
+
+    Args:
+        sketch: Folder of the sketch, its ``.ino``, or an example as ``example:wall``.
+        scenario, robot: The robot is that of the scenario, unless another one is given.
+        libraries: Folders with a folder for each library, beside those of the Arduino IDE.
+
+    Raises:
+        ValueError: There is no such sketch, no compiler, or it rejects the sketch: a line for each error.
+    """
+    held = _Held()
+    if isinstance(scenario, Mapping) and robot is None:
+        robot = scenario.get("robot")
+    if isinstance(scenario, Mapping):
+        scenario = "free"
+    image, said = _rumbo.compile(
+        os.fspath(sketch),
+        held.name("scenario", scenario),
+        robot=None if robot is None else held.name("robot", robot),
+        libraries=[os.fspath(pathlib.Path(folder).absolute()) for folder in libraries],
+        held=held.files,
+    )
+    if said:
+        warnings.warn("\n".join(said), stacklevel=2)
+    return pathlib.Path(image)
 
 
 def pack_setup(setup: _rumbo.Setup) -> tuple[dict[str, Any], bytes | None]:

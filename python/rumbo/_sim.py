@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _rumbo
+from ._board import TICK_S, Pin, Serial, wait
 from ._log import write_file
 from ._progress import shown
 from ._setup import (
@@ -20,6 +21,7 @@ from ._setup import (
     Program,
     Source,
     check_version,
+    compile_sketch,
     make_index,
     make_seeds,
     make_setup,
@@ -33,6 +35,8 @@ OBSERVED: tuple[str, ...] = tuple(_rumbo.OBSERVED)
 TRUE: tuple[str, ...] = tuple(_rumbo.TRUE)
 
 Driver = Literal["scenario", "caller"]
+#: How long a button is pressed [s].
+PRESSED_S = 0.2
 
 
 def _is_caller(driver: str) -> bool:
@@ -297,12 +301,27 @@ class Sim:
     >>> sim.command(arm=True)
     >>> sim.step(3)
     >>> sim.truth()["range_front_m"]
+
+    With a sketch, an Arduino program drives it, on the emulated board of its robot, with pins and serial ports at hand:
+
+    >>> sim = rumbo.Sim(sketch="my_sketch", robot="uno")
+    >>> sim.serial.expect("ready", within_s=1)
+    >>> sim.pin(13).pulses()
+
+    Args:
+        scenario: As for `rumbo.run`; with a sketch or an image ``free`` by default, a room with boxes.
+        sketch: Folder of the sketch, its ``.ino``, or an example as ``example:wall``. It is compiled if it has changed,
+            as `compile_sketch` does.
+        libraries: Folders with a folder for each library, beside those of the Arduino IDE.
+        seed, driver, robot, world, policy, rig, parameters, program, firmware, randomize: As for `Batch`.
     """
 
     def __init__(
         self,
-        scenario: Source,
+        scenario: Source | None = None,
         *,
+        sketch: str | os.PathLike[str] | None = None,
+        libraries: Iterable[str | os.PathLike[str]] = (),
         seed: int = 1,
         driver: Driver = "scenario",
         robot: Source | None = None,
@@ -314,6 +333,13 @@ class Sim:
         firmware: str | os.PathLike[str] | None = None,
         randomize: bool | None = None,
     ) -> None:
+        if scenario is None and sketch is None and firmware is None:
+            raise TypeError("what is it to drive? Give a scenario, or the sketch= or firmware= of an emulated board")
+        scenario = "free" if scenario is None else scenario
+        if sketch is not None:
+            if firmware is not None:
+                raise ValueError("a robot has one program: give sketch= or firmware=, not both")
+            firmware = compile_sketch(sketch, scenario=scenario, robot=robot, libraries=libraries)
         self._batch = Batch(
             scenario,
             seeds=[seed],
@@ -328,6 +354,9 @@ class Sim:
             randomize=randomize,
             threads=1,
         )
+        self._serials: dict[str, Serial] = {}
+        #: A board is emulated, with pins and ports.
+        self.is_emulated: bool = _rumbo.probe(self._batch._batch)
 
     def __repr__(self) -> str:
         driver = "you" if self._batch._caller else "the scenario"
@@ -354,6 +383,89 @@ class Sim:
     def step(self, duration_s: float = 0.01) -> None:
         """Advances by `duration_s` [s], a multiple of the control tick of 0.01 s."""
         self._batch.step(duration_s)
+
+    def advance(self, until: float | Callable[[Sim], object], within_s: float = 60.0) -> None:
+        """Advances to a time since the start [s], or tick by tick until ``until(sim)`` is true.
+
+        Raises:
+            ExpectationError: That did not come true within `within_s` [s].
+            ValueError: The time is over.
+        """
+        if callable(until):
+            began_s = self.t_s
+            what = getattr(until, "__name__", repr(until))
+            wait(
+                self._batch._batch,
+                within_s,
+                lambda: bool(until(self)),
+                lambda: f"{what} did not come true from {began_s:.2f} s on",
+            )
+            return
+        left_s = until - self.t_s
+        if left_s < -1e-9:
+            raise ValueError(f"until = {until}: it is {self.t_s:.2f} s already")
+        if round(left_s / TICK_S) > 0:
+            self.step(round(left_s / TICK_S) * TICK_S)
+
+    @property
+    def serial(self) -> Serial:
+        """The USB port of an emulated board, ``Serial`` in a sketch."""
+        return self._port("usb", "Serial (USB)")
+
+    @property
+    def bluetooth(self) -> Serial:
+        """The Bluetooth module of an emulated board, wherever its wiring has it: what it passes on."""
+        return self._port("link", "the Bluetooth module")
+
+    def usart(self, number: int) -> Serial:
+        """A USART of an emulated board by its number, ``Serial1`` as 1, as a terminal at its pins has it."""
+        if number not in range(4):
+            raise ValueError(f"usart {number!r}: must be 0 to 3")
+        return self._port(str(number), f"Serial{number or ''}")
+
+    def _port(self, port: str, title: str) -> Serial:
+        if port not in self._serials:
+            self._serials[port] = Serial(self._batch._batch, port, title)
+        return self._serials[port]
+
+    def pin(self, name: int | str) -> Pin:
+        """A pin of an emulated board by its number or name (``7``, ``"A0"``), what is wired to it, or the part at it.
+
+        Raises:
+            ValueError: There is none, with the near ones; or no board is emulated.
+        """
+        return Pin(self._batch._batch, name)
+
+    def press(self, part: str, value: float | None = None) -> None:
+        """Presses a button of the robot's file for 0.2 s, or puts a switch or a potentiometer to a value, 0 to 1.
+
+        Raises:
+            ValueError: There is no such part, with those that there are.
+        """
+        known = _rumbo.parts(self._batch._batch)
+        if part not in known:
+            there = ", ".join(known) or "none; the robot's file names them, as parts.start = { button = 8 }"
+            raise ValueError(f"unknown part {part!r}: there are {there}")
+        if value is not None and not 0 <= value <= 1:
+            raise ValueError(f"{part} = {value}: must be 0 to 1")
+        _rumbo.type_in(self._batch._batch, "parts", f"{part}={1.0 if value is None else value}\n".encode())
+        if value is None:
+            self.step(PRESSED_S)
+            _rumbo.type_in(self._batch._batch, "parts", f"{part}=0\n".encode())
+
+    @property
+    def ended(self) -> str | None:
+        """How the program of an emulated board ended, if it could not go on: what, where, when."""
+        return _rumbo.ended(self._batch._batch)
+
+    def write_vcd(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Writes all pins of an emulated board over time, which GTKWave and other viewers of waveforms show.
+
+        Raises:
+            ValueError: No board is emulated.
+            FileExistsError: There is a file at `path`, which stays as it is without `overwrite`.
+        """
+        write_file(path, _rumbo.vcd(self._batch._batch), overwrite=overwrite)
 
     def command(self, **keys: Any) -> None:
         """Applies a command at once, in the words of a scenario's ``[[command]]``, without its time.

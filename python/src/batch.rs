@@ -345,7 +345,7 @@ impl Batch {
         hold(&self.robots)
     }
 
-    fn with<T>(&self, index: usize, act: impl FnOnce(&mut Robot) -> T) -> PyResult<T> {
+    pub(crate) fn with<T>(&self, index: usize, act: impl FnOnce(&mut Robot) -> T) -> PyResult<T> {
         let mut robots = self.lock()?;
         let robot = robots.robots_mut().get_mut(index);
         robot.map(act).ok_or_else(|| beyond(index, self.count))

@@ -10,6 +10,7 @@ mod guard;
 mod identify;
 mod log;
 mod policy;
+mod probe;
 mod run;
 mod setup;
 mod study;
@@ -27,6 +28,11 @@ mod _rumbo {
     use super::log::read_log;
     #[pymodule_export]
     use super::policy::{Policy, quantise};
+    #[pymodule_export]
+    use super::probe::{
+        apply, compile, edges, ended, is_high, parts, pin, probe, pulses, said, share_high,
+        type_in, vcd,
+    };
     #[pymodule_export]
     use super::run::run;
     #[pymodule_export]

@@ -4,6 +4,7 @@
 
 mod exports;
 mod hand_ins;
+mod likeness;
 
 use crate::args::GradeArgs;
 use crate::experiments::language;
@@ -13,9 +14,11 @@ use crate::output;
 use crate::place::{self, Guard};
 use crate::run::set_threads;
 use indicatif::{ProgressBar, ProgressStyle};
+use likeness::Likeness;
 use rumbo_experiment::grade::{Assignment, Mark, grade as grade_all};
 use rumbo_report::Stamp;
 use rumbo_report::grade::{class, student};
+use rumbo_report::text::Language;
 use rumbo_sketch::limits::Limits;
 use rumbo_sketch::sandbox::Sandbox;
 use rumbo_sketch::{Compiler, SketchError, Toolchain};
@@ -30,6 +33,7 @@ const TABLE: &str = "marks.csv";
 const SUITES: &str = "junit.xml";
 const STUDENTS: (&str, &str) = ("students", "html");
 const GRADESCOPE: (&str, &str) = ("gradescope", "json");
+const SIMILAR: (&str, &str) = ("similar", "html");
 /// Most names said of what is no hand-in.
 const MOST_NAMED: usize = 20;
 
@@ -69,7 +73,21 @@ pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
     let progress = progress_bar(runs, "{bar:40} {pos}/{len} runs, {eta} left");
     let marks = grade_all(&assignment, &hand_ins, || progress.inc(1));
     progress.finish_and_clear();
-    write(args, &assignment, (&marks, &files), &notes, &stamp)?;
+    let likeness = Likeness::among(&found, &assignment)?;
+    write(
+        args,
+        &assignment,
+        (&marks, &files),
+        &notes,
+        &likeness,
+        &stamp,
+    )?;
+    for line in likeness.in_words(Language::English) {
+        output::note(&format!(
+            "alike: {line}; see {}",
+            output::shown(&args.out.join(SIMILAR.0))
+        ));
+    }
     report(args, &marks, &notes)
 }
 
@@ -86,7 +104,7 @@ fn compiler(args: &GradeArgs, assignment: &Assignment) -> Result<Compiler, Sketc
         true => Sandbox::trusting(limits),
         false => Sandbox::walled(&toolchain, limits)?,
     };
-    let cache = crate::sketch::cache();
+    let cache = rumbo_sketch::cache();
     Compiler::new(crate::sketch::target(board), toolchain, sandbox, cache)
 }
 
@@ -160,11 +178,12 @@ fn write(
     assignment: &Assignment,
     (marks, files): (&[Mark], &[String]),
     notes: &[String],
+    likeness: &Likeness,
     stamp: &Stamp,
 ) -> Result<(), Failure> {
     let language = language(args.language);
     let out = |name: &str| args.out.join(name);
-    for (folder, ending) in [STUDENTS, GRADESCOPE] {
+    for (folder, ending) in [STUDENTS, GRADESCOPE, SIMILAR] {
         let folder = out(folder);
         remove_own(&folder, ending, &mark::Mark::of(stamp))?;
         place::folder(&folder)?;
@@ -177,7 +196,13 @@ fn write(
         place::write(&out(&inner(GRADESCOPE, file)), json)?;
     }
     let links: Vec<String> = files.iter().map(|file| inner(STUDENTS, file)).collect();
-    let page = class(assignment, marks, notes, language, &links);
+    let mut alike = Vec::new();
+    for (number, (words, page)) in (1..).zip(likeness.pages(assignment, language)) {
+        let link = inner(SIMILAR, &format!("pair{number}"));
+        place::write(&out(&link), stamp.put_on(page))?;
+        alike.push((words, link));
+    }
+    let page = class(assignment, marks, notes, language, &links, &alike);
     place::write(&out(TABLE), exports::csv(assignment, marks))?;
     place::write(&out(SUITES), exports::junit(assignment, marks, stamp))?;
     place::write(&out(PAGE), stamp.put_on(page))

@@ -7,6 +7,7 @@ mod args;
 mod browser;
 mod calibrate;
 mod capture;
+mod check;
 mod column_names;
 mod compare;
 mod connect;
@@ -23,6 +24,7 @@ mod grade;
 mod identify;
 mod import;
 mod interrupt;
+mod junit;
 mod lab;
 mod left_out;
 mod list;
@@ -96,6 +98,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
             args.image.compile(args.robot.as_deref(), None)?;
             experiments::experiments(&args)
         }
+        Some(Command::Check(args)) => check::check(&args),
         Some(Command::Grade(args)) => grade::grade(&args),
         Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Export(args)) => export::export(&args),

@@ -9,19 +9,15 @@ use rumbo_sim::boards::Board;
 use rumbo_sketch::limits::Limits;
 use rumbo_sketch::sandbox::Sandbox;
 use rumbo_sketch::{
-    BOARDS, Board as Target, Compiler, Given, SketchError, Toolchain, example, given, starter,
+    BOARDS, Board as Target, Compiler, EXAMPLE, SketchError, Toolchain, cache, example, starter,
 };
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-/// Prefix of an example's name.
-const EXAMPLE: &str = "example:";
 /// Time for compiling a sketch that was dropped; the next one waits for it.
 const DROPPED: Duration = Duration::from_secs(30);
-/// Environment variable that names another folder for compiled files.
-const CACHE: &str = "RUMBO_CACHE";
 
 impl From<SketchError> for Failure {
     fn from(error: SketchError) -> Self {
@@ -70,12 +66,14 @@ pub(crate) fn take_libraries(folders: &[PathBuf]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Those that were taken.
+fn libraries() -> &'static [PathBuf] {
+    LIBRARIES.get().map_or(&[], Vec::as_slice)
+}
+
 /// A compiler for the user's own sketches.
 pub(crate) fn compiler(board: &Board) -> Result<Compiler, SketchError> {
-    let sandbox = Sandbox::trusting(Limits::default());
-    let given = LIBRARIES.get().map_or(&[][..], Vec::as_slice);
-    let toolchain = Toolchain::find()?.with_libraries(given);
-    Compiler::new(target(board), toolchain, sandbox, cache())
+    Compiler::trusting(target(board), libraries())
 }
 
 /// A compiler for sketches of others, in the sandbox.
@@ -100,27 +98,11 @@ pub(crate) fn keep_image(content: &[u8], kind: &str) -> std::io::Result<PathBuf>
 
 /// The image of a user's sketch, compiled if need be: a folder, an `.ino`, or an example by name.
 pub(crate) fn image(name: &str, board: &Board) -> Result<PathBuf, Failure> {
-    let source = match name.strip_prefix(EXAMPLE) {
-        Some(name) => example(name)?,
-        None => match given(Path::new(name), true)? {
-            Given::Image(path) => return Ok(path),
-            Given::Sketch(source) => source,
-        },
-    };
-    let image = compiler(board)?.compile(&source, &[])?;
+    let image = rumbo_sketch::image_of(name, target(board), libraries())?;
     for warning in &image.warnings {
         warning.to_string().lines().for_each(output::aside);
     }
     Ok(image.path)
-}
-
-/// Folder of compiled cores and sketches.
-pub(crate) fn cache() -> PathBuf {
-    let named = std::env::var_os(CACHE).filter(|folder| !folder.is_empty());
-    named.map(PathBuf::from).unwrap_or_else(|| {
-        let usual = dirs::cache_dir().unwrap_or_else(std::env::temp_dir);
-        usual.join("rumbo").join("sketches")
-    })
 }
 
 /// Makes a folder with a sketch to start from: for a board, or as an example has it.

@@ -9,6 +9,7 @@ pub mod calibrate;
 pub mod calibration_run;
 #[cfg(feature = "host")]
 pub mod campaign;
+pub mod claims;
 #[cfg(feature = "host")]
 pub mod compare;
 pub mod files;

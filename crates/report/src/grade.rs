@@ -20,6 +20,7 @@ use rumbo_control::rig::Rig;
 use rumbo_experiment::grade::{Assignment, Line, Mark, Test, Words};
 use rumbo_plot::{Curve, Ink, Panel, Plot, Points};
 use rumbo_wire::Command;
+use std::collections::BTreeSet;
 
 const POINTS_OF: Text = word("points-of");
 const EARNED: Text = word("earned-by-line");
@@ -45,6 +46,9 @@ const CLASS_FACTS: Text = word("class-facts");
 const MEAN_SHARE: Text = word("mean-share");
 const FULL: Text = word("full-marks");
 const NONE: Text = word("no-points");
+const SIMILAR: Text = word("similar-hand-ins");
+const SIMILAR_OF: Text = word("similar-of");
+const PROVES_NOTHING: Text = word("similar-proves-nothing");
 const AT_MOST: Text = word("at-most-value");
 const AT_LEAST: Text = word("at-least-value");
 const LEFT_SONAR: Text = word("left-sonar");
@@ -134,7 +138,8 @@ pub fn student(
     shell(language, of(language, &assignment.title), &mark.name, &body)
 }
 
-/// The page of the class. `links` are the addresses of the hand-ins' pages.
+/// The page of the class. `links` are the addresses of the hand-ins' pages, `alike` what is said of hand-ins that are alike
+/// and the addresses of those pages.
 #[must_use]
 pub fn class(
     assignment: &Assignment,
@@ -142,6 +147,7 @@ pub fn class(
     notes: &[String],
     language: Language,
     links: &[String],
+    alike: &[(String, String)],
 ) -> String {
     let mut body = list(language, NOTES, notes);
     body += &heading(DISTRIBUTION.of(language));
@@ -176,6 +182,17 @@ pub fn class(
         })
         .collect();
     body += &table(&header, &rows);
+    if !alike.is_empty() {
+        body += &heading(SIMILAR.of(language));
+        let items = alike.iter().map(|(words, link)| {
+            format!(
+                "<li><a href=\"{}\">{}</a></li>\n",
+                escape(link),
+                escape(words)
+            )
+        });
+        body += &format!("<ul>\n{}</ul>\n", items.collect::<String>());
+    }
     body += &heading(RUBRIC.of(language));
     body += &rubric(assignment, marks, language);
     shell(
@@ -184,6 +201,63 @@ pub fn class(
         CLASS.of(language),
         &body,
     )
+}
+
+/// Two hand-ins that are alike.
+#[derive(Clone, Debug)]
+pub struct Alike<'a> {
+    /// Name, text, and the lines that the other has too, from 0, of each.
+    pub of: [(&'a str, &'a str, &'a BTreeSet<usize>); 2],
+    /// The share of the shorter text that the other has too, 0 to 1.
+    pub share: f64,
+}
+
+impl Alike<'_> {
+    /// Who and how much, in a line.
+    #[must_use]
+    pub fn in_words(&self, language: Language) -> String {
+        let [(one, ..), (other, ..)] = self.of;
+        let share = self.percent(language);
+        SIMILAR_OF.with(
+            language,
+            &[("one", one), ("other", other), ("share", &share)],
+        )
+    }
+
+    fn percent(&self, language: Language) -> String {
+        language.number(100.0 * self.share, 0)
+    }
+}
+
+/// The page of two hand-ins that are alike: both texts side by side, what they have in common marked.
+#[must_use]
+pub fn pair(assignment: &Assignment, alike: &Alike<'_>, language: Language) -> String {
+    let share = alike.percent(language);
+    let said = PROVES_NOTHING.with(language, &[("share", &share)]);
+    let mut body = format!(
+        "<p class=\"note\">{}</p>\n<div class=\"side\">\n",
+        escape(&said)
+    );
+    for (name, text, common) in alike.of {
+        let lines = text.lines().enumerate().map(|(number, line)| {
+            let line = escape(line);
+            match common.contains(&number) {
+                true => format!("<mark>{line}</mark>\n"),
+                false => line + "\n",
+            }
+        });
+        let lines: String = lines.collect();
+        put(
+            &mut body,
+            format_args!(
+                "<section><h3>{}</h3><pre>{lines}</pre></section>\n",
+                escape(name)
+            ),
+        );
+    }
+    body += "</div>\n";
+    let title = of(language, &assignment.title);
+    shell(language, title, &alike.in_words(language), &body)
 }
 
 fn list(language: Language, title: Text, lines: &[String]) -> String {

@@ -22,7 +22,7 @@ use rumbo_control::math::{abs, max, min};
 use rumbo_control::params::Params;
 use rumbo_control::speed::{Evenness, WheelMotion};
 use rumbo_control::speed_loop::Feedforward;
-use rumbo_control::{Duty, Fault, SIDES, Side, TICK_S, Wheels};
+use rumbo_control::{Duty, Fault, SIDES, Side, Wheels};
 
 /// Overdue edges of a rolling wheel after which its encoder is silent.
 const OVERDUE: u8 = 3;
@@ -45,8 +45,8 @@ const MOVES: f32 = 0.42;
 /// Duty beyond that for the speed of a wheel that is not held [s/rad]: full duty turns any by 1.7 rad/s. Against a wall
 /// tyres slip at up to 1.2 rad/s.
 const MOVES_FASTER: f32 = 0.35;
-/// Limit of the duty beyond these, summed over time [s]. Sound robots reach 0.040, with 5 kg and on ice 0.061.
-const STRAINED_S: f32 = 0.07;
+/// Limit of the duty beyond these, summed over ticks. Sound robots reach 4.0, with 5 kg and on ice 6.1.
+const STRAINED: f32 = 7.0;
 /// The share of it with which a wheel is strained too, if the other one is or its own edges are in doubt.
 const STRAINED_TOO: f32 = 0.5;
 /// Least duty for a wheel's friction that is believed, should a parameter say less.
@@ -57,8 +57,8 @@ const LEAST_VELOCITY: f32 = 0.01;
 /// Watches both encoders.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct EncoderWatch {
-    /// Duty beyond what the wheel can need, summed over time [s].
-    strained_s: Wheels<f32>,
+    /// Duty beyond what the wheel can need, summed over ticks.
+    strain: Wheels<f32>,
     doubt: Wheels<u8>,
 }
 
@@ -136,8 +136,8 @@ impl EncoderWatch {
                 Evenness::Unknown => *doubt,
             };
             let excess = loads[side].excess(&loads[side.other()]);
-            let strained_s = &mut self.strained_s[side];
-            *strained_s = max(*strained_s + excess * TICK_S, 0.0);
+            let strain = &mut self.strain[side];
+            *strain = max(*strain + excess, 0.0);
         }
         SIDES.iter().try_for_each(|&side| self.judge(side, motion))
     }
@@ -145,8 +145,8 @@ impl EncoderWatch {
     fn judge(&self, side: Side, motion: &Wheels<WheelMotion>) -> Result<(), Fault> {
         let (own, other) = (&motion[side], &motion[side.other()]);
         let silent = own.overdue >= OVERDUE;
-        let strained = self.strained_s[side] >= STRAINED_S;
-        let strained_too = |side: Side| self.strained_s[side] >= STRAINED_TOO * STRAINED_S;
+        let strained = self.strain[side] >= STRAINED;
+        let strained_too = |side: Side| self.strain[side] >= STRAINED_TOO * STRAINED;
         if (strained && strained_too(side.other())) || (silent && other.overdue >= OVERDUE_TOO) {
             return Err(Fault::Blocked);
         }

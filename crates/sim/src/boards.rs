@@ -109,6 +109,14 @@ impl Board {
         Pin::new(letter, bit as u8)
     }
 
+    /// The converter's channel at a pin.
+    pub(crate) fn channel(&self, number: u8) -> Option<u8> {
+        let analogue = self.first_analogue..=self.last_analogue;
+        analogue
+            .contains(&number)
+            .then(|| number - self.first_analogue)
+    }
+
     /// The highest number of a pin.
     #[must_use]
     pub fn last_pin(&self) -> u8 {

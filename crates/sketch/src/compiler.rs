@@ -4,13 +4,14 @@ use crate::board::Board;
 use crate::build::{Build, IMAGE, MAIN, OUT, SKETCH, seen, source_ending};
 use crate::diagnostics::Diagnostic;
 use crate::error::SketchError;
+use crate::examples::example;
 use crate::layout::{Beside, Layout};
 use crate::libraries::Library;
 use crate::limits::Limits;
 use crate::options::{C, COMMON, CPP, LINK, OBJECT};
 use crate::preprocess;
 use crate::sandbox::Sandbox;
-use crate::source::Source;
+use crate::source::{Given, Source, given};
 use crate::toolchain::Toolchain;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
@@ -45,6 +46,43 @@ pub struct Image {
     pub warnings: Vec<Diagnostic>,
 }
 
+/// Environment variable that names another folder for compiled files.
+const CACHE: &str = "RUMBO_CACHE";
+/// Prefix of an example's name.
+pub const EXAMPLE: &str = "example:";
+
+/// Folder of compiled cores and sketches: that of `RUMBO_CACHE`, else in the user's cache folder.
+#[must_use]
+pub fn cache() -> PathBuf {
+    let named = std::env::var_os(CACHE).filter(|folder| !folder.is_empty());
+    named.map(PathBuf::from).unwrap_or_else(|| {
+        let usual = dirs::cache_dir().unwrap_or_else(std::env::temp_dir);
+        usual.join("rumbo").join("sketches")
+    })
+}
+
+/// The image of a user's sketch, compiled if need be: of a folder, an `.ino`, or an example by its name; an `.elf` or `.hex`
+/// is one. `libraries` are folders with a folder for each library.
+///
+/// # Errors
+/// There is none, no compiler, or it rejects the sketch.
+pub fn image_of(name: &str, board: Board, libraries: &[PathBuf]) -> Result<Image, SketchError> {
+    let source = match name.strip_prefix(EXAMPLE) {
+        Some(name) => example(name)?,
+        None => match given(Path::new(name), true)? {
+            Given::Image(path) => {
+                return Ok(Image {
+                    path,
+                    fresh: true,
+                    warnings: Vec::new(),
+                });
+            }
+            Given::Sketch(source) => source,
+        },
+    };
+    Compiler::trusting(board, libraries)?.compile(&source, &[])
+}
+
 impl Compiler {
     /// With the folder where products are kept. Compiles the core if need be.
     ///
@@ -69,6 +107,16 @@ impl Compiler {
         };
         compiler.core = compiler.build_core()?;
         Ok(compiler)
+    }
+
+    /// For the user's own sketches.
+    ///
+    /// # Errors
+    /// There is none, or as [`Compiler::new`].
+    pub fn trusting(board: Board, libraries: &[PathBuf]) -> Result<Self, SketchError> {
+        let sandbox = Sandbox::trusting(Limits::default());
+        let toolchain = Toolchain::find()?.with_libraries(libraries);
+        Self::new(board, toolchain, sandbox, cache())
     }
 
     /// Compiler and core.

@@ -26,11 +26,12 @@ mod options;
 mod preprocess;
 mod product;
 pub mod sandbox;
+pub mod similar;
 mod source;
 mod toolchain;
 
 pub use board::{BOARDS, Board};
-pub use compiler::{Compiler, Image};
+pub use compiler::{Compiler, EXAMPLE, Image, cache, image_of};
 pub use diagnostics::{Diagnostic, Severity};
 pub use error::SketchError;
 pub use examples::{example, examples, starter};

@@ -46,7 +46,10 @@ const ARROWS: [(&str, &[&str]); 26] = [
             "rumbo-ros",
         ],
     ),
-    ("rumbo-python", &["rumbo-lab", "rumbo-identify"]),
+    (
+        "rumbo-python",
+        &["rumbo-lab", "rumbo-identify", "rumbo-sketch"],
+    ),
     ("rumbo-firmware", &["rumbo-robot"]),
     ("rumbo-firmware-tests", &["rumbo-experiment"]),
     (

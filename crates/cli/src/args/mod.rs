@@ -13,7 +13,7 @@ pub(crate) use logs::{
     CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
 };
 pub(crate) use runs::{
-    CalibrateArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, RunArgs,
+    CalibrateArgs, CheckArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, RunArgs,
 };
 
 pub(crate) use studies::{SweepArgs, TuneArgs};
@@ -66,6 +66,8 @@ pub(crate) enum Command {
     Tune(TuneArgs),
     /// Run every experiment of the report and write it: one page with all figures
     Experiments(ExperimentsArgs),
+    /// Try the claims of a file about a sketch: what its ports say, its pins do, its robot does
+    Check(CheckArgs),
     /// Grade a class: compile each hand-in in a sandbox, drive it with every seed, write pages and marks
     Grade(GradeArgs),
     /// Find the plant's parameters from recorded runs

@@ -179,6 +179,48 @@ pub(crate) struct GradeArgs {
     pub(crate) threads: Option<u16>,
 }
 
+/// Options of `rumbo check`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo check tests.toml
+  rumbo check tests.toml --only ready --out failed
+  rumbo check examples/checks/wall.toml --junit results.xml
+
+The file names a sketch or an image, and tests of steps; each begins with the program switched on, in its robot and world:
+
+  sketch = \"my_sketch\"          # beside the file
+  robot = \"uno\"
+  [[test]]
+  name = \"it says that it is ready\"
+  [[test.step]]
+  expect = \"ready\"
+  within_s = 1
+
+docs/sketches.md has all steps. Exit status 1: a test failed.")]
+pub(crate) struct CheckArgs {
+    /// The file of tests
+    #[arg(value_name = "TESTS.toml")]
+    pub(crate) file: PathBuf,
+    /// Only the tests whose name has this in it; may be repeated
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) only: Vec<String>,
+    /// Write the results as JUnit XML
+    #[arg(long, value_name = "FILE.xml")]
+    pub(crate) junit: Option<PathBuf>,
+    /// Folder for log and waveform of each failed test
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArgs,
+    /// Folder of Arduino libraries, which come before those of the Arduino IDE; may be repeated
+    #[arg(long, value_name = "DIR")]
+    pub(crate) libraries: Vec<PathBuf>,
+    /// Threads [default: one per core]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
 /// Options of `rumbo identify`.
 #[derive(Args, Debug)]
 #[command(after_help = "\

@@ -3,12 +3,12 @@
 
 use crate::export::text_cell;
 use crate::failure::Failure;
+use crate::junit::{Case, Suite, document};
 use rumbo_experiment::grade::{Assignment, Mark};
 use rumbo_report::Stamp;
 use rumbo_report::grade::{earned_in_words, noted, of};
 use rumbo_report::text::Language;
 use serde_json::json;
-use std::fmt::Write;
 
 /// A row for each hand-in: points, and those of each criterion.
 pub(super) fn csv(assignment: &Assignment, marks: &[Mark]) -> String {
@@ -43,50 +43,23 @@ pub(super) fn csv(assignment: &Assignment, marks: &[Mark]) -> String {
 
 /// A suite for each hand-in, a case for each line of the rubric; one without all its points has failed.
 pub(super) fn junit(assignment: &Assignment, marks: &[Mark], stamp: &Stamp) -> String {
-    let failed = |mark: &Mark| match mark.refused.is_empty() {
-        true => mark.lines.iter().filter(|line| !line.is_full()).count(),
-        false => mark.lines.len(),
-    };
-    let cases: usize = marks.iter().map(|mark| mark.lines.len()).sum();
-    let failures: usize = marks.iter().map(failed).sum();
-    let mut xml = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- {} -->\n<testsuites name=\"{}\" tests=\"{cases}\" failures=\"{failures}\">\n",
-        stamp.text(),
-        attribute(&assignment.title.text)
-    );
-    for mark in marks {
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            xml,
-            "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\">",
-            attribute(&mark.name),
-            mark.lines.len(),
-            failed(mark)
-        );
-        for line in &mark.lines {
-            let criterion = &assignment.criteria[line.criterion];
-            let _ = write!(
-                xml,
-                "    <testcase classname=\"{}\" name=\"{}\"",
-                attribute(&assignment.tests[line.test].name),
-                attribute(&criterion.title.text)
-            );
-            let why = match mark.refused.first() {
-                Some(why) => why.clone(),
-                None => earned_in_words(assignment, line, Language::English),
-            };
-            let _ = match line.is_full() {
-                true => writeln!(xml, "/>"),
-                false => writeln!(
-                    xml,
-                    "><failure message=\"{}\"/></testcase>",
-                    attribute(&why)
-                ),
-            };
+    let suites = marks.iter().map(|mark| {
+        let cases = mark.lines.iter().map(|line| {
+            let refused = mark.refused.first().cloned();
+            let why = || earned_in_words(assignment, line, Language::English);
+            Case {
+                class: assignment.tests[line.test].name.clone(),
+                name: assignment.criteria[line.criterion].title.text.clone(),
+                failure: refused.or_else(|| (!line.is_full()).then(why)),
+            }
+        });
+        Suite {
+            name: mark.name.clone(),
+            cases: cases.collect(),
         }
-        xml += "  </testsuite>\n";
-    }
-    xml + "</testsuites>\n"
+    });
+    let suites: Vec<Suite> = suites.collect();
+    document(&assignment.title.text, &suites, stamp)
 }
 
 /// A hand-in's `results.json`, its texts in a language.
@@ -132,21 +105,4 @@ pub(super) fn gradescope(
 
 fn cents(points: f64) -> f64 {
     (100.0 * points).round() / 100.0
-}
-
-/// A text as the value of an attribute; what XML cannot hold is left out.
-fn attribute(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
-            '\n' | '\t' => escaped.push(' '),
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => {}
-            c => escaped.push(c),
-        }
-    }
-    escaped
 }

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use rayon::prelude::*;
 use rumbo_experiment::files::firmware;
 use rumbo_experiment::grade::HandIn;
+use rumbo_sketch::similar::text_of;
 use rumbo_sketch::{Compiler, Given, SketchError, given};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,7 +26,15 @@ impl Found {
     }
 
     pub(super) fn is_sketch(&self) -> bool {
-        matches!(self.given, Ok(Given::Sketch(_)))
+        self.text().is_some()
+    }
+
+    /// Its text, if it is a sketch.
+    pub(super) fn text(&self) -> Option<String> {
+        match &self.given {
+            Ok(Given::Sketch(source)) => Some(text_of(source)),
+            _ => None,
+        }
     }
 }
 

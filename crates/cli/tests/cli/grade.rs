@@ -278,6 +278,15 @@ fn hostile_hand_ins_gain_nothing_and_change_no_other_mark() {
         assert_eq!(read("alone"), read("out"), "{file}");
     }
     assert_eq!(results["ana"]["tests"], results["dora"]["tests"]);
+    assert!(stderr(&first).contains("alike: ana and dora: 100 %"));
+    assert_eq!(fs::read_dir(bench.join("out/similar")).unwrap().count(), 1);
+    let pair = fs::read_to_string(bench.join("out/similar/pair1.html")).unwrap();
+    assert!(
+        pair.contains("<h3>ana</h3>") && pair.contains("This does not say who wrote from whom")
+    );
+    assert!(pair.contains("<mark>void loop() {") && !pair.contains("<mark>// the same program"));
+    let class = fs::read_to_string(bench.join("out/index.html")).unwrap();
+    assert!(class.contains("<a href=\"similar/pair1.html\">ana and dora: 100 %</a>"));
     for (name, result) in &results {
         if name != "ana" && name != "dora" {
             assert_eq!(result["score"], 0.0, "{name}: {result}");

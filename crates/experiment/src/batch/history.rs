@@ -26,6 +26,12 @@ pub(super) enum Act {
     Record,
     /// What comes next is done to the robot of this number in a team.
     Of(u8),
+    /// The record of its board began.
+    Probe,
+    /// Bytes were typed to a port of its board.
+    Type(u8, Vec<u8>),
+    /// A pin of its board was connected to a voltage, or no longer.
+    Apply(u8, Option<f64>),
 }
 
 /// Acts in the order in which they were done, as bytes: a number for the kind, then its values, least significant byte
@@ -66,6 +72,15 @@ impl History {
             Act::Aim(None) => self.put(6, &[]),
             Act::Record => self.put(7, &[]),
             Act::Of(robot) => self.bytes.extend([8, *robot]),
+            Act::Probe => self.put(10, &[]),
+            Act::Type(port, bytes) => {
+                self.put_text(11, bytes);
+                self.bytes.push(*port);
+            }
+            Act::Apply(pin, volts) => {
+                self.bytes.extend([12, *pin]);
+                self.bytes.extend(volts.unwrap_or(f64::NAN).to_le_bytes());
+            }
         }
     }
 
@@ -173,6 +188,17 @@ fn take_act(bytes: &mut &[u8]) -> Option<Act> {
             let [ticks] = take(bytes)?;
             Act::Advance(u32::from(ticks))
         }
+        [10] => Act::Probe,
+        [11] => {
+            let text = take_text(bytes)?.to_vec();
+            let [port] = take(bytes)?;
+            Act::Type(port, text)
+        }
+        [12] => {
+            let [pin] = take(bytes)?;
+            let volts = f64::from_le_bytes(take(bytes)?);
+            Act::Apply(pin, (!volts.is_nan()).then_some(volts))
+        }
         _ => return None,
     })
 }
@@ -200,6 +226,10 @@ mod tests {
             Act::Aim(Some(ServoAngle(1.5))),
             Act::Aim(None),
             Act::Record,
+            Act::Probe,
+            Act::Type(4, b"F\n".to_vec()),
+            Act::Apply(17, Some(2.5)),
+            Act::Apply(2, None),
             Act::Advance(u32::MAX),
             Act::Advance(7),
         ];

@@ -9,10 +9,12 @@
 
 mod history;
 mod pilot;
+mod probe;
 mod robot;
 mod team;
 
 pub use pilot::{Driver, TRUE};
+pub use probe::{Probe, Pulse};
 pub use robot::Robot;
 pub use rumbo_control::policy::OBSERVED;
 pub use team::Team;

@@ -2,11 +2,13 @@
 
 use super::history::{Act, History};
 use super::pilot::{Driver, Pilot, TRUE};
+use super::probe::Probe;
 use crate::files::{FileError, Setup};
 use rumbo_control::policy::Observation;
 use rumbo_control::{Drive, ServoAngle, TICK_US, Wheels};
 use rumbo_plant::world::World;
 use rumbo_sim::Sim;
+use rumbo_sim::mega::{CONSOLES, ON_PINS};
 use rumbo_sim::trace::Trace;
 use rumbo_wire::{Command, Refusal};
 use std::sync::{Arc, OnceLock};
@@ -19,6 +21,8 @@ pub struct Robot {
     pilot: Pilot,
     /// What was recorded of it, if it is.
     trace: Option<Box<Trace>>,
+    /// What is at hand of its emulated board, if it is.
+    probe: Option<Box<Probe>>,
     history: History,
 }
 
@@ -34,6 +38,7 @@ impl Robot {
             sim,
             pilot,
             trace: None,
+            probe: None,
             history: History::default(),
         })
     }
@@ -58,6 +63,13 @@ impl Robot {
                 }
                 Act::Aim(servo) => self.aim(servo),
                 Act::Record => self.record()?,
+                Act::Probe => {
+                    self.probe();
+                }
+                Act::Type(port, bytes) => self.type_in(port, &bytes),
+                Act::Apply(pin, volts) => {
+                    self.apply(pin, volts);
+                }
                 Act::Of(_) => {}
             }
         }
@@ -105,6 +117,46 @@ impl Robot {
         self.trace.as_deref()
     }
 
+    /// Records the pins of its emulated board and what its ports send, from now on. It goes on bit for bit as without. False,
+    /// and nothing else, where no board is emulated.
+    pub fn probe(&mut self) -> bool {
+        let Some(mega) = self.sim.mega_mut() else {
+            return false;
+        };
+        self.probe = Some(Box::new(Probe::at(mega)));
+        self.history.push(&Act::Probe);
+        true
+    }
+
+    /// What was recorded since [`Robot::probe`]; `None` without it.
+    pub fn probed(&self) -> Option<&Probe> {
+        self.probe.as_deref()
+    }
+
+    /// Sends bytes to a USART of its emulated board from a terminal of its rate, or to [`rumbo_sim::mega::PARTS`], over
+    /// the link to [`rumbo_sim::mega::ON_PINS`]; other robots do not obey.
+    pub fn type_in(&mut self, port: u8, bytes: &[u8]) {
+        self.history.push(&Act::Type(port, bytes.to_vec()));
+        match self.sim.mega_mut() {
+            Some(mega) if port != ON_PINS => mega.type_in(port, bytes),
+            Some(_) => self.sim.send(bytes),
+            None => {}
+        }
+    }
+
+    /// Connects a pin of its emulated board, by its number, to a voltage from 0 to 5 \[V\], or takes that away. False: there
+    /// is no such pin.
+    pub fn apply(&mut self, pin: u8, volts: Option<f64>) -> bool {
+        self.history.push(&Act::Apply(pin, volts));
+        let mega = self.sim.mega_mut();
+        mega.is_some_and(|mega| mega.apply(pin, volts))
+    }
+
+    /// How its program ended, if it could not go on: what, where, when.
+    pub fn ended(&self) -> Option<String> {
+        self.sim.mega()?.verdict()
+    }
+
     /// The goal of its world as seen from its start: ahead, left [m].
     pub fn goal_m(&self) -> Option<[f32; 2]> {
         self.pilot.goal_m()
@@ -134,7 +186,7 @@ impl Robot {
 
     /// An operator or a recorder looks at it at each tick.
     fn needs_every_tick(&self) -> bool {
-        !self.pilot.is_caller() || self.trace.is_some()
+        !self.pilot.is_caller() || self.trace.is_some() || self.probe.is_some()
     }
 
     /// Before a tick: what its operator sends.
@@ -146,12 +198,25 @@ impl Robot {
         }
     }
 
-    /// After a tick, if it is recorded.
+    /// After a tick, if it is recorded or probed.
     fn sample(&mut self) {
+        let from = self.trace.as_ref().map(|trace| trace.consoles.len());
         if let Some(trace) = &mut self.trace {
             trace.sample(&self.sim);
             trace.listen(&mut self.sim);
             trace.link.append(&mut self.sim.take_tapped());
+        }
+        let (Some(probe), Some(mega)) = (&mut self.probe, self.sim.mega_mut()) else {
+            return;
+        };
+        probe.look(mega);
+        match (&self.trace, from) {
+            // What the recorder has taken is heard from there.
+            (Some(trace), Some(from)) => {
+                let said = trace.consoles.iter().skip(from);
+                said.for_each(|said| probe.hear(said.usart, &said.bytes));
+            }
+            _ => (0..CONSOLES).for_each(|port| probe.hear(port, &mega.take_console(port))),
         }
     }
 

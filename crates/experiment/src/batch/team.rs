@@ -82,7 +82,12 @@ impl Team {
                 }
                 Act::Aim(servo) => self.aim(own, servo),
                 Act::Drive(wheels, servo) => self.drive(own, wheels, servo),
-                Act::Duty(..) | Act::Instruct(_) | Act::Record => {}
+                Act::Duty(..)
+                | Act::Instruct(_)
+                | Act::Record
+                | Act::Probe
+                | Act::Type(..)
+                | Act::Apply(..) => {}
             }
         }
         Ok(())

@@ -37,6 +37,8 @@ const DISTANCE: Allowed = Allowed::new(0.02, 2.5, "m");
 const SPEED: Allowed = Allowed::new(-200.0, 200.0, "rpm");
 const MOVE_SPEED: Allowed = Allowed::new(0.0, 200.0, "rpm");
 const DUTY: Allowed = Allowed::new(0.0, 1.0, "");
+/// Commands of a scenario or of one of its robots. A person types no more in an hour.
+pub(super) const MOST_COMMANDS: usize = 10_000;
 /// Minimum time between the commands of a ramp: each is answered before the next is sent.
 const RAMP_STEP_S: f64 = 0.1;
 

@@ -115,7 +115,7 @@ impl Library {
     }
 
     /// Where a path leads that is relative to its folder.
-    pub(super) fn path(&self, path: &Path) -> PathBuf {
+    pub(crate) fn path(&self, path: &Path) -> PathBuf {
         self.base.join(path)
     }
 

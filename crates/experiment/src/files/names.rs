@@ -1,6 +1,7 @@
 //! The names in files and commands for the control core's numbers.
 
 use super::near;
+use super::read::Table;
 use super::word::WordError;
 use rumbo_control::mode::{ModeId, Movement};
 
@@ -47,4 +48,16 @@ pub fn find_movement(name: &str) -> Result<Movement, WordError> {
         .find(|(_, own)| *own == name)
         .map(|(movement, _)| *movement)
         .ok_or_else(|| WordError::Movement(near::near_or_all(name, names)))
+}
+
+/// The key `mode`, if it is given.
+pub(super) fn read_mode(root: &Table<'_, '_>) -> Option<ModeId> {
+    root.word("mode")
+        .and_then(|word| match find_mode(&word.value) {
+            Ok(mode) => Some(mode),
+            Err(remedy) => {
+                root.complain("mode", word.line, &word.value, &remedy.to_string());
+                None
+            }
+        })
 }

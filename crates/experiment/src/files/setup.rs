@@ -8,7 +8,8 @@ use super::read::Allowed;
 use super::start::{pose, stand_apart, stands_free};
 use super::typed::TimedText;
 use super::{
-    Library, PolicyFile, RobotFile, ScenarioFile, Spread, Start, WorldFile, firmware, parameters,
+    Library, Member, NativeProgram, PolicyFile, RobotFile, ScenarioFile, Spread, Start, WorldFile,
+    firmware, parameters,
 };
 use crate::random_world::{Journey, Site, Size};
 use rumbo_control::params::ParamId;
@@ -22,16 +23,6 @@ use rumbo_wire::Command;
 use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
-
-/// The program that drives the robot natively, as part of the simulator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum NativeProgram {
-    /// Ours, behind its link.
-    #[default]
-    Rumbo,
-    /// The report's, rewritten from its description (docs/theory/baseline.md).
-    Baseline,
-}
 
 /// Values of the command line that replace the scenario's.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -56,6 +47,20 @@ pub struct Overrides {
     pub texts: Vec<TimedText>,
     /// What the program says is not believed.
     pub ground_truth: bool,
+}
+
+impl Overrides {
+    /// Those of a robot of a scenario with several, whose paths are relative to `beside`: it has the scenario's program
+    /// unless another is given here.
+    fn of_member(&self, member: &Member, beside: &Library) -> Self {
+        let mut own = self.clone();
+        if self.program == NativeProgram::Rumbo && self.firmware.is_none() {
+            own.program = member.program;
+            own.firmware = member.firmware.as_ref().map(|path| beside.path(path));
+            own.wiring = own.wiring.or_else(|| member.wiring.clone());
+        }
+        own
+    }
 }
 
 /// A scenario ready to run.
@@ -102,7 +107,7 @@ impl Library {
             return self.assemble(scenario, &beside, overrides, true);
         }
         let fleet = (0..).zip(members).map(|(number, member)| {
-            let own = member.overrides(&beside, overrides);
+            let own = overrides.of_member(&member, &beside);
             let setup = self.assemble(member.scenario, &beside, &own, false)?;
             Ok::<_, FileError>(Setup { number, ..setup })
         });

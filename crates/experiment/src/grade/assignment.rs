@@ -8,6 +8,7 @@
 //! contact_penalty = 2          # points lost if every run touches something
 //! compiler = "5.4.0"
 //! core = "1.8.7"
+//! given = ["start"]            # sketches that all began with: no sign that one is copied
 //! [es]                         # the same in Spanish, if wanted
 //! title = "Avanzar hasta una pared"
 //! [[scenario]]
@@ -27,7 +28,7 @@ use crate::files::read::{Allowed, Placed, Source, Table};
 use crate::files::{FileError, Library, Overrides, Setup, bounded, did_you_mean, near};
 use crate::metrics::Metrics;
 use crate::run::run;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A text in both languages.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -57,6 +58,8 @@ pub struct Assignment {
     pub compiler: Option<String>,
     /// Version of the Arduino core that marks are given with.
     pub core: Option<String>,
+    /// Paths of the sketches that all began with.
+    pub given: Vec<PathBuf>,
     /// How long a hand-in may take to compile [s].
     pub compile_s: f64,
     /// The tests.
@@ -184,6 +187,7 @@ impl Assignment {
             contact_penalty: root.number("contact_penalty", PENALTY).unwrap_or(0.0),
             compiler: root.text("compiler").map(|placed| placed.value),
             core: root.text("core").map(|placed| placed.value),
+            given: read_given(&root, &library),
             compile_s: root.number("compile_s", SECONDS).unwrap_or(30.0),
             tests,
             criteria,
@@ -220,6 +224,31 @@ fn check_board(root: &Table<'_, '_>, tests: &[Test]) {
         let must = format!("the robots of its scenarios have the board \"{board}\"");
         root.complain("board", named.line, &named.value, &must);
     }
+}
+
+/// The paths of `given`, beside the file.
+fn read_given(root: &Table<'_, '_>, library: &Library) -> Vec<PathBuf> {
+    let what = "a list of paths, e.g. [\"start\"]";
+    let Some((_, items)) = root.items("given", what) else {
+        return Vec::new();
+    };
+    let paths = items.iter().filter_map(|item| {
+        let path = item
+            .value
+            .as_str()
+            .map(|name| library.path(Path::new(name)));
+        if !path.as_ref().is_some_and(|path| path.exists()) {
+            let shown = item.value.as_str().unwrap_or("that");
+            root.complain(
+                "given",
+                item.line,
+                shown,
+                "no such file or folder beside this one",
+            );
+        }
+        path
+    });
+    paths.collect()
 }
 
 /// A text and its Spanish.

@@ -135,6 +135,21 @@ impl Firmware {
         &self.wiring
     }
 
+    /// The board's number of a pin by its number or name (`7`, `A0`), by what is wired to it (`left_enable`), or by the part
+    /// at it.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<u8> {
+        let part = self.parts.iter().find(|part| part.name == name);
+        let named = self.number_of(name).or(part.map(|part| part.pin));
+        named.or_else(|| self.board.numbered(name))
+    }
+
+    /// The names that [`Firmware::find`] knows beside the board's own.
+    pub fn found(&self) -> impl Iterator<Item = &str> + Clone {
+        let parts = self.parts.iter().map(|part| part.name.as_str());
+        self.pins.keys().map(String::as_str).chain(parts)
+    }
+
     /// The board's number of the pin that a signal is on.
     pub(super) fn number_of(&self, signal: &str) -> Option<u8> {
         self.pins.get(signal).copied()

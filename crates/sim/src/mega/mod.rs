@@ -87,6 +87,8 @@ const TRIGGER_CYCLES: u64 = 10 * CYCLES_PER_US;
 const FIRING_CYCLES: u64 = 4 * CYCLES_PER_US;
 /// The rate of a terminal at a USART that does not receive \[baud\].
 const UNSET_BAUD: u32 = 9600;
+/// A digital input is high above half of the supply \[V\].
+const LOGIC_V: f64 = 2.5;
 /// An input goes into the chip's queue this long before its cycle: until then nothing the chip does can change it.
 const AHEAD_CYCLES: u64 = CYCLES_PER_US;
 
@@ -265,6 +267,29 @@ impl Mega {
         let name = self.firmware.name();
         let verdict = verdict.describe(self.firmware.image());
         Some(format!("firmware {name}: {verdict}"))
+    }
+
+    /// The chip's cycle at time 0 of the simulation.
+    pub fn zero_cycle(&self) -> u64 {
+        self.zero_cycle
+    }
+
+    /// Connects a pin of the board, by its number, to a voltage between 0 and 5 \[V\]: a level for its digital input, and
+    /// what the converter reads where it has one. `None` takes it away: the pin floats, or follows its pull-up. False: the
+    /// board has no such pin.
+    pub fn apply(&mut self, number: u8, volts: Option<f64>) -> bool {
+        let board = self.firmware.board();
+        let cycle = self.chip.cycle();
+        let (pin, channel) = (board.pin(number), board.channel(number));
+        if let Some(pin) = pin {
+            let level = volts.map(|volts| volts > LOGIC_V);
+            self.meters.set(cycle, pin, level.unwrap_or_default());
+            self.chip.input(cycle, Input::Pin(pin, level));
+        }
+        if let (Some(channel), Some(volts)) = (channel, volts) {
+            self.chip.input(cycle, Input::Volts { channel, volts });
+        }
+        pin.is_some() || channel.is_some()
     }
 
     /// Drains what USART `usart` has sent, whatever it is connected to.

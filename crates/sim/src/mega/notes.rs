@@ -131,10 +131,13 @@ impl Mega {
 
     /// That the program begins again and again, though nothing resets the chip.
     fn anew(&self) -> Option<String> {
+        /// `jmp 0`, where the C library has all interrupts lead that no function handles.
+        const BAD_INTERRUPT: [u8; 4] = [0x0C, 0x94, 0, 0];
         let begun = self.chip.cpu().begun_anew();
         let (times, at) = begun.filter(|(times, _)| *times > RESETS)?;
         let (name, place) = (self.firmware.name(), self.firmware.image().place(at));
-        let why = match place.ends_with("__bad_interrupt") {
+        let here = self.chip.cpu().flash().get(2 * at as usize..);
+        let why = match here.is_some_and(|here| here.starts_with(&BAD_INTERRUPT)) {
             true => "an interrupt was on that no function handles",
             false => {
                 "a function that is not there was called, or a pointer to one that is 0; with Arduino's core 1.8.3 and later \

@@ -873,7 +873,7 @@ fn a_program_that_begins_again_and_again_is_told_why() {
         (
             "anew_interrupt",
             by_interrupt,
-            "in __bad_interrupt: an interrupt was on that no function handles",
+            ": an interrupt was on that no function handles",
         ),
     ] {
         let Some(bench) = kit(name, LETTERS_WIRING, sketch) else {

@@ -24,14 +24,13 @@
 //! name = "north"
 //! ```
 
-use super::commands::{TimedCommand, read_commands};
-use super::error::FileError;
-use super::faults::{MOST_FAULTS, read_sonar_faults, read_wire_faults};
-use super::fleet::{Member, read_fleet};
-use super::names::find_mode;
-use super::parameters::read_parameters;
-use super::read::{Allowed, Source, Table};
-use super::robot::read_plant;
+mod fleet;
+mod read;
+
+pub(crate) use read::read_bounds;
+
+use super::commands::TimedCommand;
+use super::read::Table;
 use super::typed::TimedText;
 use super::value::{ANGLE, PLACE};
 use rumbo_control::mode::ModeId;
@@ -39,6 +38,7 @@ use rumbo_control::params::ParamId;
 use rumbo_sim::sonar_fault::TimedSonarFault;
 use rumbo_sim::wire_fault::TimedWireFault;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// An experiment, as `scenarios/*.toml` describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,6 +95,29 @@ pub struct ScenarioFile {
     pub fleet: Vec<Member>,
 }
 
+/// The program that drives the robot natively, as part of the simulator.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NativeProgram {
+    /// Ours, behind its link.
+    #[default]
+    Rumbo,
+    /// The report's, rewritten from its description (docs/theory/baseline.md).
+    Baseline,
+}
+
+/// A robot of a scenario with several.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Member {
+    /// The scenario as this robot has it, by the robot's name.
+    pub scenario: ScenarioFile,
+    /// The native program that drives it.
+    pub program: NativeProgram,
+    /// An image on an emulated chip that replaces it, by its path beside the scenario.
+    pub firmware: Option<PathBuf>,
+    /// The wiring of the image; `None`: chosen by its language and the mode.
+    pub wiring: Option<String>,
+}
+
 /// The pose at the start, in the world frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
@@ -145,82 +168,6 @@ pub enum Spread {
     None,
 }
 
-const DURATION: Allowed = Allowed::new(0.1, 3600.0, "s");
-/// A person types no more in an hour.
-pub(super) const MOST_COMMANDS: usize = 10_000;
-const BOUND: Allowed = Allowed::new(-1e9, 1e9, "");
-
-impl ScenarioFile {
-    /// Reads a scenario. [`super::Library::setup`] checks whether its robot, rig and world exist.
-    ///
-    /// # Errors
-    /// All problems of the text, by line of `file`.
-    pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, FileError> {
-        let source = Source::new(file, text);
-        let parsed = source.parse()?;
-        let root = source.root(&parsed);
-        let given = read_given_mode(&root);
-        let mode = if root.has("mode") {
-            given
-        } else {
-            Some(ModeId::Manual)
-        };
-        root.require("duration_s", &DURATION.remedy());
-        // A wrong one does not shorten anything else.
-        let duration_s = root.number("duration_s", DURATION).unwrap_or(DURATION.max);
-        let (commands, texts) =
-            read_commands(root.tables("command", MOST_COMMANDS), mode, duration_s);
-        let mut scenario = Self {
-            name: name.into(),
-            path: None,
-            title: root
-                .required_text("title", "one line that says what the experiment is")
-                .value,
-            group: root.text("group").map(|group| group.value),
-            text: text.into(),
-            robot: root
-                .required_text("robot", "name of a robot, e.g. \"memoria\"")
-                .value,
-            rig: root.text("rig").map(|rig| rig.value).unwrap_or_default(),
-            world: root
-                .required_text("world", "name of a world, e.g. \"open\"")
-                .value,
-            policy: root.text("policy").map(|policy| policy.value),
-            mode: mode.unwrap_or_default(),
-            has_mode: root.has("mode"),
-            duration_s,
-            start: read_start(&root.table("start")),
-            wheels_in_air: root.flag("wheels_in_air").is_some_and(|flag| flag.value),
-            calibrated: root.flag("calibrated").is_some_and(|flag| flag.value),
-            commands,
-            texts,
-            sonar_faults: read_sonar_faults(root.tables("sonar_fault", MOST_FAULTS), duration_s),
-            wire_faults: read_wire_faults(root.tables("wire_fault", MOST_FAULTS), duration_s),
-            limits: read_limits(&root.table("limits"), ""),
-            parameters: read_parameters(&root.table("parameters")),
-            spread: read_spread(&root.table("spread")),
-            plant: read_plant(&root.table("plant"), ""),
-            fleet: Vec::new(),
-        };
-        scenario.fleet = read_fleet(&root, &scenario);
-        root.finish();
-        source.verdict()?;
-        Ok(scenario)
-    }
-}
-
-/// The mode, if one is given.
-pub(super) fn read_given_mode(root: &Table<'_, '_>) -> Option<ModeId> {
-    root.word("mode")
-        .and_then(|word| match find_mode(&word.value) {
-            Ok(mode) => Some(mode),
-            Err(remedy) => {
-                root.complain("mode", word.line, &word.value, &remedy.to_string());
-                None
-            }
-        })
-}
-
 pub(super) fn read_start(table: &Table<'_, '_>) -> Start {
     let start = Start {
         x_m: table.number("x_m", PLACE).unwrap_or(0.0),
@@ -232,47 +179,4 @@ pub(super) fn read_start(table: &Table<'_, '_>) -> Start {
     };
     table.finish();
     start
-}
-
-fn read_spread(table: &Table<'_, '_>) -> Spread {
-    let none = table.flag("none").is_some_and(|flag| flag.value);
-    table.finish();
-    if none { Spread::None } else { Spread::Drawn }
-}
-
-/// Limits by metric. A dot in a metric's name may be quoted or not: TOML then nests, and the names are joined again.
-fn read_limits(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String, Bounds> {
-    let mut limits = BTreeMap::new();
-    for key in table.keys() {
-        let metric = format!("{prefix}{}", key.value);
-        let below = table.table(key.value);
-        if !below.has("min")
-            && !below.has("max")
-            && below
-                .keys()
-                .iter()
-                .any(|inner| below.holds_table(inner.value))
-        {
-            limits.extend(read_limits(&below, &format!("{metric}.")));
-            continue;
-        }
-        let bounds = Bounds {
-            min: below.number("min", BOUND),
-            max: below.number("max", BOUND),
-        };
-        if below.keys().is_empty() && table.holds_table(key.value) {
-            below.complain_here("has neither min nor max: write e.g. { max = 2.4 }");
-        }
-        if let Bounds {
-            min: Some(min),
-            max: Some(max),
-        } = bounds
-            && min > max
-        {
-            below.complain_here(&format!("min {min} is above max {max}: nothing could pass"));
-        }
-        below.finish();
-        limits.insert(metric, bounds);
-    }
-    limits
 }

@@ -17,47 +17,19 @@
 //! An entry may have most keys of a scenario: robot, rig, mode, start, commands, parameters, plant, failing sonars and
 //! wires. What it does not have is that of the scenario around it; its parameters and plant values come on top of those.
 
-use super::Library;
-use super::commands::read_commands;
-use super::faults::{MOST_FAULTS, read_sonar_faults, read_wire_faults};
-use super::parameters::read_parameters;
-use super::read::Table;
-use super::robot::read_plant;
-use super::scenario::{MOST_COMMANDS, ScenarioFile, read_given_mode, read_start};
-use super::setup::{NativeProgram, Overrides};
+use super::{Member, NativeProgram, ScenarioFile, read_start};
+use crate::files::commands::{MOST_COMMANDS, read_commands};
+use crate::files::faults::{MOST_FAULTS, read_sonar_faults, read_wire_faults};
+use crate::files::names::read_mode;
+use crate::files::parameters::read_parameters;
+use crate::files::read::Table;
+use crate::files::robot::read_plant;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 /// Robots of a scenario.
 const MOST_ROBOTS: usize = 32;
 /// It stands in the names of metrics and files.
 const LONGEST_NAME: usize = 20;
-
-/// A robot of a scenario with several.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Member {
-    /// The scenario as this robot has it, by the robot's name.
-    pub scenario: ScenarioFile,
-    /// The native program that drives it.
-    pub program: NativeProgram,
-    /// An image on an emulated chip that replaces it, by its path beside the scenario.
-    pub firmware: Option<PathBuf>,
-    /// The wiring of the image; `None`: chosen by its language and the mode.
-    pub wiring: Option<String>,
-}
-
-impl Member {
-    /// The overrides of the command line for this robot: the scenario's programs unless another is given there.
-    pub(super) fn overrides(&self, beside: &Library, given: &Overrides) -> Overrides {
-        let mut own = given.clone();
-        if given.program == NativeProgram::Rumbo && given.firmware.is_none() {
-            own.program = self.program;
-            own.firmware = self.firmware.as_ref().map(|path| beside.path(path));
-            own.wiring = own.wiring.or_else(|| self.wiring.clone());
-        }
-        own
-    }
-}
 
 /// Reads the robots, in order; `around` is the scenario without them.
 pub(super) fn read_fleet(root: &Table<'_, '_>, around: &ScenarioFile) -> Vec<Member> {
@@ -97,7 +69,7 @@ fn read_member(table: &Table<'_, '_>, name: String, around: &ScenarioFile) -> Me
     if let Some(rig) = table.text("rig") {
         own.rig = rig.value;
     }
-    if let Some(mode) = read_given_mode(table) {
+    if let Some(mode) = read_mode(table) {
         own.mode = mode;
     }
     let start = read_start(&table.table("start"));
