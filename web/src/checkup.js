@@ -69,7 +69,7 @@ const MISCOUNTED = 0.06;
 /**
  * How far a wheel turned by what its program shows.
  * @param {ArrayLike<number>} t \[s\]
- * @param {ArrayLike<number | null>} rpm
+ * @param {ArrayLike<number | null | undefined>} rpm
  * @param {number} from index
  */
 export function turned(t, rpm, from) {
