@@ -24,6 +24,11 @@ const MOST_NUMBERS: usize = 64;
 /// Longest log \[s\].
 const LONGEST_S: f64 = 604_800.0;
 
+/// Times \[s\], and values.
+type Samples = Vec<(f64, f64)>;
+/// Signals of a log that one column gives.
+type Signals = (&'static [&'static str], Samples);
+
 /// What a file of another program holds.
 struct Held {
     series: Vec<Series>,
@@ -188,8 +193,8 @@ impl Held {
             true => self.series.clone(),
             false => self.with_times(taken, &mut notes)?,
         };
-        let mut signals: Vec<(&[&str], Vec<(f64, f64)>)> = Vec::new();
-        let mut numbers: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+        let mut signals: Vec<Signals> = Vec::new();
+        let mut numbers: Vec<(String, Samples)> = Vec::new();
         for one in taken {
             let Some(column) = one.column.and_then(|column| series.get(column)) else {
                 continue;
@@ -198,7 +203,7 @@ impl Held {
                 .samples
                 .iter()
                 .map(|(t_s, value)| (*t_s, value * one.factor));
-            let scaled: Vec<(f64, f64)> = scaled.collect();
+            let scaled: Samples = scaled.collect();
             match one.role {
                 Role::Time | Role::Period => {}
                 Role::Number(name) => numbers.push((name.to_owned(), scaled)),
@@ -307,7 +312,7 @@ impl Held {
 /// A log that is made.
 struct Made {
     rows: Vec<Row>,
-    numbers: Vec<(String, Vec<(f64, f64)>)>,
+    numbers: Vec<(String, Samples)>,
     end_s: f64,
     notes: Vec<String>,
 }
@@ -462,7 +467,7 @@ fn check(
 }
 
 /// Speeds of a wheel by how far it has turned.
-fn speeds(angles: &[(f64, f64)]) -> Vec<(f64, f64)> {
+fn speeds(angles: &[(f64, f64)]) -> Samples {
     let mut from = 0;
     let mut speeds = Vec::new();
     for (index, (t_s, angle)) in angles.iter().enumerate() {
@@ -482,7 +487,7 @@ fn speeds(angles: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// Rows at the times of the signal that has most samples; what the others said last still holds.
-fn rows(signals: &[(&[&str], Vec<(f64, f64)>)]) -> Vec<Row> {
+fn rows(signals: &[Signals]) -> Vec<Row> {
     let Some((_, times)) = signals.iter().max_by_key(|(_, samples)| samples.len()) else {
         return Vec::new();
     };
