@@ -42,7 +42,7 @@ pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
     let assignment = Assignment::read(&output::shown(&args.assignment))?;
     let stamp = check_places(args, &assignment)?;
     set_threads(args.threads)?;
-    let (found, others) = hand_ins::find(&args.folder)?;
+    let hand_ins::Class { found, others, .. } = &hand_ins::find(&args.folder)?;
     let files = file_names(found.iter().map(hand_ins::Found::name));
     check_files(args, &assignment, &stamp, &files)?;
     if !others.is_empty() {
@@ -51,7 +51,7 @@ pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
             more => format!(" and {more} more"),
         };
         output::note(&format!(
-            "not graded: {}{more}; a hand-in is a folder with a sketch, an .ino, an .elf or a .hex; it is no link, and its name begins with no full stop",
+            "not graded: {}{more}; a hand-in is a folder with a sketch, an .ino, an .elf, a .hex, or a .zip of these; it is no link, and its name begins with no full stop",
             others[..others.len().min(MOST_NAMED)].join(", ")
         ));
     }
@@ -63,7 +63,7 @@ pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
     };
     let notes = class_notes(&assignment, compiler.as_ref());
     let progress = progress_bar(sketches, "{bar:40} {pos}/{len} compiled, {eta} left");
-    let hand_ins = hand_ins::compile(&found, compiler.as_ref(), || progress.inc(1));
+    let hand_ins = hand_ins::compile(found, compiler.as_ref(), || progress.inc(1));
     progress.finish_and_clear();
     let runs = assignment.runs() * hand_ins.iter().filter(|one| one.program.is_ok()).count();
     if !std::io::stderr().is_terminal() {
@@ -73,7 +73,7 @@ pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
     let progress = progress_bar(runs, "{bar:40} {pos}/{len} runs, {eta} left");
     let marks = grade_all(&assignment, &hand_ins, || progress.inc(1));
     progress.finish_and_clear();
-    let likeness = Likeness::among(&found, &assignment)?;
+    let likeness = Likeness::among(found, &assignment)?;
     write(
         args,
         &assignment,

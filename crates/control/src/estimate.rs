@@ -63,7 +63,7 @@ pub struct Estimate {
     pub servo_rad: f32,
     /// The servo has reached its setpoint.
     pub servo_arrived: bool,
-    /// A sonar's reading of this tick, unfiltered.
+    /// A sonar's reading of this tick, unfiltered; its view is for modes, after [`Estimate::face_reading`].
     pub reading: Option<Reading>,
     /// Filtered ranges by `SonarId` number; for a sonar on the servo only readings ahead.
     pub ranges: [AgedRange; 3],
@@ -82,6 +82,16 @@ impl Estimate {
             pose: self.pose,
             sin,
             cos,
+        }
+    }
+
+    /// Turns the view of this tick's reading, which [`Estimator::step`] leaves in the world, with an axis that is not wrapped,
+    /// to the robot. Once, before a mode looks: the outputs do not wait for it.
+    pub fn face_reading(&mut self) {
+        let robot = self.transform();
+        if let Some(Reading { view, .. }) = &mut self.reading {
+            (view.x_m, view.y_m) = robot.to_local(view.x_m, view.y_m);
+            view.axis_rad = wrap_angle(view.axis_rad);
         }
     }
 
@@ -153,13 +163,12 @@ impl Estimator {
         };
     }
 
-    /// The echo of this tick, with the view from which it was pinged.
+    /// The echo of this tick, with the view from which it was pinged: in the world, but for the axis.
     fn reading(&mut self, params: &Params, inputs: &Inputs) -> Option<Reading> {
         let (sonar, echo) = inputs.echo?;
         let ping = self.pings.get_mut(sonar as usize)?.take()?;
         let mount = params.view(sonar, ping.servo_rad)?;
         let (x_m, y_m) = ping.place.to_world(mount.x_m, mount.y_m);
-        let (x_m, y_m) = self.place.to_local(x_m, y_m);
         let turned_rad = self.place.pose.heading_rad - ping.place.pose.heading_rad;
         let range = range_from_echo(echo, params.get(ParamId::SoundSpeed));
         if sonar == SonarId::Front {
@@ -171,7 +180,7 @@ impl Estimator {
             view: View {
                 x_m,
                 y_m,
-                axis_rad: wrap_angle(mount.axis_rad - turned_rad),
+                axis_rad: mount.axis_rad - turned_rad,
             },
             servo_rad: ping.servo_rad,
         })
@@ -340,7 +349,8 @@ mod tests {
             echo: Some((SonarId::Left, Echo::Pulse(3_000))),
             ..Inputs::default()
         };
-        let estimate = step(&mut estimator, &params, &inputs, Wheels::default());
+        let mut estimate = step(&mut estimator, &params, &inputs, Wheels::default());
+        estimate.face_reading();
         let reading = estimate.reading.unwrap();
         let half_pi = core::f32::consts::FRAC_PI_2;
         assert!((reading.view.axis_rad - (half_pi - 0.2)).abs() < 1e-5);

@@ -114,7 +114,7 @@ fn of_image(line: &str) -> Option<Complaint> {
 }
 
 /// Notes beside a run or a hand-in, with names where values stand, and their names in `messages.md`.
-const NOTES: [(&str, &str); 10] = [
+const NOTES: [(&str, &str); 11] = [
     (
         "firmware {name}: it never drove a motor; are its pins those of wiring {wiring}? (docs/emulator.md)",
         "no-motor",
@@ -147,6 +147,7 @@ const NOTES: [(&str, &str); 10] = [
         "handed in as an image: its compiler is not known",
         "image-handed-in",
     ),
+    ("handed in late, as its name says", "handed-in-late"),
     (
         "compiled with {what} {is}; the assignment's marks are for {wanted}",
         "other-compiler",

@@ -23,6 +23,7 @@ use rumbo_wire::Command;
 use std::collections::BTreeSet;
 
 const POINTS_OF: Text = word("points-of");
+const SEEDS: Text = word("seeds-driven");
 const EARNED: Text = word("earned-by-line");
 const NOT_DRIVEN: Text = word("could-not-be-driven");
 const ENDED: Text = word("program-ended");
@@ -71,6 +72,18 @@ pub fn noted(language: Language, line: &str) -> String {
     complaint(language, line).text()
 }
 
+/// With how many seeds a hand-in is driven, and how many of them nobody knows, in a language.
+#[must_use]
+pub fn seeds_in_words(assignment: &Assignment, language: Language) -> String {
+    let count = |seeds: fn(&Test) -> usize| -> String {
+        let all: usize = assignment.tests.iter().map(seeds).sum();
+        all.to_string()
+    };
+    let public = count(|test| test.public.len());
+    let hidden = count(|test| test.hidden.len());
+    SEEDS.with(language, &[("public", &public), ("hidden", &hidden)])
+}
+
 /// Points and measurement of a line of the rubric, in a language.
 #[must_use]
 pub fn earned_in_words(assignment: &Assignment, line: &Line, language: Language) -> String {
@@ -117,6 +130,8 @@ pub fn student(
     language: Language,
 ) -> String {
     let mut body = verdict(mark, language);
+    let seeds = escape(&seeds_in_words(assignment, language));
+    put(&mut body, format_args!("<p>{seeds}</p>\n"));
     let notes = [notes, &mark.notes].concat();
     body += &list(language, NOTES, &notes);
     if mark.refused.is_empty() {

@@ -130,6 +130,7 @@ impl Pilot {
         if armed {
             let motion = &self.estimate.motion;
             self.encoders.step(&self.params, motion, self.duty)?;
+            self.estimate.face_reading();
             self.action = self.mode.step(&self.params, &self.estimate)?;
         }
         if self.action.new_origin {

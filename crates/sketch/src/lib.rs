@@ -9,6 +9,7 @@
 //! runs it on a [`Source`], in a [`sandbox`] if the source is not trusted. Products are cached by the hash of all that
 //! went into them. The options are those of the core's `platform.txt` and `boards.txt`.
 
+pub mod archive;
 mod board;
 mod build;
 mod bundled;

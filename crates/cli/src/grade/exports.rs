@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::junit::{Case, Suite, document};
 use rumbo_experiment::grade::{Assignment, Mark};
 use rumbo_report::Stamp;
-use rumbo_report::grade::{earned_in_words, noted, of};
+use rumbo_report::grade::{earned_in_words, noted, of, seeds_in_words};
 use rumbo_report::text::Language;
 use serde_json::json;
 
@@ -91,11 +91,14 @@ pub(super) fn gradescope(
         })
         .collect();
     let text = [notes, &mark.notes, &mark.refused, &mark.ended].concat();
-    let text: Vec<_> = text.iter().map(|line| noted(language, line)).collect();
+    let text = text.iter().map(|line| noted(language, line));
+    let seeds = std::iter::once(seeds_in_words(assignment, language));
+    let text: Vec<_> = seeds.chain(text).collect();
     let results = json!({
         "extra_data": { "made_by": stamp.text() },
         "score": mark.points,
         "output": text.join("\n"),
+        "visibility": "visible",
         "tests": tests,
     });
     let mut text = serde_json::to_string_pretty(&results).map_err(Failure::input)?;

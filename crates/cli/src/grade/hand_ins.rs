@@ -4,10 +4,13 @@ use crate::failure::Failure;
 use rayon::prelude::*;
 use rumbo_experiment::files::firmware;
 use rumbo_experiment::grade::HandIn;
+use rumbo_sketch::archive::{Bounds, unpack};
 use rumbo_sketch::similar::text_of;
 use rumbo_sketch::{Compiler, Given, SketchError, given};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use tempfile::TempDir;
 
 /// Most lines kept of a compiler's output.
 const MOST_LINES: usize = 60;
@@ -17,7 +20,18 @@ const MOST: usize = 10_000;
 /// A hand-in as found.
 pub(super) struct Found {
     name: String,
+    is_late: bool,
     given: Result<Given, SketchError>,
+}
+
+/// All that was found in a folder or an archive.
+pub(super) struct Class {
+    /// The hand-ins, in the order of their names.
+    pub(super) found: Vec<Found>,
+    /// Names of what is none.
+    pub(super) others: Vec<String>,
+    /// Archives are unpacked here, as long as it is looked at.
+    _unpacked: Option<TempDir>,
 }
 
 impl Found {
@@ -38,9 +52,9 @@ impl Found {
     }
 }
 
-/// The hand-ins in a folder, each a folder or a file, and the names of what else is there. A file, or a folder that is
+/// The hand-ins in a folder or an archive of a class, each a folder, a file or an archive. A file, or a folder that is
 /// itself a sketch, is the only one.
-pub(super) fn find(folder: &Path) -> Result<(Vec<Found>, Vec<String>), Failure> {
+pub(super) fn find(folder: &Path) -> Result<Class, Failure> {
     let wrong = |error: std::io::Error| {
         Failure::Input(format!(
             "{}: {error}; give the folder with the hand-ins",
@@ -50,45 +64,137 @@ pub(super) fn find(folder: &Path) -> Result<(Vec<Found>, Vec<String>), Failure> 
     let about = fs::metadata(folder).map_err(wrong)?;
     let own = folder.canonicalize().map_err(wrong)?;
     let name = stem(&own);
-    if about.is_file() || own.join(format!("{name}.ino")).is_file() {
+    if !is_archive(&own) && (about.is_file() || own.join(format!("{name}.ino")).is_file()) {
         let given = given(&own, false);
-        return Ok((vec![Found { name, given }], Vec::new()));
+        let is_late = false;
+        return Ok(Class {
+            found: vec![Found {
+                name,
+                is_late,
+                given,
+            }],
+            others: Vec::new(),
+            _unpacked: None,
+        });
     }
-    let entries = fs::read_dir(folder).map_err(wrong)?.flatten();
+    let (mut unpacked, mut others) = (None, Vec::new());
+    let inside = match is_archive(&own) {
+        true => {
+            let place = tempfile::tempdir().map_err(wrong)?;
+            let whole = place.path().join("class");
+            others.extend(unpack(&own, &whole, Bounds::CLASS)?);
+            unpacked = Some(place);
+            only_folder(whole)
+        }
+        false => own,
+    };
+    let entries = fs::read_dir(&inside).map_err(wrong)?.flatten();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
     // As people look names up, whatever their capitals.
     paths.sort_by_cached_key(|path| (super::name_of(path).to_lowercase(), path.clone()));
-    let (paths, others): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_hand_in(path));
-    let hidden = |path: &Path| super::name_of(path).starts_with('.');
+    let (paths, more): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_hand_in(path));
+    let hidden = |path: &Path| super::name_of(path).starts_with('.') || path.ends_with("__MACOSX");
     // Hidden files of other programs are nobody's hand-in.
-    let (paths, more): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| !hidden(path));
-    let others = others.into_iter().filter(|path| !hidden(path));
-    let others: Vec<PathBuf> = others.chain(more).collect();
+    let (paths, own): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| !hidden(path));
+    let more = more.into_iter().filter(|path| !hidden(path)).chain(own);
+    others.extend(more.map(|path| super::name_of(&path)));
     match paths.len() {
-        0 => Err(Failure::Input(format!(
-            "{}: no hand-ins; each is a folder with a sketch, an .ino, an .elf or a .hex",
-            folder.display()
-        ))),
-        1..=MOST => {
-            let found = paths.iter().map(|path| Found {
-                name: stem(path),
-                given: given(path, false),
-            });
-            let others = others.iter().map(|path| super::name_of(path));
-            Ok((found.collect(), others.collect()))
+        0 => {
+            return Err(Failure::Input(format!(
+                "{}: no hand-ins; each is a folder with a sketch, an .ino, an .elf, a .hex, or a .zip of these",
+                folder.display()
+            )));
         }
-        count => Err(Failure::Input(format!(
-            "{}: {count} hand-ins; at most {MOST} are graded at a time",
-            folder.display()
-        ))),
+        1..=MOST => {}
+        count => {
+            return Err(Failure::Input(format!(
+                "{}: {count} hand-ins; at most {MOST} are graded at a time",
+                folder.display()
+            )));
+        }
     }
+    if unpacked.is_none() && paths.iter().any(|path| is_archive(path)) {
+        unpacked = Some(tempfile::tempdir().map_err(wrong)?);
+    }
+    let mut tries: BTreeMap<String, usize> = BTreeMap::new();
+    let mut found = Vec::new();
+    for (number, path) in paths.iter().enumerate() {
+        let (person, is_late) = person(&stem(path));
+        let tried = tries.entry(person.clone()).or_default();
+        *tried += 1;
+        let place = unpacked
+            .as_ref()
+            .map(|place| place.path().join(number.to_string()));
+        found.push(Found {
+            name: match tried {
+                1 => person,
+                tried => format!("{person} ({tried})"),
+            },
+            is_late,
+            given: match place.filter(|_| is_archive(path)) {
+                Some(place) => of_archive(path, &place),
+                None => given(path, false),
+            },
+        });
+    }
+    Ok(Class {
+        found,
+        others,
+        _unpacked: unpacked,
+    })
+}
+
+/// What is in a person's archive.
+fn of_archive(archive: &Path, place: &Path) -> Result<Given, SketchError> {
+    unpack(archive, place, Bounds::SKETCH)?;
+    // macOS puts its own folder beside the other one.
+    let _ = fs::remove_dir_all(place.join("__MACOSX"));
+    given(&only_folder(place.to_owned()), false)
+}
+
+/// The one folder in a folder, if nothing else is there, or the folder.
+fn only_folder(folder: PathBuf) -> PathBuf {
+    let inside = fs::read_dir(&folder).into_iter().flatten().flatten();
+    let inside: Vec<PathBuf> = inside.map(|entry| entry.path()).collect();
+    match &inside[..] {
+        [only] if only.is_dir() => only.clone(),
+        _ => folder,
+    }
+}
+
+/// The person that a hand-in is of, and whether its name says that it is late: Moodle's `Ana Paz_123_assignsubmission_file`,
+/// Canvas's `pazana_LATE_123_456_sketch`; any other name is the person's.
+fn person(name: &str) -> (String, bool) {
+    let parts: Vec<&str> = name.split('_').collect();
+    let is_number =
+        |part: &&str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let moodle = parts.iter().position(|part| *part == "assignsubmission");
+    let late = parts.iter().position(|part| *part == "LATE");
+    let end = match (moodle, late) {
+        (Some(at), _) if at > 1 && is_number(&parts[at - 1]) => at - 1,
+        (_, Some(at)) if at > 0 => at,
+        _ => match parts.windows(2).position(|pair| pair.iter().all(is_number)) {
+            Some(at) if at > 0 && at + 2 < parts.len() => at,
+            _ => parts.len(),
+        },
+    };
+    (parts[..end].join("_"), late.is_some_and(|at| at > 0))
+}
+
+fn is_archive(path: &Path) -> bool {
+    path.is_file()
+        && path
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case("zip"))
 }
 
 /// A folder or a file that may be one; not a link, which may lead anywhere.
 fn is_hand_in(path: &Path) -> bool {
     let ending = path.extension().and_then(|ending| ending.to_str());
     fs::symlink_metadata(path).is_ok_and(|about| {
-        about.is_dir() || about.is_file() && matches!(ending, Some("ino" | "elf" | "hex"))
+        about.is_dir()
+            || about.is_file()
+                && (matches!(ending, Some("ino" | "elf" | "hex")) || is_archive(path))
     })
 }
 
@@ -116,12 +222,13 @@ pub(super) fn compile(
             if one.is_sketch() {
                 done();
             }
-            let notes = match one.given {
-                Ok(Given::Image(_)) => {
-                    vec!["handed in as an image: its compiler is not known".into()]
-                }
-                _ => Vec::new(),
-            };
+            let mut notes = Vec::new();
+            if matches!(one.given, Ok(Given::Image(_))) {
+                notes.push("handed in as an image: its compiler is not known".into());
+            }
+            if one.is_late {
+                notes.push("handed in late, as its name says".into());
+            }
             HandIn {
                 name: one.name.clone(),
                 program,
@@ -153,9 +260,30 @@ fn lines(error: &SketchError) -> Vec<String> {
 fn nameless(error: &SketchError) -> String {
     match error {
         SketchError::NoSketch(_) => {
-            "no sketch here: hand in a folder with one .ino, or the .elf or .hex of it".into()
+            "no sketch here: hand in a folder with one .ino, the .elf or .hex of it, or a .zip of these".into()
         }
         SketchError::File { reason, .. } => format!("it cannot be read: {reason}"),
         other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::person;
+
+    #[test]
+    fn names_of_hand_ins_are_those_of_their_people() {
+        for (name, of, late) in [
+            ("Ana Paz_4711_assignsubmission_file", "Ana Paz", false),
+            ("Ana Paz_4711_assignsubmission_file_", "Ana Paz", false),
+            ("pazana_LATE_4711_815_sketch", "pazana", true),
+            ("pazana_4711_815_wall_2", "pazana", false),
+            ("ana_paz", "ana_paz", false),
+            ("group_12", "group_12", false),
+            ("LATE_bird", "LATE_bird", false),
+            ("submission_4711", "submission_4711", false),
+        ] {
+            assert_eq!(person(name), (of.to_owned(), late), "{name}");
+        }
     }
 }

@@ -9,9 +9,12 @@ use rumbo_sketch::sandbox::Sandbox;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 use support::{folder, program, stderr, stdout};
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
 
 pub(super) fn assignment(name: &str) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/assignments");
@@ -309,6 +312,66 @@ fn hostile_hand_ins_gain_nothing_and_change_no_other_mark() {
     );
 }
 
+/// A zip archive.
+fn zipped(files: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut zip = ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for (name, bytes) in files {
+        zip.start_file(*name, SimpleFileOptions::default()).unwrap();
+        zip.write_all(bytes).unwrap();
+    }
+    zip.finish().unwrap().into_inner()
+}
+
+#[test]
+fn a_class_is_graded_as_a_course_hands_it_out() {
+    let Some(bench) = bench("archives") else {
+        return;
+    };
+    let model = fs::read(assignment("wall").join("model/model.ino")).unwrap();
+    let own = zipped(&[
+        ("wall/wall.ino", &model),
+        ("__MACOSX/wall/._wall.ino", b"x"),
+    ]);
+    let class = zipped(&[
+        ("Ana Paz_4711_assignsubmission_file/wall.ino", &model),
+        ("bobsmith_LATE_4712_815_wall.zip", &own),
+        ("bobsmith_4712_816_wall.zip", b"PK no archive"),
+        ("readme.txt", b"x"),
+        ("../../dora.ino", &model),
+    ]);
+    fs::write(bench.join("class.zip"), class).unwrap();
+    let mut command = program();
+    command.current_dir(&bench).arg("grade");
+    command.arg(assignment("wall").join("assignment.toml"));
+    command.args(["class.zip", "--language", "en", "--out", "out"]);
+    command.env("RUMBO_CACHE", folder().join("sketches"));
+    let output = command.output().unwrap();
+    let said = stdout(&output) + &stderr(&output);
+    assert!(
+        said.contains("not graded: ../../dora.ino, readme.txt; a hand-in is"),
+        "{said}"
+    );
+    assert!(
+        said.contains("alike: Ana Paz and bobsmith (2): 100 %"),
+        "{said}"
+    );
+    let results = results(&bench.join("out"));
+    let score = |name: &str| results[name]["score"].as_f64().unwrap();
+    assert_eq!(
+        [score("Ana_Paz"), score("bobsmith__2_"), score("bobsmith")],
+        [10.0, 10.0, 0.0]
+    );
+    let text = |name: &str| results[name]["output"].as_str().unwrap().to_owned();
+    assert!(text("Ana_Paz").starts_with("Runs: "), "{}", text("Ana_Paz"));
+    assert!(text("bobsmith__2_").contains("handed in late, as its name says"));
+    assert!(
+        text("bobsmith").contains("no zip archive"),
+        "{}",
+        text("bobsmith")
+    );
+    assert!(!bench.join("dora.ino").exists() && !folder().join("dora.ino").exists());
+}
+
 #[test]
 fn every_hand_in_has_files_of_its_own_and_what_is_none_is_named() {
     let bench = folder().join("grade/names");
@@ -319,7 +382,7 @@ fn every_hand_in_has_files_of_its_own_and_what_is_none_is_named() {
         "A_b.hex",
         "a_b-1.hex",
         "a_b.hex",
-        "eva.zip",
+        "eva.txt",
         ".x",
         ".ana.hex",
     ] {
@@ -330,7 +393,7 @@ fn every_hand_in_has_files_of_its_own_and_what_is_none_is_named() {
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let said = stderr(&output);
     assert!(
-        said.contains("note: not graded: eva.zip, .ana.hex, .git; a hand-in is"),
+        said.contains("note: not graded: eva.txt, .ana.hex, .git; a hand-in is"),
         "{said}"
     );
     let class = fs::read_to_string(bench.join("out/index.html")).unwrap();

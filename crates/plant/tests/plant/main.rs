@@ -7,6 +7,7 @@
 )]
 
 mod cone;
+mod fidelity;
 mod moving;
 mod plant;
 mod sonar;
