@@ -7,6 +7,7 @@
 mod columns;
 mod foreign;
 mod guess;
+mod made;
 mod table;
 
 use crate::args::ImportArgs;
