@@ -60,6 +60,33 @@ export function judgeMotor(side, count, seen) {
   return good(t('The {} wheel turns forward, and its encoder counts.', wheel));
 }
 
+/** Turns of a wheel by hand, and what the program counts in one. */
+export const TURNS = 10;
+export const EDGES_PER_TURN = 384;
+/** Part of the turns by which a person is wrong at most. */
+const MISCOUNTED = 0.06;
+
+/**
+ * How far a wheel turned by what its program shows.
+ * @param {ArrayLike<number>} t \[s\]
+ * @param {ArrayLike<number | null | undefined>} rpm
+ * @param {number} from index
+ */
+export function turned(t, rpm, from) {
+  let turns = 0;
+  for (let at = Math.max(from, 1); at < t.length; at++) turns += Math.abs(rpm[at] ?? 0) / 60 * ((t[at] ?? 0) - (t[at - 1] ?? 0));
+  return turns;
+}
+
+/** What ten turns by hand say of gears and encoder. @param {Side} side @param {number} turns as they were counted @returns {Verdict} */
+export function judgeTurns(side, turns) {
+  const wheel = side === 'left' ? t('left|wheel') : t('right|wheel');
+  if (turns < 0.1) return bad(t('The {} encoder is silent. See its supply, its signal wire, and the gap between its sensor and its disc.', wheel));
+  const edges = Math.round(EDGES_PER_TURN * turns / TURNS);
+  if (Math.abs(turns / TURNS - 1) <= MISCOUNTED) return good(t('Gears and encoder of the {} wheel are as the program counts them, {} edges in a turn.', wheel, EDGES_PER_TURN));
+  return bad(t('A turn of the {} wheel gives some {} edges, and the program counts with {}: distances and speeds are wrong by that. See the gear ratio of its motor and the poles of its disc, and whether both edges of a pulse are counted.', wheel, edges, EDGES_PER_TURN));
+}
+
 /**
  * Result of a hand in front of a sonar; null: keep waiting.
  * @param {number} sonar 0 left, 1 right, 2 front

@@ -3,7 +3,7 @@
  * The first check of a robot, step by step, its wheels in the air: the link, each motor with its encoder, each sonar, the servo. A step is
  * judged by what is measured, and by what a person sees where nothing can measure it.
  */
-import { STANDING_RPM, counted, judgeLink, judgeMotor, judgeServo, judgeSonar, sonarInVain } from './checkup.js';
+import { STANDING_RPM, TURNS, counted, judgeLink, judgeMotor, judgeServo, judgeSonar, judgeTurns, sonarInVain, turned } from './checkup.js';
 import { dialog } from './dialog.js';
 import { create } from './dom.js';
 import { t } from './text.js';
@@ -73,6 +73,8 @@ export class CheckupDialog {
       { title: t('Link'), run: () => this.#verdict(judgeLink(/** @type {import('./types.js').State} */ (this.#state()).link)) },
       { title: t('Left motor and encoder'), run: () => this.#motor('left') },
       { title: t('Right motor and encoder'), run: () => this.#motor('right') },
+      { title: t('Turns of the left wheel'), run: () => this.#turns('left') },
+      { title: t('Turns of the right wheel'), run: () => this.#turns('right') },
       ...sonars.map((sonar) => ({ title: t('Sonar: {}', names[sonar] ?? ''), run: () => this.#sonar(sonar) })),
       ...(servo ? [{ title: t('Servo'), run: () => this.#servo() }] : []),
     ];
@@ -182,6 +184,24 @@ export class CheckupDialog {
     this.#say(t('The encoders counted: left up to {} rpm, right up to {} rpm. What did you see?', format(left_rpm, 0), format(right_rpm, 0)),
       this.#buttons([t('the {} wheel turned forward', wheel), () => judge('forward')], [t('the {} wheel turned backward', wheel), () => judge('backward')],
         [t('the other wheel turned'), () => judge('other')], [t('no wheel turned'), () => judge('none')], [t('Again'), () => this.#drive(side)]));
+  }
+
+  /** Ten turns by hand tell edges and gears. @param {Side} side */
+  #turns(side) {
+    if (this.#state()?.robot.armed) this.#send({ type: 'disarm' });
+    const wheel = side === 'left' ? t('left|wheel') : t('right|wheel');
+    const count = () => {
+      const from_s = this.#now_s();
+      this.#say(t('Turn the {} wheel by hand, {} whole turns one way in about ten seconds.', wheel, TURNS), this.#buttons([t('It has turned'), () => {
+        const table = this.#store.tableOf(`${side}_rpm`);
+        this.#verdict(judgeTurns(side, turned(table.t, table.columns.get(`${side}_rpm`) ?? [], table.indexAt(from_s))));
+      }]));
+    };
+    const on = () => {
+      this.#at += 1;
+      this.#run();
+    };
+    this.#say(t('Mark a place of the {} tyre: its turns are counted.', wheel), this.#buttons([t('Count'), count], [t('Skip'), on]));
   }
 
   #ranges() {

@@ -17,8 +17,8 @@ const FOLDERS: [&str; 4] = [
 ];
 /// The examples of the library, which are for every board.
 const LIBRARY: &str = "examples/arduino/RumboRobot/examples";
-/// The sketch for an Uno.
-const OF_UNO: &str = "wall_uno";
+/// The sketches for an Uno.
+const OF_UNO: [&str; 2] = ["wall_uno", "line"];
 
 /// One of the images of a sketch with build-time options: the suffix of its name, and the macros.
 type Variant = (&'static str, &'static [&'static str]);
@@ -71,11 +71,12 @@ pub(crate) fn build(project: &Project) -> Result<(), Stop> {
             continue;
         };
         let of_library = sketch.starts_with(project.root.join(LIBRARY));
+        let is_of_uno = OF_UNO.contains(&source.name.as_str());
         let is_for = |board: &Board| match board.name {
-            "uno" => of_library || source.name == OF_UNO,
+            "uno" => of_library || is_of_uno,
             // The Uno's chip and pins.
             "nano" => false,
-            _ => source.name != OF_UNO,
+            _ => !is_of_uno,
         };
         let compilers = compilers.iter().filter(|(board, _)| is_for(board));
         let images = compilers.flat_map(|(board, compiler)| {

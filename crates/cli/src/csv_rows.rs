@@ -7,7 +7,6 @@ use crate::failure::Failure;
 use crate::left_out::LeftOut;
 use rumbo_wire::csv;
 use rumbo_wire::text::{Row, RowKind};
-use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -25,8 +24,7 @@ pub(crate) struct Column {
 
 /// A checked recording, in SI units.
 pub(crate) struct Recording {
-    /// What wrote it.
-    pub(crate) program: String,
+    pub(crate) modes: &'static str,
     pub(crate) columns: Vec<Column>,
     /// Time since the first row, in s, and the row's values.
     pub(crate) rows: Vec<(f64, Vec<f64>)>,
@@ -97,24 +95,37 @@ fn header_of(kind: RowKind) -> String {
         .join(",")
 }
 
-/// The columns that an unknown header lacks.
-fn unknown(header: &str) -> String {
+/// Whether a text is such a recording, or nearly.
+pub(crate) fn is_one(text: &str) -> bool {
+    let header = text.lines().next().unwrap_or_default();
+    csv::recognise(header).is_some()
+        || nearest(header).is_some()
+        || kind_by_rows(header, text).is_some()
+}
+
+/// The kind whose header a line nearly is.
+fn nearest(header: &str) -> Option<RowKind> {
     let found: Vec<&str> = header.split(',').map(str::trim).collect();
     let matching = |kind: &RowKind| {
         let due = kind.columns().iter().map(|column| column.name);
         due.filter(|name| found.contains(name)).count()
     };
     let nearest = RowKind::ALL.into_iter().max_by_key(matching);
+    nearest.filter(|kind| matching(kind) > 2)
+}
+
+/// The columns that an unknown header lacks.
+fn unknown(header: &str) -> String {
     // Where lines end otherwise, all of the file is its first line.
     let shown: String = header.chars().take(MOST_SHOWN).collect();
-    match nearest.filter(|kind| matching(kind) > 2) {
+    match nearest(header) {
         Some(kind) => format!(
-            "`{shown}` is no header of the original program; the nearest is that of {}: {}",
+            "`{shown}` is no header of the original program; the nearest is that of {}: {}; --columns takes any table",
             modes(kind),
             header_of(kind)
         ),
         None => format!(
-            "`{shown}` is neither a header of the original program nor a line of a capture; `rumbo import --help` shows the headers"
+            "`{shown}` is neither the beginning of a table nor a line of a capture; `rumbo import --help` shows what is read"
         ),
     }
 }
@@ -140,12 +151,11 @@ fn kind_by_rows(header: &str, text: &str) -> Option<RowKind> {
 }
 
 /// A row's values in their own units; if it is no sound row, what is wrong with it.
-fn values(columns: &[Column], row: &str) -> Result<Vec<f64>, Failure> {
+fn values(columns: &[Column], row: &str, kind: RowKind) -> Result<Vec<f64>, Failure> {
     let fields: Vec<&str> = row.split(',').map(str::trim).collect();
     if fields.len() != columns.len() {
         let (found, due) = (fields.len(), columns.len());
-        let names: Vec<&str> = columns.iter().map(|column| column.original.name).collect();
-        let header = names.join(",");
+        let header = header_of(kind);
         return Err(Failure::Input(format!(
             "{found} values in a row of {due} columns; expected {header}"
         )));
@@ -197,29 +207,13 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
             kind
         }
     };
-    let columns = kind.columns().iter().map(Column::of).collect();
-    let program = format!("original, {}", modes(kind));
-    read_rows(path, text, columns, program, left_out)
-}
-
-/// Reads the rows of a table whose header is one of these columns.
-fn read_rows(
-    path: &Path,
-    text: &str,
-    columns: Vec<Column>,
-    program: String,
-    mut left_out: LeftOut,
-) -> Result<Recording, Failure> {
-    let wrong =
-        |line: usize, what: String| Failure::Input(format!("{}:{line}: {what}", path.display()));
-    let names: Vec<&str> = columns.iter().map(|column| column.original.name).collect();
-    let lines = (1..).zip(text.lines().map(str::trim)).skip(1);
-    let mut sound = names.join(",") + "\n";
+    let columns: Vec<Column> = kind.columns().iter().map(Column::of).collect();
+    let mut sound = header_of(kind) + "\n";
     let (mut rows, mut time_s, mut longest_gap_s) = (Vec::new(), 0.0, 0.0_f64);
     // Since the last valid row, with an estimate for rows whose time is damaged.
     let (mut gap_s, mut usual_s) = (0.0, 0.0);
     for (line, row) in lines.filter(|(_, row)| !row.is_empty()) {
-        let values = match values(&columns, row) {
+        let values = match values(&columns, row, kind) {
             Ok(values) => values,
             Err(what) => {
                 gap_s += period_ms(row, &columns).map_or(usual_s, |ms| ms / 1000.0);
@@ -253,102 +247,11 @@ fn read_rows(
         ));
     }
     Ok(Recording {
-        program,
+        modes: modes(kind),
         columns,
         rows,
         longest_gap_s,
         sound,
         left_out,
     })
-}
-
-/// Reads another program's table: its columns by the names given for them, or by ours; the others are left out.
-///
-/// # Errors
-/// A name that is not there or that we have not, no time, or as many damaged rows as sound ones.
-pub(crate) fn parse_renamed(
-    path: &Path,
-    text: &str,
-    named: &[(String, String)],
-) -> Result<Recording, Failure> {
-    let wrong = |what: String| Failure::Input(format!("{}:1: {what}", path.display()));
-    let header: Vec<&str> = text
-        .lines()
-        .next()
-        .unwrap_or_default()
-        .split(',')
-        .map(str::trim)
-        .collect();
-    if let Some((theirs, _)) = named
-        .iter()
-        .find(|(theirs, _)| !header.contains(&theirs.as_str()))
-    {
-        return Err(wrong(format!(
-            "no column `{theirs}`; there are {}",
-            header.join(", ")
-        )));
-    }
-    let known: BTreeMap<&str, &'static csv::Column> = RowKind::ALL
-        .iter()
-        .flat_map(|kind| kind.columns())
-        .map(|column| (column.name, column))
-        .collect();
-    let times = [("t_s", 1000.0), ("t_ms", 1.0), ("dt_ms", 1.0)];
-    let mut time = None;
-    let mut taken: Vec<(usize, &'static csv::Column)> = Vec::new();
-    for (index, theirs) in header.iter().enumerate() {
-        let given = named.iter().find(|(name, _)| name == theirs);
-        let ours = given.map_or(*theirs, |(_, ours)| ours.as_str());
-        if let Some((name, factor)) = times.iter().find(|(name, _)| *name == ours) {
-            time = Some((index, *name == "dt_ms", *factor));
-        } else if let Some(column) = known.get(ours) {
-            taken.push((index, column));
-        } else if given.is_some() {
-            let all: Vec<&str> = known.keys().copied().collect();
-            return Err(wrong(format!(
-                "{theirs}={ours}: no such column; known are t_s, t_ms, {}",
-                all.join(", ")
-            )));
-        }
-    }
-    let (Some((time, is_period, factor)), Some(period)) = (time, known.get("dt_ms")) else {
-        return Err(wrong(
-            "no column is the time; name it, for instance --column time=t_s".into(),
-        ));
-    };
-    if taken.is_empty() {
-        return Err(wrong(
-            "no column is one of ours; name one, for instance --column left=left_cm".into(),
-        ));
-    }
-    let mut before_ms = None;
-    let mut ours = String::from("\n");
-    for line in text.lines().skip(1) {
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
-        let cell = |index: usize| cells.get(index).copied().unwrap_or_default();
-        let at_ms = cell(time).parse::<f64>().ok().map(|value| factor * value);
-        let period_ms = match (at_ms, before_ms) {
-            (Some(at_ms), Some(before_ms)) if !is_period => Some(at_ms - before_ms),
-            (Some(_), None) if !is_period => Some(0.0),
-            (at_ms, _) => at_ms,
-        };
-        before_ms = at_ms.or(before_ms);
-        // A line that is no row stays one, so that it is named with its number.
-        let row =
-            period_ms.map_or_else(|| cell(time).to_owned(), |period_ms| period_ms.to_string());
-        let row = taken
-            .iter()
-            .fold(row, |row, (index, _)| row + "," + cell(*index));
-        ours += if line.trim().is_empty() { "" } else { &row };
-        ours.push('\n');
-    }
-    let columns = std::iter::once(*period).chain(taken.into_iter().map(|(_, column)| column));
-    let columns = columns.map(Column::of).collect();
-    read_rows(
-        path,
-        &ours,
-        columns,
-        "another program".into(),
-        LeftOut::default(),
-    )
 }

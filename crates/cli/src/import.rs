@@ -1,8 +1,14 @@
-//! `rumbo import`: a CSV of the original program, checked and converted to an MCAP log.
+//! `rumbo import`: a CSV of the original program, or what another program recorded, checked and converted to a log.
 //!
-//! The log holds one JSON message per row in SI units, with its schema, on the topic `telemetry`, and the CSV itself
+//! Of the original's CSV the log holds one JSON message per row in SI units, with its schema, on the topic `telemetry`, and the CSV itself
 //! as an attachment, so that nothing is lost. `rumbo identify` reads both. For a damaged recording the valid rows are
-//! attached as a CSV, and the original file too.
+//! attached as a CSV, and the original file too. Tables and bags of others: `foreign`.
+
+mod columns;
+mod foreign;
+mod guess;
+mod made;
+mod table;
 
 use crate::args::ImportArgs;
 use crate::capture;
@@ -12,90 +18,74 @@ use crate::output::{self, figure};
 use crate::place::{self, Guard};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, WriteOptions};
-use rumbo_experiment::files::bounded::{LONGEST_RECORDING, read_at_most};
+use rumbo_experiment::files::bounded::{LONGEST_LOG, LONGEST_RECORDING, read_at_most};
 use rumbo_identify::dialect;
-use rumbo_log::CSV;
+use rumbo_log::{CSV, MAGIC};
+use rumbo_ros::recorded::is_recorded;
 use rumbo_station::log_file;
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// Topics that a message names.
-const TOPICS: usize = 5;
 /// Media type of a recording with skipped lines.
 const AS_IT_WAS: &str = "application/octet-stream";
 
 /// Checks, converts, writes and sums up.
 pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     let shown = args.file.display();
-    let bytes = read_at_most(&args.file, LONGEST_RECORDING).map_err(|error| {
+    let bytes = read_at_most(&args.file, LONGEST_LOG).map_err(|error| {
         Failure::Input(format!(
-            "{shown}: cannot be read ({error}); give the path of a CSV file"
+            "{shown}: cannot be read ({error}); give the path of a table, a bag or a log"
         ))
     })?;
-    if bytes.starts_with(mcap::MAGIC) {
-        let replayed = log_file::read_replay(&args.file).is_ok();
-        let what = match replayed {
-            true => "is a log already; `rumbo replay` shows it".into(),
-            false => foreign(&bytes),
-        };
-        return Err(Failure::Input(format!("{shown}: {what}")));
-    }
     if bytes.is_empty() {
         return Err(Failure::Input(format!(
-            "{shown}: is empty; give a CSV of the original program"
+            "{shown}: is empty; give a table with rows"
+        )));
+    }
+    let out = args.out.clone().unwrap_or_else(|| {
+        let stem = args.file.file_stem().unwrap_or(args.file.as_os_str());
+        // Beside a log of another program, which has that ending already.
+        let is_mcap = bytes.starts_with(MAGIC);
+        let name = [
+            stem.to_os_string(),
+            if is_mcap { "-rumbo.mcap" } else { ".mcap" }.into(),
+        ];
+        PathBuf::from(name.into_iter().collect::<OsString>())
+    });
+    let guard = Guard::new([&args.file], args.overwrite.force);
+    if is_recorded(&bytes) {
+        if log_file::read_replay(&args.file).is_ok() {
+            let what = "is a log already; `rumbo replay` shows it";
+            return Err(Failure::Input(format!("{shown}: {what}")));
+        }
+        return foreign::import_bag(args, &bytes, &out, &guard);
+    }
+    if bytes.len() as u64 > LONGEST_RECORDING {
+        let most = LONGEST_RECORDING >> 20;
+        return Err(Failure::Input(format!(
+            "{shown}: is longer than {most} MB; cut the table into parts"
         )));
     }
     let text =
         dialect::plain(&bytes).map_err(|error| Failure::Input(format!("{shown}: {error}")))?;
-    let out = match &args.out {
-        Some(out) => out.clone(),
-        None => PathBuf::from(args.file.file_stem().unwrap_or(args.file.as_os_str()))
-            .with_extension("mcap"),
-    };
-    let guard = Guard::new([&args.file], args.overwrite.force);
     if args.columns.is_empty() && capture::is_one(&text) {
         return capture::import(args, &text, &out, &guard);
     }
-    let recording = match args.columns.is_empty() {
-        true => csv_rows::parse(&args.file, &text)?,
-        false => csv_rows::parse_renamed(&args.file, &text, &args.columns)?,
-    };
+    let is_the_originals = args.columns.is_empty() && csv_rows::is_one(&text);
+    if !is_the_originals && foreign::import_table(args, &text, &out, &guard)? {
+        return Ok(());
+    }
+    let recording = csv_rows::parse(&args.file, &text)?;
     recording.left_out.report(&args.file);
     let log = encode(&recording, &args.file, &bytes).map_err(Failure::input)?;
     guard.make_equal(&out, |place| {
         std::fs::write(place, &log).map_err(|error| place::unwritable(&out, &error))
     })?;
     summary(&recording, &out, args.json)
-}
-
-/// What a log of another program holds, and what to do with it.
-fn foreign(bytes: &[u8]) -> String {
-    let summary = mcap::Summary::read(bytes).ok().flatten();
-    let channels = summary.map(|summary| summary.channels).unwrap_or_default();
-    let mut topics: Vec<String> = channels
-        .values()
-        .map(|channel| match &channel.schema {
-            Some(schema) => format!("{} ({})", channel.topic, schema.name),
-            None => channel.topic.clone(),
-        })
-        .collect();
-    topics.sort();
-    let more = match topics.len().saturating_sub(TOPICS) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    topics.truncate(TOPICS);
-    let topics = match topics.is_empty() {
-        true => String::new(),
-        false => format!(", with {}{more}", topics.join(", ")),
-    };
-    format!(
-        "is an MCAP log of another program{topics}: Foxglove and PlotJuggler show it; import takes a CSV with the columns of \
-         the original program (docs/logs.md), which PlotJuggler can export"
-    )
 }
 
 /// The log's bytes.
@@ -151,7 +141,10 @@ fn encode(recording: &Recording, path: &Path, bytes: &[u8]) -> mcap::McapResult<
         attach(&name, CSV, recording.sound.as_bytes())?;
         attach(&format!("{name}.original"), AS_IT_WAS, bytes)?;
     }
-    let about = [("source", name), ("program", recording.program.clone())];
+    let about = [
+        ("source", name),
+        ("program", format!("original, {}", recording.modes)),
+    ];
     let metadata = about.map(|(key, value)| (key.to_owned(), value)).into();
     log.write_metadata(&Metadata {
         name: "origin".into(),
@@ -163,10 +156,10 @@ fn encode(recording: &Recording, path: &Path, bytes: &[u8]) -> mcap::McapResult<
 
 fn summary(recording: &Recording, out: &Path, as_json: bool) -> Result<(), Failure> {
     let duration_s = recording.rows.last().map_or(0.0, |(time_s, _)| *time_s);
-    let (rows, gap_s, program) = (
+    let (rows, gap_s, modes) = (
         recording.rows.len(),
         recording.longest_gap_s,
-        &recording.program,
+        recording.modes,
     );
     let columns = recording
         .columns
@@ -200,12 +193,12 @@ fn summary(recording: &Recording, out: &Path, as_json: bool) -> Result<(), Failu
             })
             .collect();
         return output::json(&json!({
-            "log": output::shown(out), "program": program, "rows": rows, "duration_s": duration_s,
+            "log": output::shown(out), "program": modes, "rows": rows, "duration_s": duration_s,
             "longest_gap_s": gap_s, "columns": columns, "left_out": recording.left_out.json(),
         }));
     }
     output::line(&format!(
-        "{}: {program}, {} in {} s, longest gap {} s",
+        "{}: {modes} of the original program, {} in {} s, longest gap {} s",
         out.display(),
         output::counted(rows, "row"),
         figure(duration_s),

@@ -8,6 +8,7 @@ mod browser;
 mod calibrate;
 mod capture;
 mod check;
+mod column_names;
 mod compare;
 mod connect;
 mod csv_rows;
@@ -70,7 +71,11 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Import(args)) => import::import(&args),
         Some(Command::List(args)) => list::list(&args),
         Some(Command::New(args)) => match args.what {
-            NewKind::Sketch => sketch::begin(&args.folder, args.board.unwrap_or_default()),
+            NewKind::Sketch => sketch::begin(
+                &args.folder,
+                args.board.unwrap_or_default(),
+                args.like.as_deref(),
+            ),
             NewKind::Robot => new_robot::begin(&args),
         },
         Some(Command::Completions(args)) => manual::completions(&args),

@@ -4,7 +4,7 @@ use crate::args::{NewArgs, driver_named, driver_names};
 use crate::failure::Failure;
 use crate::output;
 use crate::place;
-use rumbo_experiment::files::new_robot::{JUMPERS, NewRobot, looks_like, needed, remarks};
+use rumbo_experiment::files::new_robot::{JUMPERS, NewRobot, counted, looks_like, needed, remarks};
 use rumbo_experiment::files::{Kind, Library};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::DRIVERS;
@@ -52,6 +52,9 @@ pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
             };
             for remark in remarks(wiring) {
                 output::note(&remark);
+            }
+            if let Some(counted) = counted(&robot) {
+                output::line(&counted)?;
             }
             match looks_like(&library, wiring)? {
                 Some(alike) => {

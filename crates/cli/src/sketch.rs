@@ -9,7 +9,7 @@ use rumbo_sim::boards::Board;
 use rumbo_sketch::limits::Limits;
 use rumbo_sketch::sandbox::Sandbox;
 use rumbo_sketch::{
-    BOARDS, Board as Target, Compiler, EXAMPLE, SketchError, Toolchain, cache, starter,
+    BOARDS, Board as Target, Compiler, EXAMPLE, SketchError, Toolchain, cache, example, starter,
 };
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -105,8 +105,12 @@ pub(crate) fn image(name: &str, board: &Board) -> Result<PathBuf, Failure> {
     Ok(image.path)
 }
 
-/// Makes a folder with a sketch for a board to start from.
-pub(crate) fn begin(folder: &Path, board: &'static Board) -> Result<(), Failure> {
+/// Makes a folder with a sketch to start from: for a board, or as an example has it.
+pub(crate) fn begin(
+    folder: &Path,
+    board: &'static Board,
+    like: Option<&str>,
+) -> Result<(), Failure> {
     let name = folder.file_name().map(|name| name.to_string_lossy());
     let Some(name) = name.filter(|name| is_name(name)) else {
         return Err(Failure::Input(format!(
@@ -114,7 +118,11 @@ pub(crate) fn begin(folder: &Path, board: &'static Board) -> Result<(), Failure>
             folder.display()
         )));
     };
-    let text = starter(target(board))?;
+    let files = match like {
+        Some(like) => example(like)?.files,
+        None => [(format!("{name}.ino"), starter(target(board))?.into_bytes())].into(),
+    };
+    let main = like.map(|like| format!("{like}.ino"));
     if let Some(parent) = folder.parent() {
         place::folder(parent)?;
     }
@@ -126,13 +134,29 @@ pub(crate) fn begin(folder: &Path, board: &'static Board) -> Result<(), Failure>
         )),
         _ => place::unwritable(folder, &error),
     })?;
-    let file = folder.join(format!("{name}.ino"));
-    if let Err(error) = std::fs::write(&file, text) {
-        // An empty folder would be in the way of the next attempt.
-        let _ = std::fs::remove_dir_all(folder);
-        return Err(place::unwritable(&file, &error));
+    let begun = folder.join(format!("{name}.ino"));
+    for (file, bytes) in &files {
+        let path = match main.as_ref() == Some(file) {
+            true => begun.clone(),
+            false => folder.join(file),
+        };
+        if let Err(error) = std::fs::write(&path, bytes) {
+            // An empty folder would be in the way of the next attempt.
+            let _ = std::fs::remove_dir_all(folder);
+            return Err(place::unwritable(&path, &error));
+        }
     }
-    let (file, folder) = (output::shown(&file), output::shown(folder));
+    let (file, folder) = (output::shown(&begun), output::shown(folder));
+    // An example says in its first line how to drive it.
+    let first = files.iter().find(|(file, _)| main.as_ref() == Some(file));
+    let command = first.and_then(|(_, bytes)| {
+        let line = str::from_utf8(bytes).ok()?.lines().next()?;
+        let command = line.get(line.find("rumbo run ")?..)?;
+        Some(command.replace(&format!("{EXAMPLE}{}", like?), &folder))
+    });
+    if let Some(command) = command {
+        return output::line(&format!("{file}: edit it, then `{command}`"));
+    }
     let robot = match Library::new().robot_with(|robot| robot.board == board) {
         Some(robot) if board != <&Board>::default() => format!(" --robot {robot}"),
         _ => String::new(),

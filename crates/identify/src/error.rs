@@ -60,7 +60,7 @@ impl fmt::Display for IdentifyError {
             Self::Read { path, cause } => write!(f, "{}: {cause}", path.display()),
             Self::Header { path, found } => write!(
                 f,
-                "{}: no columns dt_ms, pwm_a, pwm_b with speeds or distances in `{found}`; give a log of modes 1 to 7",
+                "{}: no columns dt_ms, pwm_a, pwm_b with speeds or distances in `{found}`; give a log of modes 1 to 7, or that of another program as `rumbo import` makes it",
                 path.display()
             ),
             Self::Value {

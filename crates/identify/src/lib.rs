@@ -25,6 +25,7 @@ mod descent;
 mod doubts;
 mod error;
 mod fit;
+mod foreign;
 mod log;
 mod pair;
 mod plot;
@@ -47,6 +48,7 @@ pub use error::IdentifyError;
 pub use fit::{
     AgainstTruth, Check, GENERATIONS, Identification, Identified, check, identify, leave_one_out,
 };
+pub use foreign::lacks;
 pub use log::{DriveLog, Program};
 pub use pair::{Correlation, Pair};
 pub use plot::plot;

@@ -10,9 +10,9 @@ use crate::row::{Row, Window};
 use std::path::{Path, PathBuf};
 
 /// Length of the windows in which the original counts encoder edges, ms.
-const WINDOW_MS: usize = 50;
+pub(crate) const WINDOW_MS: usize = 50;
 /// Longest run: the simulation is kept for each millisecond.
-const LONGEST_MS: usize = 3_600_000;
+pub(crate) const LONGEST_MS: usize = 3_600_000;
 /// A log with more than one damaged row in so many is refused.
 pub(crate) const DAMAGED_IN: usize = 10;
 const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;
@@ -35,6 +35,8 @@ pub enum Program {
     Original,
     /// Ours: a row each 40 ms, speeds from the times of edges.
     Rumbo,
+    /// Somebody's: rows and speeds as they are.
+    Another,
 }
 
 /// A recorded run.

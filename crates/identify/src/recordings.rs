@@ -1,14 +1,15 @@
-//! Recorded runs from files: CSVs of the original program, logs that carry one, and logs of our own program.
+//! Recorded runs from files: CSVs of the original program, logs that carry one, and logs of ours or made of other programs'.
 
 use crate::dialect;
 use crate::error::IdentifyError;
 use crate::fit::{GENERATIONS, Identification, check, identify, leave_one_out};
+use crate::foreign::foreign;
 use crate::log::{DriveLog, Program};
 use crate::progress::Progress;
 use crate::score::RunScore;
 use crate::sonar_stats::{self, Comparison, SonarLog};
 use crate::stretches::stretches;
-use rumbo_log::{Log, recorded_csv};
+use rumbo_log::{ANOTHER, Log, recorded_csv};
 use rumbo_plant::params::Params;
 use rumbo_wire::csv;
 use rumbo_wire::text::RowKind;
@@ -137,9 +138,17 @@ impl Recordings {
         self.sonars.iter().flat_map(compared).collect()
     }
 
-    /// A log of our own program.
+    /// A log of our own program, or one that was imported of another.
     fn add_log(&mut self, path: &Path, bytes: &[u8]) -> Result<(), IdentifyError> {
         let log = Log::read_signals(Cursor::new(bytes)).map_err(|error| wrong(path, error))?;
+        let program = log
+            .manifest
+            .as_ref()
+            .map(|manifest| manifest.program.as_str());
+        if program == Some(ANOTHER) {
+            self.drive.push(foreign(path, &log)?);
+            return Ok(());
+        }
         let found = stretches(path, &log)?;
         self.notes.extend(found.notes);
         self.drive.extend(found.logs);

@@ -83,8 +83,8 @@ pub(crate) fn run_residuals(log: &DriveLog, replay: &Replay<'_>, residuals: &mut
                 residuals.push(row, weight * robust(error_m / RANGE_SD_M));
             }
         }
-        (Seen::Speeds, Program::Original) => counted_residuals(log, replay, weight, residuals),
         (Seen::Speeds, Program::Rumbo) => timed_residuals(log, replay, weight, residuals),
+        (Seen::Speeds, _) => counted_residuals(log, replay, weight, residuals),
     }
 }
 

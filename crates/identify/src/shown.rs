@@ -31,8 +31,8 @@ impl Angles<'_> {
     /// The speed shown with this window, rad/s. What is before the first angle or after the last one stands still.
     pub(crate) fn shown(&self, program: Program, window: Window) -> f64 {
         match program {
-            Program::Original => self.mean(window),
             Program::Rumbo => self.fused(window),
+            Program::Original | Program::Another => self.mean(window),
         }
     }
 

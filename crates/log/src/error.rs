@@ -22,16 +22,16 @@ impl fmt::Display for ReadError {
         match self {
             Self::Unreadable(error) => write!(f, "cannot be read ({error})"),
             Self::NoLog => f.write_str(
-                "is no MCAP log; give a log of rumbo, or convert a CSV with `rumbo import`",
+                "is no MCAP log; give a log of rumbo, or convert a table or a bag with `rumbo import`",
             ),
             Self::NothingYet => f.write_str(
                 "ends before its first record: its writer was stopped at once, or it was cut off when it was copied; nothing of it can be read",
             ),
             Self::CutOff => f.write_str(
-                "ends before anything of rumbo in it; was it cut off when it was copied, or is it another program's log?",
+                "ends before anything of rumbo in it; was it cut off when it was copied, or is it another program's log, which `rumbo import` reads?",
             ),
             Self::Foreign => f.write_str(
-                "holds neither a manifest nor signals of rumbo; is it another program's log?",
+                "holds neither a manifest nor signals of rumbo; `rumbo import` makes a log of another program's",
             ),
         }
     }

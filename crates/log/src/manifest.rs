@@ -20,6 +20,9 @@ pub enum Kind {
     Episode,
 }
 
+/// The program of a log that `rumbo import` made of another program's table or bag.
+pub const ANOTHER: &str = "another";
+
 /// What ran. Files are attached to the log under the names given here.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -46,7 +49,7 @@ pub struct Manifest {
     pub rig: Option<String>,
     /// Name of the wiring, where a firmware image was asked to use one.
     pub wiring: Option<String>,
-    /// The program at the pins: `rumbo`, `baseline`, `original` on a real robot, or the file of an image.
+    /// The program at the pins: `rumbo`, `baseline`, `original` on a real robot, [`ANOTHER`], or the file of an image.
     pub program: String,
     /// Hash of the image that ran on the emulated Mega, or that the robot named in HELLO.
     pub image: Option<String>,

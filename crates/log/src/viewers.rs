@@ -115,7 +115,7 @@ pub(crate) fn body(t_us: u64, scene: &Scene) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use crate::lz4::Lz4;
+    use crate::frames::Frames;
     use crate::scene::{MapPose, Obstacle, Scene, SonarMount};
     use crate::{Entry, LogWriter, Manifest, Row};
     use mcap::parse_record;
@@ -165,7 +165,7 @@ mod tests {
     /// The messages of a topic, with their times \[ms\].
     fn messages(mut log: &[u8], topic: &str) -> Vec<(u64, Value)> {
         let mut reader = LinearReader::new();
-        reader.add_decompressor(Lz4::new(1 << 20)).unwrap();
+        reader.add_decompressor(Frames::lz4(1 << 20)).unwrap();
         let (mut channel, mut messages) = (None, Vec::new());
         while let Some(event) = reader.next_event() {
             match event.unwrap() {

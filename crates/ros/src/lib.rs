@@ -9,6 +9,8 @@
 //! convert    a log, or what happens, as messages by topic
 //! bag        the bag: an MCAP file and its metadata
 //! service_messages   what services and an action carry, for a node
+//! numbers    the numbers in any message, by the text of its definition
+//! recorded   bags of others: their messages, from MCAP and from SQLite
 //! ```
 //!
 //! The node itself is a program of its own, in `ros/`, which makes its messages with this crate.
@@ -20,7 +22,10 @@ pub mod bag;
 pub mod convert;
 pub mod geometry;
 pub mod messages;
+pub mod numbers;
+pub mod recorded;
 pub mod service_messages;
+mod sqlite;
 mod surroundings;
 pub mod topics;
 pub mod types;

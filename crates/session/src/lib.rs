@@ -50,6 +50,7 @@ pub use lease::{Lease, PageId, Seat, View};
 pub use orders::{BadOrder, MAX_ORDER, MAX_SPEED, Order, SHORT_ORDER, WORLD_ORDER, stop_first};
 pub use pace::{Pace, SLICE_US};
 pub use page::{LinkBytes, ReadingGroup, ToPage};
+pub use printed::plotter_row;
 pub use replay::Replay;
 pub use session::{Ask, Going, Now, Session, Sight};
 pub use target::{Abilities, About, Ghost, LinkNews, Shown, Standing, Target};

@@ -214,12 +214,12 @@ fn text_line(text: String, ending: Option<&str>) -> Result<String, BadOrder> {
         BadOrder(format!("the ending of a line is one of {known}"))
     })?;
     let printable = text.bytes().all(|byte| (b' '..=b'~').contains(&byte));
-    if printable && text.len() <= MAX_LINE {
-        Ok(text + ending.text())
-    } else {
-        Err(BadOrder(format!(
+    let bytes = ending.typed(&text).collect();
+    match String::from_utf8(bytes) {
+        Ok(line) if printable && text.len() <= MAX_LINE => Ok(line),
+        _ => Err(BadOrder(format!(
             "a line is at most {MAX_LINE} characters of ASCII"
-        )))
+        ))),
     }
 }
 

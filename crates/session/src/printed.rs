@@ -57,8 +57,7 @@ impl Printed {
         if line.len() > LONGEST_LINE {
             return None;
         }
-        let cells: Option<Vec<Cell<'_>>> = words(line).map(Cell::of).collect();
-        let Some(cells) = cells.and_then(joined) else {
+        let Some(cells) = plotter_row(line) else {
             self.header = names(line);
             return None;
         };
@@ -92,6 +91,13 @@ impl Printed {
     }
 }
 
+/// The numbers of a line, each with its name if it has one, as the Serial Plotter reads it; `None` if it is no row.
+#[must_use]
+pub fn plotter_row(line: &str) -> Option<Vec<(Option<&str>, f64)>> {
+    let cells: Option<Vec<Cell<'_>>> = words(line).map(Cell::of).collect();
+    cells.and_then(joined)
+}
+
 /// A word of a line.
 enum Cell<'a> {
     Number(f64),
@@ -111,7 +117,6 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// The numbers of a line, each with its name if it has one; `None` if it is no row.
 fn joined(cells: Vec<Cell<'_>>) -> Option<Vec<(Option<&str>, f64)>> {
     let mut row = Vec::new();
     let mut cells = cells.into_iter();

@@ -24,6 +24,17 @@ pub struct Line {
     pub width_m: f64,
 }
 
+impl Line {
+    /// Its length, back to its first point where it ends there \[m\]; `None` where it is open.
+    #[must_use]
+    pub fn lap_m(&self) -> Option<f64> {
+        let pieces = self.points_m.windows(2);
+        let lengths =
+            pieces.map(|ends| libm::hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]));
+        (self.points_m.first() == self.points_m.last()).then(|| lengths.sum())
+    }
+}
+
 /// A reflectance sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineSensor {
@@ -73,28 +84,54 @@ impl LineSensor {
     }
 }
 
-/// Distance of a point from the middle of the nearest line, and that line's width \[m\].
+/// The place on a line that is nearest to a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// The line's number.
+    pub line: usize,
+    /// Distance from its middle \[m\].
+    pub distance_m: f64,
+    /// Its width \[m\].
+    pub width_m: f64,
+    /// From its first point to there, along it \[m\].
+    pub along_m: f64,
+}
+
+/// The nearest line of a point.
 #[must_use]
-pub fn nearest(lines: &[Line], [x_m, y_m]: [f64; 2]) -> Option<(f64, f64)> {
-    let pieces = lines.iter().flat_map(|line| {
-        let pieces = line.points_m.windows(2);
-        pieces.map(move |ends| (ends[0], ends[1], line.width_m))
-    });
-    let distances = pieces.map(|([ax, ay], [bx, by], width_m)| {
-        let (dx, dy) = (bx - ax, by - ay);
-        let along = ((x_m - ax) * dx + (y_m - ay) * dy) / (dx * dx + dy * dy).max(1e-12);
-        let along = along.clamp(0.0, 1.0);
-        let (ex, ey) = (x_m - ax - along * dx, y_m - ay - along * dy);
-        (libm::sqrt(ex * ex + ey * ey), width_m)
-    });
-    distances.min_by(|one, other| (one.0 - 0.5 * one.1).total_cmp(&(other.0 - 0.5 * other.1)))
+pub fn nearest(lines: &[Line], [x_m, y_m]: [f64; 2]) -> Option<Nearest> {
+    let places = lines
+        .iter()
+        .enumerate()
+        .flat_map(|(line, Line { points_m, width_m })| {
+            let mut before_m = 0.0;
+            points_m.windows(2).map(move |ends| {
+                let ([ax, ay], [bx, by]) = (ends[0], ends[1]);
+                let (dx, dy) = (bx - ax, by - ay);
+                let square = dx * dx + dy * dy;
+                let share = ((x_m - ax) * dx + (y_m - ay) * dy) / square.max(1e-12);
+                let share = share.clamp(0.0, 1.0);
+                let (ex, ey) = (x_m - ax - share * dx, y_m - ay - share * dy);
+                let length_m = libm::sqrt(square);
+                let along_m = before_m + share * length_m;
+                before_m += length_m;
+                Nearest {
+                    line,
+                    distance_m: libm::sqrt(ex * ex + ey * ey),
+                    width_m: *width_m,
+                    along_m,
+                }
+            })
+        });
+    let from_edge = |place: &Nearest| place.distance_m - 0.5 * place.width_m;
+    places.min_by(|one, other| from_edge(one).total_cmp(&from_edge(other)))
 }
 
 /// The dark share of a spot there, 0 to 1.
 #[must_use]
 pub fn darkness(lines: &[Line], at_m: [f64; 2]) -> f64 {
-    nearest(lines, at_m).map_or(0.0, |(distance_m, width_m)| {
-        (0.5 + (0.5 * width_m - distance_m) / SPOT_M).clamp(0.0, 1.0)
+    nearest(lines, at_m).map_or(0.0, |place| {
+        (0.5 + (0.5 * place.width_m - place.distance_m) / SPOT_M).clamp(0.0, 1.0)
     })
 }
 

@@ -21,8 +21,8 @@ use std::path::{Path, PathBuf};
 
 /// Part of every key: products of another layout are another's.
 const LAYOUT: &str = "preprocessed";
-/// Most headers that a sketch may include by different names.
-const MOST_HEADERS: usize = 1_000;
+/// Most headers that a sketch may include by different names: FastLED has some thousands.
+const MOST_HEADERS: usize = 10_000;
 
 /// Compiles sketches.
 #[derive(Clone, Debug)]

@@ -137,9 +137,9 @@ macro_rules! lessons {
 /// The lessons, in Markdown.
 const LESSONS: &[Asset] = lessons![
     "en": "README.md", "0-first-drive.md", "1-wheel-speed.md", "2-front-distance.md", "3-wall-follow.md", "4-odometry.md",
-        "5-lying-sensor.md", "6-obstacles.md";
+        "5-lying-sensor.md", "6-obstacles.md", "7-line.md";
     "es": "README.md", "0-first-drive.md", "1-wheel-speed.md", "2-front-distance.md", "3-wall-follow.md", "4-odometry.md",
-        "5-lying-sensor.md", "6-obstacles.md"
+        "5-lying-sensor.md", "6-obstacles.md", "7-line.md"
 ];
 
 /// The file for the path of a request.

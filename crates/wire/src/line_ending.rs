@@ -45,4 +45,22 @@ impl LineEnding {
             Self::CrLf => "\r\n",
         }
     }
+
+    /// A line as it is sent: `\x05` in it is that byte, for robots that are driven by numbers.
+    pub fn typed(self, text: &str) -> impl Iterator<Item = u8> + '_ {
+        let digit = |byte: u8| char::from(byte).to_digit(16);
+        let mut rest = text.as_bytes();
+        let letters = core::iter::from_fn(move || {
+            if let [b'\\', b'x', high, low, after @ ..] = rest
+                && let (Some(high), Some(low)) = (digit(*high), digit(*low))
+            {
+                rest = after;
+                return Some((high << 4 | low) as u8);
+            }
+            let (first, after) = rest.split_first()?;
+            rest = after;
+            Some(*first)
+        });
+        letters.chain(self.text().bytes())
+    }
 }

@@ -33,6 +33,12 @@ export const GUIDE = {
   'The {} sonar sees the hand instead of the {} one. Swap their trigger and echo wires.': 'El sonar {} ve la mano en lugar del {}. Intercambia sus cables de disparo y eco.',
   'The {} sonar gives no reading. See its 5 V supply, its trigger wire and its echo wire.': 'El sonar {} no da lecturas. Mira su alimentación de 5 V y sus cables de disparo y eco.',
   'The {} sonar does not see the hand. Check that it points where it should, and that nothing is in its beam.': 'El sonar {} no ve la mano. Mira que apunte adonde debe y que no haya nada en su haz.',
+  'Turns of the left wheel': 'Vueltas de la rueda izquierda', 'Turns of the right wheel': 'Vueltas de la rueda derecha',
+  'Mark a place of the {} tyre: its turns are counted.': 'Haz una marca en el neumático de la rueda {}: se cuentan sus vueltas.', 'Count': 'Contar', 'It has turned': 'Ya ha girado',
+  'Turn the {} wheel by hand, {} whole turns one way in about ten seconds.': 'Gira a mano la rueda {}: {} vueltas enteras en un sentido, en unos diez segundos.',
+  'Gears and encoder of the {} wheel are as the program counts them, {} edges in a turn.': 'La reductora y el encoder de la rueda {} son como los cuenta el programa: {} flancos por vuelta.',
+  'A turn of the {} wheel gives some {} edges, and the program counts with {}: distances and speeds are wrong by that. See the gear ratio of its motor and the poles of its disc, and whether both edges of a pulse are counted.':
+    'Una vuelta de la rueda {} da unos {} flancos y el programa cuenta con {}: en esa proporción fallan distancias y velocidades. Mira la reducción del motor, los polos de su disco y si se cuentan los dos flancos de cada pulso.',
   'The servo looks straight ahead.': 'El servo mira al frente.',
   'The servo looks to the left. Take its horn off and put it back a tooth further to the right.': 'El servo mira a la izquierda. Quita su brazo y ponlo un diente más a la derecha.',
   'The servo looks to the right. Take its horn off and put it back a tooth further to the left.': 'El servo mira a la derecha. Quita su brazo y ponlo un diente más a la izquierda.',

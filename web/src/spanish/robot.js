@@ -238,12 +238,13 @@ export const ROBOT = {
     'grabación: en este segundo llegó más de lo que un robot dice; se omiten {} bytes del enlace y {} muestras y eventos',
   'about the log: {}': 'sobre la grabación: {}',
   '{}: cannot be read ({})': '{}: no se puede leer ({})',
-  '{}: is no MCAP log; give a log of rumbo, or convert a CSV with `rumbo import`': '{}: no es una grabación MCAP; usa una de rumbo, o convierte un CSV con `rumbo import`',
+  '{}: is no MCAP log; give a log of rumbo, or convert a table or a bag with `rumbo import`': '{}: no es una grabación MCAP; usa una de rumbo, o convierte una tabla o un bag con `rumbo import`',
   '{}: ends before its first record: its writer was stopped at once, or it was cut off when it was copied; nothing of it can be read':
     '{}: acaba antes de su primer registro: quien la escribía se detuvo enseguida, o se cortó al copiarla; no se puede leer nada de ella',
-  '{}: ends before anything of rumbo in it; was it cut off when it was copied, or is it another program\'s log?':
-    '{}: acaba antes de que haya en ella algo de rumbo; ¿se cortó al copiarla, o es la grabación de otro programa?',
-  '{}: holds neither a manifest nor signals of rumbo; is it another program\'s log?': '{}: no contiene ni un manifiesto ni señales de rumbo; ¿es la grabación de otro programa?',
+  '{}: ends before anything of rumbo in it; was it cut off when it was copied, or is it another program\'s log, which `rumbo import` reads?':
+    '{}: acaba antes de que haya en ella algo de rumbo; ¿se cortó al copiarla, o es la grabación de otro programa, que `rumbo import` lee?',
+  '{}: holds neither a manifest nor signals of rumbo; `rumbo import` makes a log of another program\'s':
+    '{}: no contiene ni un manifiesto ni señales de rumbo; `rumbo import` hace una grabación de la de otro programa',
   '{}: nothing of what happened can be had from it: {}': '{}: no se puede sacar nada de lo que pasó: {}',
   '{}: not opened, a recording has at most {} MB here; `rumbo replay` shows it on a computer': '{}: no se abre, aquí una grabación tiene como mucho {} MB; `rumbo replay` la muestra en un ordenador',
   '{}: not opened, it does not fit into the memory of the page; `rumbo replay` shows it on a computer': '{}: no se abre, no cabe en la memoria de la página; `rumbo replay` la muestra en un ordenador',

@@ -80,6 +80,14 @@ test('each pair of what was counted and what was seen has its remedy', async () 
   assert.deepEqual([await judged('counted', 'left', 80, 0), await judged('counted', 'right', 80, 0), await judged('counted', 'left', 1, 2), await judged('counted', 'left', 50, 50)], ['own', 'other', 'none', 'both']);
 });
 
+test('ten turns by hand tell edges and gears', async () => {
+  const turns = await judged('turned', [0, 1, 2, 3], [0, 60, -120, 60], 1);
+  assert.equal(turns, 4, 'whichever way');
+  assert.equal((await judged('judgeTurns', 'left', 10.3)).good, true);
+  assert.match((await judged('judgeTurns', 'right', 5)).text, /right wheel gives some 192 edges, and the program counts with 384/);
+  assert.match((await judged('judgeTurns', 'right', 0)).text, /right encoder is silent/);
+});
+
 test('a hand before a sonar is found, also by the wrong one', async () => {
   assert.equal((await judged('judgeSonar', 0, [20, 'clear', 150], ['clear', 'clear', 150])).good, true);
   assert.match((await judged('judgeSonar', 0, ['clear', 150, 20], ['clear', 150, 180])).text, /front sonar sees the hand instead of the left one\. Swap/);

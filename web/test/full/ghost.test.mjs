@@ -118,7 +118,7 @@ test('the ghost of a robot on a port receives the same commands', { skip: proces
     await page.locator('#connection.good').waitFor();
     // The first time that this browser meets a real robot, the check comes by itself, for the sonars that the robot carries.
     await page.locator('#checkup-dialog').waitFor();
-    await eventually(async () => assert.deepEqual((await page.locator('#checkup-dialog .steps li').allTextContents()).slice(4), ['Sonar: front'], 'its rig has no servo'));
+    await eventually(async () => assert.deepEqual((await page.locator('#checkup-dialog .steps li').allTextContents()).slice(6), ['Sonar: front'], 'its rig has no servo'));
     await page.keyboard.press('Escape');
     await page.reload();
     await page.locator('#connection.good').waitFor();

@@ -194,7 +194,7 @@ test('the run is replayed, as rumbo replay would, and so is a saved one; then th
   await page.locator('#events li', { hasText: /the log (?:ends early|is damaged): / }).first().waitFor();
   await back();
   await drop('notes.mcap', 'no log');
-  await says('notes.mcap: is no MCAP log; give a log of rumbo, or convert a CSV with `rumbo import`');
+  await says('notes.mcap: is no MCAP log; give a log of rumbo, or convert a table or a bag with `rumbo import`');
   assert.equal((await state()).replay, undefined);
   assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
 });

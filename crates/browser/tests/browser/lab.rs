@@ -192,7 +192,7 @@ fn what_is_no_recording_says_what_it_is_and_a_damaged_one_is_shown_as_far_as_it_
     let whole = recorded(3.0);
     assert_eq!(
         why("notes.mcap", b"not a log at all"),
-        "notes.mcap: is no MCAP log; give a log of rumbo, or convert a CSV with `rumbo import`"
+        "notes.mcap: is no MCAP log; give a log of rumbo, or convert a table or a bag with `rumbo import`"
     );
     assert!(why("short.mcap", &whole[..60]).starts_with("short.mcap: ends before"));
     assert!(why("long.mcap", &vec![0; (100 << 20) + 1]).contains("at most 100 MB"));

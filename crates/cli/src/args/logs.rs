@@ -2,35 +2,45 @@
 
 use super::groups::{OverwriteArgs, SeedArgs, ServeArgs};
 use super::runs::LanguageName;
-use super::values::{pair, percent, speed};
+use super::values::{percent, speed};
+use crate::column_names::names;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 /// Options of `rumbo import`.
 #[derive(Args, Debug)]
-#[command(after_help = "\
+#[command(after_help = format!("\
 Examples:
   rumbo import runs/mode5.csv
-  rumbo import runs/mode5.csv --out logs/mode5.mcap --json
   rumbo import terminal.txt
-  rumbo import table.csv --column time=t_s --column left=left_cm
+  rumbo import mine.csv               shows its columns and the command that imports them
+  rumbo import mine.csv --columns t_ms=millis,left_rpm=speedL,right_rpm=speedR,left_pwm=pwmL,right_pwm=pwmR
+  rumbo import counts.csv --columns t_ms=t_ms,left_turn=count_l/748,right_turn=count_r/748
+  rumbo import plotter.txt --columns auto,dt_ms=20
+  rumbo import bag_0.mcap             a bag of ROS 2, .mcap or .db3: its types say what is what
 
-A CSV begins with the names of its columns; as a spreadsheet has saved it (semicolons, decimal commas, quoted cells, UTF-16) it is taken too:
+Tables of other programs: CSV with any names, rows of the Serial Plotter (name:value) and what the Serial Monitor copied, exports of
+TelemetryViewer and PlotJuggler. NAME=COLUMN says what a column is, with its unit; COLUMN*2 and COLUMN/748 scale it, #2 is the second
+column, and auto takes what is certain without being said. left_turn, left_rad and left_deg are how far a wheel has turned. Columns that
+are not named are kept as numbers. The names: {}
+
+The original program's CSV begins with the names of its columns; as a spreadsheet has saved it (semicolons, decimal commas, quoted cells,
+UTF-16) it is taken too, as any table is:
   modes 1 to 4  dt_ms,left_cm,right_cm,reference_cm,mode,pwm_a,pwm_b
   modes 5, 6    dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b
   mode 7        dt_ms,speed_a_rpm,speed_b_rpm,reference_a_rpm,reference_b_rpm,x_m,y_m,heading_deg,pwm_a,pwm_b
   mode 8        dt_ms,reference_a_rpm,reference_b_rpm,heading_reference_deg,goal_x_m,goal_y_m,x_m,y_m,heading_deg,state,right_cm,
                 left_cm,front_cm
 A capture of a terminal has rows of telemetry and the commands typed, a line each. Damaged lines are skipped and listed, as long as more of them
-are sound.")]
+are sound.", names()))]
 pub(crate) struct ImportArgs {
-    /// CSV of the original program, or the capture of a terminal
-    #[arg(value_name = "FILE.csv")]
+    /// Table, capture of a terminal, bag or log of another program
+    #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
-    /// A column of another program's table: its name there, and that of this list; may be repeated. Times are t_s, t_ms or dt_ms
-    #[arg(long = "column", value_name = "THEIRS=OURS", value_parser = pair)]
-    pub(crate) columns: Vec<(String, String)>,
-    /// The log to write [default: the same name with .mcap, in the current folder]
+    /// What the columns of another program's table are; may be repeated
+    #[arg(long, value_name = "NAME=COLUMN,...", value_delimiter = ',')]
+    pub(crate) columns: Vec<String>,
+    /// The log to write [default: the same name with .mcap, in the current folder; -rumbo.mcap where it has that]
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]

@@ -130,9 +130,11 @@ pub(crate) struct ExportPolicyArgs {
 Examples:
   rumbo new sketch my_sketch
   rumbo run mode1 --sketch my_sketch              drive it
+  rumbo new sketch my_line --like line            begin with an example
   rumbo new sketch small --board uno
   rumbo run mode1 --robot uno --sketch small      the robot with an Arduino Uno
   rumbo new robot my_car --board uno --driver l298n-jumpers --pins left_forward=5,left_backward=6,right_forward=9,right_backward=10
+  rumbo new robot my_car --board nano --driver drv8833 --pins left_forward=3,...,line_left=A0,line_right=A1
   rumbo new robot my_car --like kit_elegoo_v3
   rumbo run free --robot my_car.toml --sketch my_sketch")]
 pub(crate) struct NewArgs {
@@ -148,7 +150,8 @@ pub(crate) struct NewArgs {
     /// Driver of the robot's motors: l298n, l298n-jumpers, l293d, motor-shield, tb6612, motor-shield-v2, drv8833 or dir-pwm
     #[arg(long, value_name = "DRIVER", value_parser = values::driver_named)]
     pub(crate) driver: Option<(&'static Driver, bool)>,
-    /// Pins of the robot's signals, e.g. left_forward=7,servo=9,front_echo=A1
+    /// Pins of the robot's signals, e.g. left_forward=7,servo=9,front_echo=A1; line sensors from left to right, by names of yours,
+    /// as line_left=2,line_right=A1, and line_dark=low; link_baud=38400 is the rate of a Bluetooth module
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,
     /// Wheels, 2 or 4; the two of a side are driven alike
@@ -157,7 +160,7 @@ pub(crate) struct NewArgs {
     /// Parts of the robot at a pin or an address, e.g. start=button:8,remote=infrared:2,screen=ssd1306:0x3c
     #[arg(long, value_name = "NAME=KIND:PLACE", value_delimiter = ',', value_parser = values::part)]
     pub(crate) parts: Vec<[String; 3]>,
-    /// Begin with the file of this robot (`rumbo list robots`)
+    /// Begin with the file of this robot (`rumbo list robots`), or with this example (`rumbo list sketches`)
     #[arg(long, value_name = "ROBOT", conflicts_with_all = ["board", "driver", "pins", "parts", "wheels"])]
     pub(crate) like: Option<String>,
 }

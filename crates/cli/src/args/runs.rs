@@ -54,7 +54,7 @@ pub(crate) struct RunArgs {
     pub(crate) program: ProgramName,
     #[command(flatten)]
     pub(crate) image: ImageArgs,
-    /// Line of text sent over the link at a time, e.g. 'REF 40@6'; may be repeated
+    /// Line of text sent over the link at a time, e.g. 'REF 40@6'; \\x05 in it is that byte; may be repeated
     #[arg(long = "command", value_name = "TEXT@SECONDS", value_parser = timed_text, conflicts_with = "program")]
     pub(crate) commands: Vec<TimedText>,
     /// Line of text typed on the board's USB port (Serial) at a time, e.g. 'go@2'; may be repeated

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
-use rumbo_experiment::files::new_robot::JUMPERS;
+use rumbo_experiment::files::new_robot::{JUMPERS, LINE, LINK_BAUD};
 use rumbo_experiment::files::{Port, TimedText, check_line, parameters, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Driver};
@@ -43,9 +43,9 @@ pub(super) fn pin(text: &str) -> Result<(String, String), String> {
         .split_once('=')
         .ok_or("write it as left_forward=7,left_backward=8")?;
     let (signal, pin) = (signal.trim(), pin.trim());
-    if !SIGNALS.contains(&signal) {
+    if !SIGNALS.contains(&signal) && !signal.starts_with(LINE) && signal != LINK_BAUD {
         return Err(format!(
-            "no signal `{signal}`; there are {}",
+            "no signal `{signal}`; there are {}, {LINK_BAUD}, and with a name of yours {LINE}NAME",
             SIGNALS.join(", ")
         ));
     }
@@ -145,14 +145,4 @@ pub(super) fn parameter(text: &str) -> Result<(String, f64), Failure> {
     let name = name.trim();
     let value = parameters::parse(name, value.trim()).map_err(Failure::input)?;
     Ok((name.to_owned(), value))
-}
-
-/// Two names, `A=B`.
-pub(super) fn pair(text: &str) -> Result<(String, String), Failure> {
-    match text.split_once('=') {
-        Some((one, other)) if !one.trim().is_empty() && !other.trim().is_empty() => {
-            Ok((one.trim().to_owned(), other.trim().to_owned()))
-        }
-        _ => Err(Failure::input("write it as THEIRS=OURS, such as time=t_s")),
-    }
 }

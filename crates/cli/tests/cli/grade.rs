@@ -104,7 +104,7 @@ const SAMPLE: usize = 6;
 fn model_solutions_get_full_marks_and_mistakes_lose_points_on_their_line() {
     let every = if support::is_full() { 1 } else { SAMPLE };
     let (mut seen, mut missed, mut graded) = (0, Vec::new(), 0);
-    for name in ["wall", "speed", "box"] {
+    for name in ["wall", "speed", "box", "line"] {
         let Some(bench) = bench(name) else {
             return;
         };

@@ -142,6 +142,14 @@ impl Cpu {
                     pc = $target.wrapping_sub(1)
                 };
             }
+            /// A target at which the program begins anew.
+            macro_rules! anew {
+                ($target:expr) => {
+                    if $target == 0 {
+                        self.note_anew(pc);
+                    }
+                };
+            }
             /// A target computed at run time.
             macro_rules! look_ahead {
                 ($target:expr) => {
@@ -384,12 +392,14 @@ impl Cpu {
                     cycles = 2;
                 }
                 Code::Jmp => {
+                    anew!(op.address());
                     jump!(op.address());
                     cycles = 3;
                 }
                 Code::Ijmp | Code::Eijmp => {
                     let target = self.pointed(op.code == Code::Eijmp);
                     look_ahead!(target);
+                    anew!(target);
                     jump!(target);
                     cycles = 2;
                 }
@@ -422,6 +432,7 @@ impl Cpu {
                         }
                     }
                     check_stack!();
+                    anew!(target);
                     jump!(target);
                 }
                 Code::Ret | Code::Reti => {
@@ -441,6 +452,7 @@ impl Cpu {
                     // The program counter of a Mega has 17 bits, that of an Uno 14.
                     let target = u32::from_be_bytes(bytes) & self.last_word;
                     look_ahead!(target);
+                    anew!(target);
                     jump!(target);
                     if op.code == Code::Reti {
                         status.interrupts = true;

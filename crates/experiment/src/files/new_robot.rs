@@ -5,6 +5,7 @@ use super::{Kind, Library, RobotFile};
 use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::{Direction, Driver};
 use rumbo_sim::wiring::{SIGNALS, Wiring, is_driver_input};
+use std::fmt::Write;
 
 /// A driver that is chosen with its enables held by jumpers.
 pub const JUMPERS: &str = "-jumpers";
@@ -12,6 +13,15 @@ pub const JUMPERS: &str = "-jumpers";
 const ALIKE: f64 = 0.5;
 /// Name of the wiring and the rig.
 const OWN: &str = "own";
+
+/// How the name of a line sensor begins among the pins, before a name of its own.
+pub const LINE: &str = "line_";
+/// Says in place of a line sensor that a dark floor is `low` or `high`.
+const DARK: &str = "line_dark";
+/// Rate of the Bluetooth module in place of a pin \[baud\].
+pub const LINK_BAUD: &str = "link_baud";
+/// Line sensors are so far apart \[m\].
+const PITCH_M: f64 = 0.015;
 
 /// What a robot is made of.
 #[derive(Clone, Debug)]
@@ -197,6 +207,12 @@ impl NewRobot {
             };
             put(format!("{:24}# {about}", format!("{signal} = {value}")));
         }
+        if let Some((_, baud)) = self.pins.iter().find(|(signal, _)| signal == LINK_BAUD) {
+            put(format!(
+                "{:24}# rate of the Bluetooth module",
+                format!("link_baud = {baud}")
+            ));
+        }
         for [name, kind, place] in &self.parts {
             let number = match place.strip_prefix("0x") {
                 Some(digits) => u8::from_str_radix(digits, 16),
@@ -208,6 +224,7 @@ impl NewRobot {
             };
             put(format!("parts.{name} = {{ {kind} = {place} }}"));
         }
+        text.push_str(&self.line_sensors());
         text.push_str(&match self.four_wheels {
             true => four_wheels(),
             false => TWO_WHEELS.to_owned(),
@@ -216,6 +233,35 @@ impl NewRobot {
             text.push_str(
                 "\n# A disc on the wheel; of a sensor on the motor's shaft edges_per_motor_turn, and gear_ratio in [plant.motor].\n\
                  [plant.encoder]\nslots = 20\n",
+            );
+        }
+        text
+    }
+
+    /// Line sensors, from left to right as they were given.
+    fn line_sensors(&self) -> String {
+        let named = |signal: &str| self.pins.iter().find(|(own, _)| own == signal);
+        let dark = named(DARK).map_or_else(String::new, |(_, level)| format!(", dark = {level:?}"));
+        let sensors = self.pins.iter().filter(|(signal, _)| signal != DARK);
+        let sensors = sensors.filter_map(|(signal, pin)| Some((signal.strip_prefix(LINE)?, pin)));
+        let sensors: Vec<_> = sensors.collect();
+        let mut text = String::new();
+        if !sensors.is_empty() {
+            let _ = write!(
+                text,
+                "\n# Sensors that look down, from left to right: measure where they are. Over a dark floor they are high, unless\n\
+                 # dark = \"low\".\n[wiring.{OWN}.line]\n"
+            );
+        }
+        for (index, (name, pin)) in sensors.iter().enumerate() {
+            let y_m = PITCH_M * (0.5 * (sensors.len() as f64 - 1.0) - index as f64);
+            let (pin, analogue) = match pin.parse::<u8>() {
+                Ok(_) => ((*pin).clone(), ""),
+                Err(_) => (format!("{pin:?}"), ", analogue = true"),
+            };
+            let _ = writeln!(
+                text,
+                "{name} = {{ pin = {pin}, x_m = 0.09, y_m = {y_m:.4}{analogue}{dark} }}"
             );
         }
         text
@@ -281,6 +327,27 @@ pub fn remarks(wiring: &Wiring) -> Vec<String> {
         }
     }
     remarks
+}
+
+/// What a turn of a wheel counts, of a robot with encoders.
+#[must_use]
+pub fn counted(robot: &RobotFile) -> Option<String> {
+    let has = |wiring: &Wiring| {
+        wiring
+            .pins
+            .keys()
+            .any(|signal| signal.ends_with("_encoder"))
+    };
+    robot.wirings.values().any(has).then(|| {
+        let edges = match robot.plant.encoder.slots {
+            0.0 => robot.plant.encoder.edges_per_motor_turn * robot.plant.motor.gear_ratio,
+            slots => 2.0 * slots,
+        };
+        format!(
+            "a turn of a wheel gives {edges} edges on each output of its encoder, half of them rising: [plant.encoder], and \
+             gear_ratio in [plant.motor]; the sketch must count with the same"
+        )
+    })
 }
 
 /// The signal of the same side for another input.

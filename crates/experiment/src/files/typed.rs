@@ -3,7 +3,7 @@
 //! ```toml
 //! [[command]]
 //! at_s = 1
-//! text = "F"             # over the robot's link; usb = "F" on the board's USB port
+//! text = "F"             # over the robot's link; usb = "F" on the board's USB port; "\\x05" is that byte
 //! line_ending = "none"   # or "lf", as where it is left out, "cr", "crlf"
 //! ```
 
@@ -51,7 +51,7 @@ impl TimedText {
     /// What is sent.
     #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
-        [&self.text, self.ending.text()].concat().into_bytes()
+        self.ending.typed(&self.text).collect()
     }
 }
 

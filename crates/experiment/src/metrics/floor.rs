@@ -3,7 +3,7 @@
 use super::Metrics;
 use crate::files::Setup;
 use rumbo_plant::contact::Pose;
-use rumbo_sim::floor::nearest;
+use rumbo_sim::floor::{Line, Nearest, nearest};
 use rumbo_sim::trace::Trace;
 
 /// A robot that drives to its line has this long [s].
@@ -11,7 +11,10 @@ const FROM_S: f64 = 1.0;
 /// Farther from it the robot has lost its line [m].
 const LOST_M: f64 = 0.05;
 
-/// The distance from the nearest line, and for how long it was lost.
+/// From sample to sample a robot does not go farther along its line: it is another place of it [m].
+const STEP_M: f64 = 0.05;
+
+/// The distance from the nearest line, the way along it, and for how long it was lost.
 pub(super) fn following(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
     let sensors = setup
         .firmware
@@ -27,7 +30,7 @@ pub(super) fn following(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
         middle.at_m[axis] = sum / sensors.len() as f64;
     }
     let samples = trace.between(FROM_S, f64::INFINITY);
-    let distances: Vec<f64> = samples
+    let places: Vec<Nearest> = samples
         .iter()
         .filter_map(|sample| {
             let pose = Pose {
@@ -35,9 +38,10 @@ pub(super) fn following(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
                 y_m: sample.y_m,
                 heading_rad: sample.heading_rad,
             };
-            Some(nearest(&setup.world.lines, middle.place(&pose))?.0)
+            nearest(&setup.world.lines, middle.place(&pose))
         })
         .collect();
+    let distances: Vec<f64> = places.iter().map(|place| place.distance_m).collect();
     let count = distances.len().max(1) as f64;
     let square: f64 = distances.iter().map(|distance| distance * distance).sum();
     let lost = distances
@@ -51,4 +55,21 @@ pub(super) fn following(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
         distances.iter().copied().fold(0.0, f64::max),
     );
     put("line_lost_share", lost / count);
+    put("line_way_m", way_m(&setup.world.lines, &places));
+}
+
+/// How far it came along its line, either way.
+fn way_m(lines: &[Line], places: &[Nearest]) -> f64 {
+    let steps = places.windows(2).map(|pair| {
+        let step_m = pair[1].along_m - pair[0].along_m;
+        let lap_m = lines.get(pair[1].line).and_then(Line::lap_m);
+        // Over the first point of a closed line.
+        let step_m = lap_m.map_or(step_m, |lap_m| step_m - lap_m * (step_m / lap_m).round());
+        let is_on = pair.iter().all(|place| place.distance_m <= LOST_M);
+        match is_on && pair[0].line == pair[1].line && step_m.abs() < STEP_M {
+            true => step_m,
+            false => 0.0,
+        }
+    });
+    steps.sum::<f64>().abs()
 }

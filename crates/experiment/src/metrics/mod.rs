@@ -30,11 +30,12 @@ use std::collections::BTreeMap;
 pub type Metrics = BTreeMap<String, f64>;
 
 /// Metrics of which more is better; of all others less is.
-const MORE_IS_BETTER: [&str; 7] = [
+const MORE_IS_BETTER: [&str; 8] = [
     "clearance_m",
     "contact_clearance_m",
     "cruise_m_s",
     "forward_m",
+    "line_way_m",
     "reached",
     "straights",
     "telemetry_hz",

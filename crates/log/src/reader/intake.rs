@@ -10,8 +10,8 @@ use super::row_json::Signals;
 use crate::digest::{Digest, NO_END};
 use crate::entry::{Burst, Said};
 use crate::event::{Level, LoggedEvent};
+use crate::frames::Frames;
 use crate::log::{Log, Place};
-use crate::lz4::Lz4;
 use crate::reading::{Reading, Source};
 use crate::scene::Scene;
 use crate::schema::Topic;
@@ -164,7 +164,7 @@ impl Intake {
             .with_record_length_limit(LONGEST);
         let mut reader = LinearReader::new_with_options(options);
         reader
-            .add_decompressor(Lz4::new(LONGEST))
+            .add_decompressor(Frames::lz4(LONGEST))
             .map_err(damaged)?;
         while let Some(event) = reader.next_event() {
             match event.map_err(damaged)? {

@@ -88,7 +88,8 @@ impl Mega {
             )
         };
         let strange = self.chip.unmodelled().iter().map(line);
-        let notes = strange.chain(self.standstill()).chain(self.unsent());
+        let notes = strange.chain(self.standstill()).chain(self.anew());
+        let notes = notes.chain(self.unsent());
         let notes = notes.chain(self.misframed());
         let notes = notes.chain(self.oddities.told(self.firmware.name()));
         let bus = self.bus.notes().into_iter();
@@ -134,6 +135,26 @@ impl Mega {
                 "firmware {name}: it stands in a loop of one instruction at {place} with interrupts off: only a reset leads on"
             ),
         })
+    }
+
+    /// That the program begins again and again, though nothing resets the chip.
+    fn anew(&self) -> Option<String> {
+        /// `jmp 0`, where the C library has all interrupts lead that no function handles.
+        const BAD_INTERRUPT: [u8; 4] = [0x0C, 0x94, 0, 0];
+        let begun = self.chip.cpu().begun_anew();
+        let (times, at) = begun.filter(|(times, _)| *times > RESETS)?;
+        let (name, place) = (self.firmware.name(), self.firmware.image().place(at));
+        let here = self.chip.cpu().flash().get(2 * at as usize..);
+        let why = match here.is_some_and(|here| here.starts_with(&BAD_INTERRUPT)) {
+            true => "an interrupt was on that no function handles",
+            false => {
+                "a function that is not there was called, or a pointer to one that is 0; with Arduino's core 1.8.3 and later \
+                 `new` is not there where <new> or <new.h> is included: leave that line out"
+            }
+        };
+        Some(format!(
+            "firmware {name}: it began anew {times} times without a reset, the last time from {place}: {why}"
+        ))
     }
 
     /// What the module could not read on a pin that is no USART's.

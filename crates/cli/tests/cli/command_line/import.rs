@@ -43,40 +43,6 @@ fn an_imported_recording_is_in_si_units_with_the_original_attached() {
 }
 
 #[test]
-fn a_table_of_another_program_is_imported_once_its_columns_have_names() {
-    let folder = tempfile::tempdir().unwrap();
-    let table = "time,left,right,note\n1.0,50,40,a\n1.1,49,41,b\n1.3,48,x,c\n1.4,47,43,d\n";
-    std::fs::write(folder.path().join("own.csv"), table).unwrap();
-    let import = |columns: &[&str]| {
-        let mut import = program();
-        let given = columns.iter().flat_map(|column| ["--column", column]);
-        import
-            .current_dir(&folder)
-            .args(["import", "own.csv", "--json"]);
-        import.args(given).output().unwrap()
-    };
-    let done = import(&["time=t_s", "left=left_cm", "right=right_cm"]);
-    let summary: serde_json::Value = serde_json::from_str(&stdout(&done)).unwrap();
-    assert_eq!(summary["rows"], 3, "{summary}");
-    assert!((summary["duration_s"].as_f64().unwrap() - 0.4).abs() < 1e-9);
-    assert!((summary["columns"]["left_range_m"]["max"].as_f64().unwrap() - 0.5).abs() < 1e-9);
-    // The damaged line is named as it is in the file.
-    assert!(stderr(&done).contains("4"), "{}", stderr(&done));
-    for (columns, said) in [
-        (
-            &["zeit=t_s"][..],
-            "no column `zeit`; there are time, left, right, note",
-        ),
-        (&["left=left_cm"], "no column is the time"),
-        (&["time=t_s", "left=links"], "left=links: no such column"),
-        (&["time=t_s"], "no column is one of ours"),
-    ] {
-        let refused = import(columns);
-        assert!(stderr(&refused).contains(said), "{}", stderr(&refused));
-    }
-}
-
-#[test]
 fn a_csv_that_a_spanish_spreadsheet_saved_is_imported_and_another_log_of_its_name_stays() {
     let folder = tempfile::tempdir().unwrap();
     let import = |name: &str, text: &str| {
@@ -206,32 +172,206 @@ fn a_recording_without_pwm_is_skipped_with_a_note() {
     assert!(stderr(&alone).contains("give a log of modes 1 to 7"));
 }
 
+/// Runs `rumbo import` in a folder of its own; what it wrote is `table.mcap`.
+struct Import {
+    folder: tempfile::TempDir,
+}
+
+impl Import {
+    fn of(name: &str, content: &[u8]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(name), content).unwrap();
+        Self { folder }
+    }
+
+    fn run(&self, args: &[&str]) -> Output {
+        program()
+            .current_dir(&self.folder)
+            .args(args)
+            .output()
+            .unwrap()
+    }
+
+    /// The rows of a log as `rumbo export` writes them.
+    fn exported(&self, log: &str) -> Vec<std::collections::BTreeMap<String, f64>> {
+        let export = self.run(&["export", log, "--format", "csv", "--force"]);
+        assert!(export.status.success(), "{}", stderr(&export));
+        let table = std::path::Path::new(log).with_extension("csv");
+        let text = std::fs::read_to_string(self.folder.path().join(table)).unwrap();
+        let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+        let rows = text.lines().skip(1).map(|line| {
+            let cells = names.iter().zip(line.split(','));
+            cells
+                .filter_map(|(name, cell)| Some(((*name).to_owned(), cell.parse().ok()?)))
+                .collect()
+        });
+        rows.collect()
+    }
+}
+
 #[test]
-fn a_log_of_another_program_is_not_sent_to_replay_which_refuses_it() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("foreign.mcap");
-    let mut log = mcap::Writer::new(std::fs::File::create(&path).unwrap()).unwrap();
-    let schema = log
-        .add_schema("std_msgs/msg/Float64", "ros2msg", b"float64 data")
-        .unwrap();
-    let channel = log
-        .add_channel(schema, "/left_wheel/speed", "cdr", &Default::default())
-        .unwrap();
-    let header = mcap::records::MessageHeader {
-        channel_id: channel,
-        sequence: 0,
-        log_time: 1,
-        publish_time: 1,
-    };
-    log.write_to_known_channel(&header, &[0; 12]).unwrap();
-    log.finish().unwrap();
-    drop(log);
-    let refused = rumbo(&["import", path.to_str().unwrap()]);
-    assert_eq!(refused.status.code(), Some(2));
-    let said = stderr(&refused);
+fn a_table_of_another_program_is_shown_with_the_command_that_imports_it() {
+    let rows = (0..30).map(|at| {
+        format!(
+            "{at},{},{}.5,{}.25\n",
+            1_700_000_000_000_u64 + 100 * at,
+            at,
+            at
+        )
+    });
+    let header = "Sample Number (10 samples per second),UNIX Timestamp (Milliseconds since 1970-01-01),Left Speed (rpm),Right Speed (rpm)\n";
+    let import = Import::of(
+        "viewer.csv",
+        format!("{header}{}", rows.collect::<String>()).as_bytes(),
+    );
+    let preview = import.run(&["import", "viewer.csv"]);
+    let said = stdout(&preview);
+    let command = "rumbo import viewer.csv --columns 't_ms=#2,left_rpm=#3,right_rpm=#4'";
     assert!(
-        said.contains("of another program, with /left_wheel/speed (std_msgs/msg/Float64)")
-            && !said.contains("rumbo replay"),
+        said.contains("nothing is written yet") && said.contains(command),
         "{said}"
     );
+    assert!(!import.folder.path().join("viewer.mcap").exists());
+    let imported = import.run(&[
+        "import",
+        "viewer.csv",
+        "--columns",
+        "t_ms=#2,left_rpm=#3,right_rpm=#4",
+    ]);
+    let said = stdout(&imported);
+    assert!(
+        said.contains("30 rows of signals in 2.9 s") && said.contains("lacks left_pwm, right_pwm"),
+        "{said}"
+    );
+    let last = &import.exported("viewer.mcap")[29];
+    assert_eq!(last["t_s"], 2.9);
+    assert!((last["left_rad_s"] - 29.5 * std::f64::consts::PI / 30.0).abs() < 1e-3);
+    let refused = import.run(&["identify", "viewer.mcap"]);
+    assert!(
+        stderr(&refused).contains("has no left_pwm, right_pwm"),
+        "{}",
+        stderr(&refused)
+    );
+}
+
+#[test]
+fn counts_are_speeds_by_what_a_turn_counts_and_rows_of_the_serial_monitor_have_its_times() {
+    // 748 counts in a second to the right, half as many to the left; a row each 5 ms.
+    let rows: Vec<String> = (0..300)
+        .map(|at| {
+            format!(
+                "23:59:{:06.3} -> right:{},left:{},pwm:300\n",
+                59.0 + f64::from(at) * 0.005 % 1.0,
+                748 * at / 200,
+                374 * at / 200
+            )
+        })
+        .take(200)
+        .collect();
+    let import = Import::of("table.txt", rows.concat().as_bytes());
+    let columns = "auto,right_turn=right/748,left_turn=left/748,left_pwm=pwm*0.5,right_pwm=pwm*0.5";
+    let output = import.run(&["import", "table.txt", "--columns", columns, "--json"]);
+    let summary: serde_json::Value =
+        serde_json::from_str(&stdout(&output)).unwrap_or_else(|_| panic!("{}", stderr(&output)));
+    assert_eq!(summary["identify_lacks"], serde_json::json!([]));
+    let last = &import.exported("table.mcap")[198];
+    assert!(
+        (last["right_rad_s"] - std::f64::consts::TAU).abs() < 0.1,
+        "{last:?}"
+    );
+    assert!(
+        (last["left_rad_s"] - std::f64::consts::PI).abs() < 0.1,
+        "{last:?}"
+    );
+    assert_eq!(last["left_pwm"], 150.0);
+    let check = import.run(&["identify", "table.mcap", "--check", "memoria"]);
+    assert!(check.status.success(), "{}", stderr(&check));
+    // Of 255: what is more is in another unit.
+    let refused = import.run(&[
+        "import",
+        "table.txt",
+        "--columns",
+        "auto,left_pwm=pwm",
+        "--out",
+        "x.mcap",
+    ]);
+    assert!(
+        stderr(&refused).contains("left_pwm reaches 300 of 255"),
+        "{}",
+        stderr(&refused)
+    );
+}
+
+#[test]
+fn what_columns_are_missing_or_unclear_is_said_with_what_there_is() {
+    let import = Import::of("table.csv", b"millis;rpm_l;v_l\n0;1;1\n20;2;1\n40;3;1\n");
+    for (columns, said) in [
+        (
+            "t_ms=millis,left_rpm=speed",
+            "there is no column `speed`; there are millis, rpm_l, v_l",
+        ),
+        (
+            "t_ms=millis,left_rpms=rpm_l",
+            "`left_rpms` is no name of a signal; there are t_s|ms|us|ns, dt_s|",
+        ),
+        (
+            "t_ms=millis,left=v_l",
+            "in which unit is `left=v_l`? name it: left_rpm, left_rad_s,",
+        ),
+        ("left_rpm=rpm_l", "which column has the times?"),
+        ("t_ms=v_l", "t_ms does not rise"),
+        (
+            "t_ms=millis,left_turn=rpm_l/COUNTS",
+            "COUNTS stands for a number",
+        ),
+        (
+            "t_ms=millis,left_rpm=rpm_l,left_rad_s=v_l",
+            "left_rpm and left_rad_s are the same signal",
+        ),
+        ("t_s=millis*1e5,left=rpm_l", "it lasts 4000000 s"),
+    ] {
+        let refused = import.run(&["import", "table.csv", "--columns", columns]);
+        assert_eq!(refused.status.code(), Some(2), "{columns}");
+        assert!(
+            stderr(&refused).contains(said),
+            "{columns}: {}",
+            stderr(&refused)
+        );
+    }
+}
+
+#[test]
+fn a_log_of_another_program_is_imported_and_only_ours_is_sent_to_replay() {
+    let bags = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../ros/tests/bags");
+    let import = Import::of(
+        "foreign.mcap",
+        &std::fs::read(bags.join("zstd.mcap")).unwrap(),
+    );
+    let said = stderr(&import.run(&["identify", "foreign.mcap"]));
+    assert!(said.contains("`rumbo import`"), "{said}");
+    let output = import.run(&["import", "foreign.mcap"]);
+    let said = stdout(&output);
+    for part in [
+        "range_left_m = /sonar/range",
+        "forward_ref_m_s = /cmd_vel/linear/x",
+        "may be more: --columns 'auto,left_rad_s=/left_wheel/speed/data'",
+        "`rumbo replay foreign-rumbo.mcap` shows it",
+    ] {
+        assert!(said.contains(part), "{part}: {said}{}", stderr(&output));
+    }
+    let last = import.exported("foreign-rumbo.mcap").pop().unwrap();
+    assert!((last["range_left_m"] - 0.61).abs() < 1e-3, "{last:?}");
+    let again = import.run(&["import", "foreign-rumbo.mcap"]);
+    assert!(
+        stderr(&again).contains("is a log already; `rumbo replay` shows it"),
+        "{}",
+        stderr(&again)
+    );
+    // Odometry and joints of an older recorder.
+    std::fs::copy(bags.join("foxy.db3"), import.folder.path().join("old.db3")).unwrap();
+    assert!(import.run(&["import", "old.db3"]).status.success());
+    let last = import.exported("old.mcap").pop().unwrap();
+    let wheels_and_pose =
+        ["left_rad_s", "right_rad_s", "x_m", "heading_rad"].map(|name| last[name]);
+    assert_eq!(wheels_and_pose, [6.0, 8.0, 0.11, 1.1]);
 }

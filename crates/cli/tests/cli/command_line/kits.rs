@@ -1,7 +1,7 @@
 //! Robots with other wirings, drivers and parts than the report's: a sketch as their authors write it, and a robot file.
 
 use super::sketch::{bench, rumbo};
-use crate::support::{stderr, stdout};
+use crate::support::{is_full, stderr, stdout};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
@@ -93,6 +93,9 @@ fn a_letter_without_a_line_ending_is_obeyed_until_the_next_one() {
         stdout(&again),
         stderr(&again)
     );
+    // A car that is driven by bytes: 0x46 is that letter.
+    drive(&bench, &["--usb", "\\x46@1", "--line-ending", "none"]);
+    assert!(last(&bench, "x_m") > 0.3);
     // The same in the scenario.
     let scenario = std::fs::read_to_string(bench.join("floor.toml")).unwrap();
     let typed = "[[command]]\nat_s = 1\nusb = \"F\"\nline_ending = \"none\"\n";
@@ -541,6 +544,8 @@ fn a_new_robot_names_what_is_missing_and_what_its_pins_cannot_do() {
     ] {
         assert!(notes.contains(note), "{notes}");
     }
+    let said = stdout(&unable);
+    assert!(said.contains("a turn of a wheel gives 40 edges"), "{said}");
 }
 
 #[test]
@@ -721,6 +726,173 @@ void loop() {
         assert!(
             metric("path_m") > 1.5 && metric("line_lost_share") == 0.0,
             "{robot} {result}"
+        );
+    }
+}
+
+#[test]
+fn the_model_line_follower_goes_once_around_within_1_cm_of_the_line_with_every_drawn_robot() {
+    let Some(bench) = bench("line_model") else {
+        return;
+    };
+    let assignment = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/assignments/line");
+    let [scenario, model] = ["scenario.toml", "model"].map(|name| assignment.join(name));
+    let runs = if is_full() { "100" } else { "4" };
+    let [scenario, model] = [&scenario, &model].map(|path| path.to_str().unwrap());
+    let run = rumbo(
+        &bench,
+        &[
+            "run",
+            scenario,
+            "--sketch",
+            model,
+            "--runs",
+            runs,
+            "--no-record",
+            "--json",
+        ],
+    );
+    let results = stdout(&run);
+    assert_eq!(
+        results.lines().count().to_string(),
+        runs,
+        "{}",
+        stderr(&run)
+    );
+    for result in results.lines() {
+        let result: serde_json::Value = serde_json::from_str(result).unwrap();
+        let metric = |name: &str| result["metrics"][name].as_f64().unwrap();
+        let (rms_m, way_m) = (metric("line_rms_m"), metric("line_way_m"));
+        assert!(
+            rms_m < 0.01 && way_m > 5.14,
+            "seed {}: {rms_m} m, {way_m} m",
+            result["seed"]
+        );
+    }
+}
+
+#[test]
+fn a_sketch_begun_like_an_example_says_how_to_drive_it_and_does() {
+    let Some(bench) = bench("like_line") else {
+        return;
+    };
+    let begun = stdout(&rumbo(
+        &bench,
+        &["new", "sketch", "my_line", "--like", "line"],
+    ));
+    let command = "rumbo run free --robot kit_elegoo_v3 --world line_loop --sketch my_line";
+    assert!(begun.contains(command), "{begun}");
+    let args: Vec<&str> = command
+        .split(' ')
+        .skip(1)
+        .chain(["--json", "--no-record"])
+        .collect();
+    let run = rumbo(&bench, &args);
+    let result: serde_json::Value = serde_json::from_str(&stdout(&run)).unwrap();
+    let metric = |name: &str| result["metrics"][name].as_f64().unwrap();
+    assert!(
+        metric("line_rms_m") < 0.01 && metric("line_way_m") > 0.5,
+        "{result}"
+    );
+    let unknown = rumbo(&bench, &["new", "sketch", "other", "--like", "lines"]);
+    assert!(
+        stderr(&unknown).contains("no example `lines`; there are line,"),
+        "{}",
+        stderr(&unknown)
+    );
+}
+
+#[test]
+fn a_new_robot_has_line_sensors_buttons_and_lights_by_names_of_its_own() {
+    let Some(bench) = bench("new_accessories") else {
+        return;
+    };
+    let pins = "left_enable=5,left_forward=7,left_backward=8,right_enable=6,right_forward=11,right_backward=9,\
+                line_left=2,line_middle=4,line_right=A0,line_dark=low";
+    let made = rumbo(
+        &bench,
+        &[
+            "new",
+            "robot",
+            "car",
+            "--board",
+            "uno",
+            "--driver",
+            "l298n",
+            "--pins",
+            pins,
+            "--parts",
+            "start=button:12,lamp=led:13",
+        ],
+    );
+    assert!(made.status.success(), "{}", stderr(&made));
+    let sketch = "
+void setup() { for (int pin : {5, 6, 7, 11, 13}) pinMode(pin, OUTPUT); pinMode(12, INPUT_PULLUP); while (digitalRead(12)) ; }
+void loop() {
+  bool left = !digitalRead(2), right = !digitalRead(A0);
+  digitalWrite(13, !digitalRead(4));
+  digitalWrite(7, HIGH); digitalWrite(11, HIGH);
+  analogWrite(5, left ? 0 : 90); analogWrite(6, right ? 0 : 90);
+}"
+    .replace("for (int pin : {5, 6, 7, 11, 13}) pinMode(pin, OUTPUT);", "DDRD |= 0xE0; DDRB |= 0x28;");
+    std::fs::write(bench.join("car.ino"), sketch).unwrap();
+    let args = [
+        "run",
+        "free",
+        "--robot",
+        "car.toml",
+        "--world",
+        "line_loop",
+        "--sketch",
+        "car.ino",
+    ];
+    let run = rumbo(
+        &bench,
+        &[
+            &args[..],
+            &["--press", "start@0.5", "--json", "--no-record"],
+        ]
+        .concat(),
+    );
+    let result: serde_json::Value =
+        serde_json::from_str(&stdout(&run)).unwrap_or_else(|_| panic!("{}", stderr(&run)));
+    let metric = |name: &str| result["metrics"][name].as_f64().unwrap();
+    assert!(
+        metric("line_way_m") > 0.5 && metric("line_rms_m") < 0.02,
+        "{result}"
+    );
+    let unknown = rumbo(&bench, &["new", "robot", "other", "--pins", "lines=2"]);
+    assert!(
+        stderr(&unknown).contains("with a name of yours line_NAME"),
+        "{}",
+        stderr(&unknown)
+    );
+}
+
+#[test]
+fn a_program_that_begins_again_and_again_is_told_why() {
+    let by_new = "#include <new.h>\nstruct Part { int a, b; };\nPart *volatile part;\n\
+                  void setup() { part = new Part; }\nvoid loop() { }\n";
+    let by_interrupt = "void setup() { TCCR2B = 1; TIMSK2 = 1; }\nvoid loop() { }\n";
+    for (name, sketch, why) in [
+        (
+            "anew_new",
+            by_new,
+            "in main: a function that is not there was called",
+        ),
+        (
+            "anew_interrupt",
+            by_interrupt,
+            ": an interrupt was on that no function handles",
+        ),
+    ] {
+        let Some(bench) = kit(name, LETTERS_WIRING, sketch) else {
+            return;
+        };
+        let said = stdout(&drive(&bench, &[]));
+        assert!(
+            said.contains("it began anew") && said.contains(why),
+            "{said}"
         );
     }
 }

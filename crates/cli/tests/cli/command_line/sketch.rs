@@ -226,6 +226,6 @@ fn an_example_runs_by_name_and_receives_lines_typed_on_usb() {
     let unknown = rumbo(&bench, &["run", "mode1", "--sketch", "example:wal"]);
     assert_eq!(
         stderr(&unknown),
-        "error: no example `wal`; there are memoria, wall, wall_uno\n"
+        "error: no example `wal`; there are line, memoria, wall, wall_uno\n"
     );
 }

@@ -43,7 +43,7 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         ),
         (
             &["import", "far.toml"],
-            "error: far.toml:1: `title = \"t\"` is neither a header of the original program nor a line of a capture; `rumbo import --help` shows the headers",
+            "error: far.toml:1: `title = \"t\"` is neither the beginning of a table nor a line of a capture; `rumbo import --help` shows what is read",
         ),
         (
             &["connect", ""],
@@ -162,7 +162,7 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         ),
         (
             &["import", "nowhere.csv"],
-            "error: nowhere.csv: cannot be read (No such file or directory (os error 2)); give the path of a CSV file",
+            "error: nowhere.csv: cannot be read (No such file or directory (os error 2)); give the path of a table, a bag or a log",
         ),
     ];
     for (arguments, expected) in cases {

@@ -1,15 +1,43 @@
-//! LZ4 without C, so that a browser reads the same logs by the same code.
+//! LZ4, and Zstandard as other programs write it, without C, so that a browser reads the same logs by the same code.
 
 use lz4_flex::frame::FrameDecoder;
 use mcap::sans_io::decompressor::{DecompressResult, Decompressor};
 use mcap::{McapError, McapResult};
+use ruzstd::decoding::StreamingDecoder;
 use std::io::{self, Read};
 
 /// Input of the first attempt, doubled for each further one \[bytes\]: a whole chunk of ours.
 const FIRST: usize = 64 << 10;
 
+/// A way to compress.
+struct Method {
+    /// What chunks call it.
+    name: &'static str,
+    /// The length of the first frame; `None` while more has to come to know it. What is no frame is left to the decoder.
+    frame_length: fn(&[u8]) -> Option<usize>,
+    /// Decompresses a frame into bytes, at most so many.
+    decompress: fn(&[u8], u64, &mut Vec<u8>) -> io::Result<usize>,
+}
+
+static LZ4: Method = Method {
+    name: "lz4",
+    frame_length: lz4_length,
+    decompress: |frame, most, text| FrameDecoder::new(frame).take(most).read_to_end(text),
+};
+
+static ZSTD: Method = Method {
+    name: "zstd",
+    frame_length: zstd_length,
+    decompress: |frame, most, text| {
+        let decoder = StreamingDecoder::new(frame);
+        let decoder = decoder.map_err(|error| io::Error::other(error.to_string()))?;
+        decoder.take(most).read_to_end(text)
+    },
+};
+
 /// Decompresses chunks, each frame as a whole.
-pub(crate) struct Lz4 {
+pub(crate) struct Frames {
+    method: &'static Method,
     /// A frame must not become longer \[bytes\].
     longest: usize,
     /// What is not decompressed yet.
@@ -19,10 +47,20 @@ pub(crate) struct Lz4 {
     given: usize,
 }
 
-impl Lz4 {
-    /// For frames of at most this many bytes.
-    pub(crate) fn new(longest: usize) -> Self {
+impl Frames {
+    /// For frames of LZ4 of at most this many bytes.
+    pub(crate) fn lz4(longest: usize) -> Self {
+        Self::of(&LZ4, longest)
+    }
+
+    /// The same for Zstandard.
+    pub(crate) fn zstd(longest: usize) -> Self {
+        Self::of(&ZSTD, longest)
+    }
+
+    fn of(method: &'static Method, longest: usize) -> Self {
         Self {
+            method,
             longest,
             frame: Vec::new(),
             text: Vec::new(),
@@ -34,12 +72,13 @@ impl Lz4 {
     fn try_frame(&mut self) -> McapResult<()> {
         self.text.clear();
         self.given = 0;
-        let Some(frame) = frame_length(&self.frame).and_then(|end| self.frame.get(..end)) else {
+        let length = (self.method.frame_length)(&self.frame);
+        let Some(frame) = length.and_then(|end| self.frame.get(..end)) else {
             return Ok(());
         };
         let failed = |error: io::Error| McapError::DecompressionError(error.to_string());
-        let mut text = FrameDecoder::new(frame).take(self.longest as u64 + 1);
-        let length = text.read_to_end(&mut self.text).map_err(failed)?;
+        let most = self.longest as u64 + 1;
+        let length = (self.method.decompress)(frame, most, &mut self.text).map_err(failed)?;
         if length > self.longest {
             let why = format!("a frame is longer than {} bytes", self.longest);
             return Err(McapError::DecompressionError(why));
@@ -49,9 +88,8 @@ impl Lz4 {
     }
 }
 
-/// The length of the first frame, from its block sizes; `None` while more has to come to know it. What is no frame is
-/// left to the decoder.
-fn frame_length(bytes: &[u8]) -> Option<usize> {
+/// From the sizes of its blocks.
+fn lz4_length(bytes: &[u8]) -> Option<usize> {
     const MAGIC: [u8; 4] = 0x184d_2204_u32.to_le_bytes();
     const UNCOMPRESSED: u32 = 1 << 31;
     let (magic, rest) = bytes.split_first_chunk()?;
@@ -73,7 +111,33 @@ fn frame_length(bytes: &[u8]) -> Option<usize> {
     }
 }
 
-impl Decompressor for Lz4 {
+/// The same of Zstandard (RFC 8878, 3.1.1).
+fn zstd_length(bytes: &[u8]) -> Option<usize> {
+    const MAGIC: [u8; 4] = 0xfd2f_b528_u32.to_le_bytes();
+    let (magic, rest) = bytes.split_first_chunk()?;
+    if *magic != MAGIC {
+        return Some(bytes.len());
+    }
+    let flags = *rest.first()?;
+    let single = flags & 0x20 != 0;
+    let window = usize::from(!single);
+    let dictionary = [0, 1, 2, 4][usize::from(flags & 3)];
+    let content = [usize::from(single), 2, 4, 8][usize::from(flags >> 6)];
+    let mut at = MAGIC.len() + 1 + window + dictionary + content;
+    loop {
+        let head: &[u8; 3] = bytes.get(at..)?.first_chunk()?;
+        let head = u32::from_le_bytes([head[0], head[1], head[2], 0]);
+        let size = (head >> 3) as usize;
+        // One byte, so many times.
+        let repeated = head >> 1 & 3 == 1;
+        at += 3 + if repeated { 1 } else { size };
+        if head & 1 == 1 {
+            return Some(at + if flags & 4 == 0 { 0 } else { 4 });
+        }
+    }
+}
+
+impl Decompressor for Frames {
     fn next_read_size(&self) -> usize {
         match self.given < self.text.len() {
             true => 0,
@@ -103,7 +167,7 @@ impl Decompressor for Lz4 {
     }
 
     fn name(&self) -> &'static str {
-        "lz4"
+        self.method.name
     }
 }
 
@@ -127,7 +191,7 @@ mod tests {
         let text: Vec<u8> = (0..300_000u32).map(|at| (at / 7 % 251) as u8).collect();
         let frames = [frame(&text[..200_000]), frame(&text[200_000..])].concat();
         for (piece, room) in [(1, 70_000), (1_000, 1_000), (frames.len(), 13)] {
-            let mut lz4 = Lz4::new(200_000);
+            let mut lz4 = Frames::lz4(200_000);
             let (mut into, mut at, mut found) = (vec![0; room], 0, Vec::new());
             while found.len() < text.len() {
                 let end = frames.len().min(at + piece);
@@ -149,13 +213,13 @@ mod tests {
         for at in 0..sound.len() {
             let mut damaged = sound.clone();
             damaged[at] ^= 0x41;
-            let mut lz4 = Lz4::new(text.len());
+            let mut lz4 = Frames::lz4(text.len());
             let mut into = vec![0; text.len()];
             // An error, or more input is waited for, or other bytes: a chunk has a checksum.
             let _ = lz4.decompress(&damaged, &mut into);
             assert!(lz4.text.len() <= text.len() + 1);
         }
-        let mut lz4 = Lz4::new(1_000);
+        let mut lz4 = Frames::lz4(1_000);
         let error = lz4.decompress(&sound, &mut [0; 10]).unwrap_err();
         assert!(error.to_string().contains("longer than 1000"), "{error}");
     }

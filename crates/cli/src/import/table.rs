@@ -1,0 +1,199 @@
+//! Tables of other programs as text: CSV with any columns, rows of the Serial Plotter, what the Serial Monitor copied.
+//!
+//! The time of a sample is the number of its row here: which column has the times is chosen later.
+
+use crate::failure::Failure;
+use crate::left_out::LeftOut;
+use rumbo_ros::recorded::Series;
+use rumbo_session::plotter_row;
+use std::path::Path;
+
+/// The column of the Serial Monitor's times of day.
+pub(crate) const CLOCK: &str = "clock";
+/// Columns of a table.
+const MOST_COLUMNS: usize = 256;
+/// Values of a table.
+const MOST_VALUES: usize = 20_000_000;
+const DAY_S: f64 = 86_400.0;
+
+/// A table, by columns.
+#[derive(Debug)]
+pub(crate) struct Table {
+    pub(crate) columns: Vec<Series>,
+    pub(crate) rows: usize,
+    pub(crate) left_out: LeftOut,
+}
+
+/// Reads a table whose cells commas part, or blanks where it has no commas; `None` if most of it is none.
+///
+/// # Errors
+/// A larger table than is read.
+pub(crate) fn read(path: &Path, text: &str) -> Result<Option<Table>, Failure> {
+    let lines = || {
+        let lines = (1..).zip(text.lines());
+        lines.filter(|(_, line)| !line.trim().is_empty())
+    };
+    let Some((_, first)) = lines().next() else {
+        return Ok(None);
+    };
+    let has_clock = stamp(first).is_some();
+    let is_named = |line: &str| {
+        let row = plotter_row(without_stamp(line));
+        row.is_some_and(|row| row.iter().any(|(name, _)| name.is_some()))
+    };
+    let mut table = Builder::default();
+    // The first line may be the end of one.
+    if lines().take(2).any(|(_, line)| is_named(line)) {
+        for (number, line) in lines() {
+            let row = plotter_row(without_stamp(line));
+            let Some(row) = row else {
+                table.left_out.row(number, "is no row of numbers".into());
+                continue;
+            };
+            let mut unnamed = 0;
+            let row = row.into_iter().map(|(name, value)| match name {
+                Some(name) => (name.to_owned(), value),
+                None => {
+                    unnamed += 1;
+                    (format!("value_{unnamed}"), value)
+                }
+            });
+            table.push(stamp(line), row.collect());
+        }
+    } else {
+        let header = cells(without_stamp(first));
+        let is_header = header
+            .iter()
+            .any(|cell| value(cell).is_none() && !cell.is_empty());
+        let names: Vec<String> = match is_header {
+            true => header.iter().map(|cell| (*cell).to_owned()).collect(),
+            false => (1..=header.len()).map(|at| format!("value_{at}")).collect(),
+        };
+        if names.len() < 2 && !has_clock {
+            return Ok(None);
+        }
+        table.order(&names, has_clock);
+        for (number, line) in lines().skip(usize::from(is_header)) {
+            let row = cells(without_stamp(line));
+            if row.len() != names.len() || row.iter().all(|cell| value(cell).is_none()) {
+                let what = format!("{} values in a row of {} columns", row.len(), names.len());
+                table.left_out.row(number, what);
+                continue;
+            }
+            let row = names.iter().zip(row);
+            let row = row.filter_map(|(name, cell)| Some((name.clone(), value(cell)?)));
+            table.push(stamp(line), row.collect());
+        }
+    }
+    table.finish(path)
+}
+
+#[derive(Default)]
+struct Builder {
+    columns: Vec<Series>,
+    rows: usize,
+    values: usize,
+    /// Since midnight of the first day, the last one \[s\].
+    clock_s: Option<f64>,
+    left_out: LeftOut,
+}
+
+impl Builder {
+    fn order(&mut self, names: &[String], has_clock: bool) {
+        let clock = has_clock.then(|| CLOCK.to_owned());
+        for name in clock.iter().chain(names) {
+            self.column(name);
+        }
+    }
+
+    fn column(&mut self, name: &str) -> Option<&mut Series> {
+        let known = self.columns.iter().position(|column| column.name == name);
+        let index = match known {
+            Some(index) => index,
+            None if self.columns.len() == MOST_COLUMNS => return None,
+            None => {
+                self.columns.push(Series {
+                    name: name.to_owned(),
+                    ..Series::default()
+                });
+                self.columns.len() - 1
+            }
+        };
+        self.columns.get_mut(index)
+    }
+
+    fn push(&mut self, clock_s: Option<f64>, row: Vec<(String, f64)>) {
+        let at = self.rows as f64;
+        self.rows += 1;
+        let clock = clock_s.map(|clock_s| {
+            let before_s = self.clock_s.unwrap_or(clock_s);
+            // After midnight.
+            let days = ((before_s - clock_s) / DAY_S).round().max(0.0);
+            let now_s = clock_s + days * DAY_S;
+            self.clock_s = Some(now_s);
+            (CLOCK.to_owned(), now_s)
+        });
+        for (name, value) in clock.into_iter().chain(row) {
+            if !value.is_finite() || self.values >= MOST_VALUES {
+                continue;
+            }
+            self.values += 1;
+            if let Some(column) = self.column(&name) {
+                column.samples.push((at, value));
+            }
+        }
+    }
+
+    fn finish(self, path: &Path) -> Result<Option<Table>, Failure> {
+        let wrong = |line: usize, what: String| {
+            Failure::Input(format!("{}:{line}: {what}", path.display()))
+        };
+        if self.rows < 2 || self.left_out.too_much(self.rows).is_some() {
+            return Ok(None);
+        }
+        if self.values >= MOST_VALUES {
+            let what = format!("more than {MOST_VALUES} values; cut the table into parts");
+            return Err(wrong(1, what));
+        }
+        Ok(Some(Table {
+            columns: self.columns,
+            rows: self.rows,
+            left_out: self.left_out,
+        }))
+    }
+}
+
+fn cells(line: &str) -> Vec<&str> {
+    match line.contains(',') {
+        true => line.split(',').map(str::trim).collect(),
+        false => line.split_whitespace().collect(),
+    }
+}
+
+/// A number, or a time of day with or without its date \[s\].
+fn value(cell: &str) -> Option<f64> {
+    cell.parse().ok().or_else(|| {
+        let time = cell.rsplit([' ', 'T']).next()?;
+        time_of_day(time.trim_end_matches('Z'))
+    })
+}
+
+fn time_of_day(text: &str) -> Option<f64> {
+    let mut parts = text.split(':');
+    let [hours, minutes] = [parts.next()?, parts.next()?].map(|part| part.parse::<u8>().ok());
+    let seconds: f64 = parts.next()?.parse().ok()?;
+    let within = parts.next().is_none() && (0.0..61.0).contains(&seconds);
+    within.then_some(f64::from(hours?) * 3_600.0 + f64::from(minutes?) * 60.0 + seconds)
+}
+
+/// When the Serial Monitor received a line: `18:40:00.000 -> ` before it.
+fn stamp(line: &str) -> Option<f64> {
+    time_of_day(line.split_once("->")?.0.trim())
+}
+
+fn without_stamp(line: &str) -> &str {
+    match (stamp(line), line.split_once("->")) {
+        (Some(_), Some((_, rest))) => rest.trim(),
+        _ => line.trim(),
+    }
+}
