@@ -148,7 +148,7 @@ impl Board {
             match output.event {
                 Event::Byte { byte, .. } => self.sent.push(byte as u8),
                 Event::Reset(cause) => panic!("reset: {cause:?}"),
-                Event::Pin(..) | Event::Duty { .. } => {}
+                Event::Pin(..) | Event::Duty { .. } | Event::TwoWire(_) => {}
             }
         }
     }

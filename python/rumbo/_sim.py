@@ -436,18 +436,22 @@ class Sim:
         """
         return Pin(self._batch._batch, name)
 
-    def press(self, part: str, value: float | None = None) -> None:
-        """Presses a button of the robot's file for 0.2 s, or puts a switch or a potentiometer to a value, 0 to 1.
+    def press(self, part: str, value: float | str | None = None) -> None:
+        """Presses a button of the robot's file for 0.2 s, puts a switch or a potentiometer to a value, 0 to 1, or presses
+        a key of a remote control (``press("remote", "ok")``), which it repeats if it is pressed again within 0.2 s.
 
         Raises:
-            ValueError: There is no such part, with those that there are.
+            ValueError: There is no such part or key, with those that there are.
         """
         known = _rumbo.parts(self._batch._batch)
         if part not in known:
             there = ", ".join(known) or "none; the robot's file names them, as parts.start = { button = 8 }"
             raise ValueError(f"unknown part {part!r}: there are {there}")
-        if value is not None and not 0 <= value <= 1:
-            raise ValueError(f"{part} = {value}: must be 0 to 1")
+        if keys := known[part]:
+            if str(value) not in keys:
+                raise ValueError(f"{part} is a remote control, and {value!r} none of its keys: {', '.join(keys)}")
+        elif value is not None and (isinstance(value, str) or not 0 <= value <= 1):
+            raise ValueError(f"{part} = {value!r}: must be 0 to 1")
         _rumbo.type_in(self._batch._batch, "parts", f"{part}={1.0 if value is None else value}\n".encode())
         if value is None:
             self.step(PRESSED_S)

@@ -10,8 +10,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rumbo_experiment::batch::{Probe, Pulse, Robot};
 use rumbo_experiment::files::unknown;
-use rumbo_sim::mega::{CONSOLES, Mega, ON_PINS, PARTS, USB};
+use rumbo_sim::mega::{Mega, ON_PINS, PARTS, USB};
+use rumbo_sim::wiring::Part;
 use rumbo_sketch::{BOARDS, Board, SketchError};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Times of edges [s], and which of them rose.
@@ -71,13 +73,14 @@ pub(crate) fn pin(batch: &Batch, name: &str) -> PyResult<u8> {
     found.map_err(PyValueError::new_err)
 }
 
-/// The parts that a person works.
+/// The parts that a person works, with the keys of the remote controls among them.
 #[pyfunction]
-pub(crate) fn parts(batch: &Batch) -> PyResult<Vec<String>> {
+pub(crate) fn parts(batch: &Batch) -> PyResult<BTreeMap<String, Vec<&'static str>>> {
     of_board(batch, |mega| {
         let worked = mega.firmware().parts().iter();
         let worked = worked.filter(|part| part.kind.is_worked());
-        worked.map(|part| part.name.clone()).collect()
+        let keys = |part: &Part| part.keys.iter().map(|(key, _)| *key).collect();
+        worked.map(|part| (part.name.clone(), keys(part))).collect()
     })
 }
 
@@ -220,7 +223,7 @@ fn number_of(batch: &Batch, port: &str) -> PyResult<u8> {
         number => number
             .parse()
             .ok()
-            .filter(|number| *number < CONSOLES - 1)
+            .filter(|number| *number < ON_PINS)
             .ok_or_else(|| PyValueError::new_err(format!("no such port: {number}; 0 to 3"))),
     }
 }

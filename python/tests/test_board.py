@@ -182,6 +182,22 @@ def test_a_button_of_the_robot_s_file_is_pressed(image: pathlib.Path, tmp_path: 
     assert at_s == pytest.approx(0.5, abs=1e-4) and width_us == pytest.approx(200_000, abs=100)
 
 
+def test_a_key_of_a_remote_control_sends_its_code(image: pathlib.Path) -> None:
+    robot = rumbo.load("robot", "memoria")
+    for wiring in robot["wiring"].values():
+        wiring["parts"] = {"remote": {"infrared": 40}}
+    sim = rumbo.Sim(firmware=image, robot=robot)
+    sim.step(0.5)
+    sim.press("remote", "ok")
+    sim.step(0.1)
+    leader_us, *bits_us = sim.pin("remote").pulses()[-33:, 1]
+    assert leader_us == pytest.approx(4_500, abs=2)
+    assert sum((width_us > 1_000) << bit for bit, width_us in enumerate(bits_us)) == 0xE31CFF00
+    for key in ["walk", None]:
+        with pytest.raises(ValueError, match="none of its keys: 1, 2, 3"):
+            sim.press("remote", key)
+
+
 def test_a_failed_test_leaves_its_log_and_its_waveform(image: pathlib.Path, tmp_path: pathlib.Path) -> None:
     (tmp_path / "test_it.py").write_text(
         f"""

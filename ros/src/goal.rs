@@ -319,6 +319,7 @@ impl Live {
         let is_replaced = self.navigation.ordered.is_none() && !is_task(&active.aim, robot);
         match robot.task.end {
             Some(End::Unreachable) => aborted("there is no way to the goal"),
+            Some(End::GaveUp) => aborted("no way to the goal was found in time"),
             _ if is_replaced => aborted("the robot was given something else to do"),
             _ => None,
         }

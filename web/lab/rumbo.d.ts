@@ -12,6 +12,8 @@ export class Lab {
   log(started: string): { name: string, bytes: Uint8Array<ArrayBuffer> };
   /** The run so far for a link, as JSON. */
   share(): string;
+  /** What explains this time, as JSON. */
+  explain(from_s: number, to_s: number): string;
   /** Shows a recording in place of the lab, which waits. */
   show(recording: Recording): void;
   /** Shows the lab again. */

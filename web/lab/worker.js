@@ -6,7 +6,7 @@
  * Strings from the page are orders; null says that it has read what it was sent, and may be sent more: a slow page loses
  * samples of plots, and the session does not wait for it. 'save' asks for the recording, a file `{ name, bytes }`; such a
  * file from the page is shown as a replay, as 'replay' shows the recording, and 'resume' shows the lab again. 'share' asks
- * for the run as a link carries it, `{ shared }`. `{ open }` begins anew with what it gives, and with the rest as it is;
+ * for the run as a link carries it, `{ shared }`; `{ explain }`, from and to in s, for what explains that time, `{ explained }`. `{ open }` begins anew with what it gives, and with the rest as it is;
  * `{ robot }` makes the page that of another robot in the world. `{ connect }` begins a session with the robot at a port, `{ choose }`
  * looks for it at another one, and 'leave' goes back to the lab; `{ port }` is the port's name or null, `{ back }` the
  * name when it is there again or null when it is gone, `{ refused }` why there is none. `{ flash }` writes a program to a board, `{ flashed }` says how far that is. To the page go arrays of the messages of the station's WebSocket, or `{ error }` when the session has ended.
@@ -205,6 +205,7 @@ function askLab(lab, data) {
   else if (data === 'replay') show(lab, recorded(lab));
   else if (data === 'resume') lab.resume();
   else if (data === 'share') self.postMessage({ shared: lab.share() });
+  else if (data.explain) self.postMessage({ explained: lab.explain(data.explain[0], data.explain[1]) });
   else if (data.open) begin(lab, data.open);
   else if ('robot' in Object(data)) lab.select(data.robot);
   else if (data.connect) connect(data.connect).catch(end);

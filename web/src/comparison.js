@@ -1,19 +1,22 @@
 // @ts-check
-/** Two recordings side by side, from power-on, from ON or from a step: a signal of both, figures of their steps, metrics, and the parameters that differ. */
+/** Runs side by side, from power-on, from ON or from a step: a signal of all, figures of their steps, metrics, and what differs. */
 import uPlot from '../vendor/uplot/uPlot.js';
-import { create, element } from './dom.js';
+import { create } from './dom.js';
+import { begin_s, differences, on_s, stepsOf } from './kept.js';
 import { FONT } from './plot.js';
 import { SIGNALS } from './signals.js';
 import { figures } from './step.js';
-import { Store } from './store.js';
-import { t } from './text.js';
+import { said, t } from './text.js';
 import { colours } from './theme.js';
 import { format } from './units.js';
 
-/** @typedef {import('./types.js').RecordingContent} Content */
-/** @typedef {import('./table.js').Column} Column */
+/** @typedef {import('./kept.js').Run} Run */
+/** @typedef {import('./store.js').Store} Store */
+/** @typedef {string | number | null | undefined} Value */
 
 const HEIGHT_PX = 260;
+/** Of the runs, in turn; from the sixth on dashed. */
+const INKS = /** @type {const} */ (['left', 'right', 'front', 'goal', 'reference']);
 
 export class Comparison {
   #signal = create('select', { id: 'compare-signal' });
@@ -21,9 +24,9 @@ export class Comparison {
   #legend = create('p', { className: 'row' });
   #plot = create('div');
   #tables = create('div', { className: 'compare-tables' });
-  body = create('section', { id: 'comparison', hidden: true }, create('div', { className: 'row' }, create('label', {}, `${t('signal')} `, this.#signal), create('label', {}, `${t('time from')} `, this.#align), this.#legend), this.#plot, this.#tables);
-  /** @type {Store[]} */
-  #stores = [];
+  body = create('section', { id: 'comparison', hidden: true }, create('div', { className: 'row' }, create('label', {}, `${t('signal')} `, this.#signal), create('label', {}, `${t('time from')} `, this.#align)), this.#legend, this.#plot, this.#tables);
+  /** @type {Run[]} */
+  #runs = [];
   /** @type {uPlot | null} */
   #drawn = null;
 
@@ -31,102 +34,80 @@ export class Comparison {
     for (const select of [this.#signal, this.#align]) select.addEventListener('change', () => this.#draw());
   }
 
-  clear() {
-    this.body.hidden = true;
-    this.#drawn?.destroy();
-    this.#drawn = null;
-  }
-
-  /** @param {Content[]} contents @param {import('./types.js').ModeEntry[]} modes @param {string[]} names what people call them */
-  show(contents, modes, names) {
-    this.clear();
-    this.body.hidden = false;
-    this.#stores = contents.map(({ columns, rows }) => {
-      const store = new Store();
-      store.begin(columns, modes);
-      for (const row of rows) store.push(row);
-      return store;
-    });
-    const both = SIGNALS.filter(({ name }) => this.#stores.every((store) => has(store, name)));
-    this.#signal.replaceChildren(...both.map(({ name, about, unit }) => create('option', { value: name, textContent: `${t(about)} [${t(unit)}]` })));
-    const first = both.find(({ name }) => name === 'range_front_cm') ?? both.find(({ name }) => name === 'left_rpm');
-    if (first) this.#signal.value = first.name;
-    this.#legend.replaceChildren(...names.flatMap((name, index) => [create('span', { className: `swatch ${index === 0 ? 'left' : 'right'}` }), `${index + 1}: ${name}`]));
-    const [one, other] = contents;
-    if (!one || !other) return;
-    const steps = Math.min(...this.#stores.map((store) => store.steps.length));
-    const armed = this.#stores.every((store) => store.stretches.some((stretch) => stretch.armed));
+  /** @param {Run[]} runs */
+  show(runs) {
+    this.body.hidden = runs.length === 0;
+    this.#runs = runs;
+    const chosen = this.#signal.value;
+    const all = SIGNALS.filter(({ name }) => runs.every(({ store }) => has(store, name)));
+    this.#signal.replaceChildren(...all.map(({ name, about, unit }) => create('option', { value: name, textContent: `${t(about)} [${t(unit)}]` })));
+    const first = [chosen, 'range_front_cm', 'left_rpm'].find((wanted) => all.some(({ name }) => name === wanted));
+    if (first) this.#signal.value = first;
+    this.#legend.replaceChildren(...runs.map(({ name }, index) => create('span', {}, create('span', { className: `swatch ${ink(index)}${index >= INKS.length ? ' dashed' : ''}` }), ` ${index + 1}: ${name}`)));
+    const steps = Math.min(...runs.map(({ store }) => stepsOf(store).length));
+    const armed = runs.every(({ store }) => on_s(store) !== null);
     this.#align.replaceChildren(create('option', { value: '', textContent: t('power-on') }), ...(armed ? [create('option', { value: 'on', textContent: 'ON', selected: true })] : []),
       ...Array.from({ length: steps }, (_, index) => create('option', { value: String(index), textContent: t('step {}', index + 1) })));
-    const metrics = Object.keys({ ...one.metrics, ...other.metrics }).sort();
-    const parameters = Object.keys(one.parameters).filter((name) => name in other.parameters && one.parameters[name] !== other.parameters[name]);
     this.#tables.replaceChildren(
-      stepTable(this.#stores, steps),
-      table(t('metric'), metrics, one.metrics, other.metrics),
-      table(t('parameter that differs'), parameters, one.parameters, other.parameters),
+      table(t('what differs'), [...differences(runs.map(({ about }) => about)).map(([name, values]) => /** @type {[string, Value[]]} */ ([t(name), values])), ...differences(runs.map(({ parameters }) => parameters)).filter(([, values]) => !values.includes(undefined))], runs.length),
+      table(t('step'), figuresOf(runs, steps), runs.length),
+      table(t('metric'), [...new Set(runs.flatMap(({ metrics }) => Object.keys(metrics)))].sort().map((name) => [name, runs.map(({ metrics }) => metrics[name])]), runs.length),
     );
     this.#draw();
-    this.body.scrollIntoView({ block: 'nearest' });
-  }
-
-  /** Where its time counts from [s]. @param {Store} store */
-  #begin(store) {
-    if (this.#align.value === '') return 0;
-    if (this.#align.value === 'on') return store.stretches.find(({ armed }) => armed)?.from_s ?? 0;
-    return store.steps[Number(this.#align.value)]?.from_s ?? 0;
   }
 
   #draw() {
     this.#drawn?.destroy();
     this.#drawn = null;
     const name = this.#signal.value;
-    if (name === '') return this.#plot.replaceChildren(t('the two have no signal in common'));
+    if (name === '') return this.#plot.replaceChildren(t('the runs have no signal in common'));
     this.#plot.replaceChildren();
-    const lines = this.#stores.map((store) => {
+    const lines = this.#runs.map(({ store }) => {
       const { t: times, y } = store.series(name);
-      const from_s = this.#begin(store);
+      const from_s = begin_s(store, this.#align.value);
       return { t: times.map((t_s) => t_s - from_s), y };
     });
     const { about = '', unit = 'cm' } = SIGNALS.find((each) => each.name === name) ?? {};
     const data = uPlot.join(/** @type {uPlot.AlignedData[]} */ (lines.map((each) => [each.t, each.y])));
-    const stroke = /** @type {const} */ (['left', 'right']);
     this.#drawn = new uPlot({
-      width: Math.max(260, element('recordings-dialog', HTMLDialogElement).clientWidth - 40),
+      width: Math.max(260, this.body.clientWidth),
       height: HEIGHT_PX,
       legend: { show: false },
       scales: { x: { time: false } },
       axes: [t('time [s]'), `${t(about)} [${t(unit)}]`].map((label) => ({ label, labelFont: FONT, labelSize: 16, stroke: () => colours.dim, font: FONT, grid: { stroke: () => colours.grid, width: 1 } })),
-      series: [{}, ...stroke.map((colour) => ({ stroke: () => colours[colour], width: 1.75, spanGaps: true, points: { show: false } }))],
+      series: [{}, ...this.#runs.map((_run, index) => ({ stroke: () => colours[ink(index)], width: 1.75, spanGaps: true, points: { show: false }, dash: index < INKS.length ? undefined : [6, 3] }))],
     }, data, this.#plot);
     return undefined;
   }
 }
 
+/** @param {number} index */
+const ink = (index) => INKS[index % INKS.length] ?? 'left';
+
 /** @param {Store} store @param {string} name */
 const has = (store, name) => store.tableOf(name).columns.get(name)?.some((value) => typeof value === 'number') ?? false;
 
-/** Figures of the steps of both. @param {Store[]} stores @param {number} steps */
-function stepTable(stores, steps) {
-  /** @type {Record<string, number | null>[]} */
-  const [one = {}, other = {}] = stores.map((store) => Object.fromEntries(store.steps.slice(0, steps).flatMap((step, index) => {
-    const { unit, rise_s, overshoot, settling_s, steady_error } = figures(store, step);
-    const rows = [[t('rise'), 's', rise_s], [t('overshoot'), unit, overshoot], [t('settling'), 's', settling_s], [t('steady error'), unit, steady_error]];
-    return rows.map(([name, of, value]) => [`${t('step {}', index + 1)}: ${name} [${of}]`, Number.isFinite(value) ? Number(value) : null]);
-  })));
-  return table(t('step'), Object.keys(one), one, other);
+/** Figures of the steps that all have. @param {Run[]} runs @param {number} steps @returns {[string, Value[]][]} */
+function figuresOf(runs, steps) {
+  return Array.from({ length: steps }).flatMap((_, index) => {
+    const all = runs.map(({ store }) => {
+      const step = stepsOf(store)[index];
+      return step ? figures(store, step) : null;
+    });
+    const unit = all[0]?.unit ?? '';
+    return (/** @type {const} */ ([['rise_s', t('rise'), 's'], ['overshoot', t('overshoot'), unit], ['settling_s', t('settling'), 's'], ['steady_error', t('steady error'), unit]]))
+      .map(([key, name, of]) => /** @type {[string, Value[]]} */ ([`${t('step {}', index + 1)}: ${name} [${of}]`, all.map((each) => (Number.isFinite(each?.[key]) ? each?.[key] : null))]));
+  });
 }
 
-/**
- * Values of both, and the difference.
- * @param {string} title @param {string[]} names @param {Record<string, number | null>} one @param {Record<string, number | null>} other
- */
-function table(title, names, one, other) {
-  const number = (/** @type {number | null | undefined} */ value) => (typeof value === 'number' ? format(value, Math.abs(value) < 1 ? 4 : 2) : t('never'));
-  const rows = names.map((name) => {
-    const [a, b] = [one[name], other[name]];
-    const difference = typeof a === 'number' && typeof b === 'number' ? number(b - a) : '';
-    return create('tr', {}, create('td', { textContent: name }), create('td', { textContent: number(a) }), create('td', { textContent: number(b) }), create('td', { textContent: difference }));
+/** The value of each run; of two also the difference. @param {string} title @param {[string, Value[]][]} lines @param {number} runs */
+function table(title, lines, runs) {
+  const number = (/** @type {Value} */ value) => (typeof value === 'number' ? format(value, Number.isInteger(value) ? 0 : Math.abs(value) < 0.1 ? 4 : 2) : typeof value === 'string' ? said(value) : value === null ? t('never') : '–');
+  const rows = lines.map(([name, values]) => {
+    const [a, b] = values;
+    const difference = runs !== 2 ? [] : [typeof a === 'number' && typeof b === 'number' ? number(b - a) : ''];
+    return create('tr', {}, ...[name, ...values.map(number), ...difference].map((textContent) => create('td', { textContent })));
   });
-  const head = create('tr', {}, ...[title, '1', '2', '2 − 1'].map((textContent) => create('th', { textContent, scope: 'col' })));
-  return names.length === 0 ? '' : create('table', {}, create('thead', {}, head), create('tbody', {}, ...rows));
+  const head = create('tr', {}, ...[title, ...Array.from({ length: runs }, (_, index) => String(index + 1)), ...(runs === 2 ? ['2 − 1'] : [])].map((textContent) => create('th', { textContent, scope: 'col' })));
+  return lines.length === 0 ? '' : create('div', { className: 'scroll', tabIndex: 0 }, create('table', {}, create('thead', {}, head), create('tbody', {}, ...rows)));
 }

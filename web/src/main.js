@@ -17,6 +17,7 @@ import { Header } from './header.js';
 import { makeHelp } from './help.js';
 import { OWN_PROGRAM } from './layout.js';
 import { LayoutDialog } from './layout_dialog.js';
+import { LawPanel } from './law_panel.js';
 import { Lessons } from './lessons.js';
 import { Link } from './link.js';
 import { LinkMeter } from './linkmeter.js';
@@ -29,13 +30,14 @@ import { ParameterTable } from './parameters.js';
 import { PlotDialog } from './plot_dialog.js';
 import { Plots } from './plots.js';
 import { ProfilePanel } from './profile.js';
-import { PartsPanel } from './parts.js';
+import { PARTS, PartsPanel } from './parts.js';
 import { ProgramPanel, isOwn } from './program.js';
 import { Recordings } from './recordings.js';
 import { ReplayBar } from './replay.js';
 import { ReportDialog } from './report_dialog.js';
 import { RobotPort } from './robot_port.js';
 import { listen, offerRobots, openScenario } from './robots.js';
+import { Runs } from './runs.js';
 import { Seat, isOthers } from './seat.js';
 import { Share } from './share.js';
 import { isEmbedded, linkPages } from './site.js';
@@ -47,6 +49,7 @@ import { LANGUAGES, language, said, speak, t, translatePage, untranslated } from
 import { Timeline } from './timeline.js';
 import { Tour } from './tour.js';
 import { TuneDialog } from './tune_dialog.js';
+import { Why } from './why.js';
 import { WorkerLink, isSite } from './worker_link.js';
 import { WorldEditor } from './world_editor.js';
 
@@ -104,6 +107,14 @@ function send(order) {
   complain(isSite ? 'not sent: the lab of this page is not there' : order.type === 'stop' ? 'STOP was not sent: there is no connection to the station' : 'not sent: there is no connection to the station');
 }
 
+/** In place of a USART: a hand. */
+const HAND = 6;
+
+/** Puts the simulated robot down elsewhere. @param {import('./types.js').Pose} at */
+function lift({ x_m, y_m, heading_rad }) {
+  send({ type: 'type', usart: HAND, text: `robot=${[x_m, y_m, heading_rad].map((each) => each.toFixed(4)).join(' ')}`, ending: 'none' });
+}
+
 /** @param {string} text */
 function complain(text) {
   events.add([{ t_s: state?.t_s ?? 0, level: 'warning', text }]);
@@ -137,6 +148,7 @@ const redraw = onFrame(() => {
   timeline.draw();
   stepFigures.show(panel.mode);
   machine.draw();
+  law.draw();
   setText(pointer, pointerWords(map.pointed()));
 });
 const header = new Header(send);
@@ -158,6 +170,7 @@ const experiment = new ExperimentPanel(send);
 const lessons = new Lessons(send);
 const editor = new WorldEditor(send, map);
 const machine = new Machine(store);
+const law = new LawPanel(send, store);
 const meter = new LinkMeter();
 const tabs = new Tabs('tabs', (panel) => meter.show(panel === 'bytes'));
 const profile = new ProfilePanel(send, () => tabs.show('event-panel'));
@@ -192,10 +205,20 @@ const layoutDialog = new LayoutDialog(plots);
 element('layouts', HTMLButtonElement).addEventListener('click', () => layoutDialog.open());
 const checkup = new CheckupDialog(send, store, () => state);
 element('checkup', HTMLButtonElement).addEventListener('click', () => checkup.open(sonars, servo));
-const recordings = new Recordings(() => plots.modes, askLab, showRecording);
+const recordings = new Recordings(askLab, showRecording);
+const runs = new Runs(() => {
+  if (store.slow.t.length === 0) return null;
+  const { scenario = null, world = null, rig = null, seed = null } = simulated?.choice ?? {};
+  const parameters = Object.fromEntries(table.flatMap(({ name, value }) => (value === null ? [] : [[name, value]])));
+  const name = `${new Date().toLocaleTimeString(language === 'en' ? 'en-GB' : language)}${seed === null ? '' : `, ${t('seed {}', seed)}`}`;
+  const metrics = Object.fromEntries(state?.experiment?.limits.map((limit) => [limit.name, limit.value]) ?? []);
+  return { name, store: store.frozen(), about: { scenario, world, 'sensor layout': rig, seed, program: state?.program?.name ?? null }, parameters, metrics };
+}, () => plots.modes, send, plots, map);
+new Why(plots, isSite ? (from_s, to_s) => (link instanceof WorkerLink ? link.explain(from_s, to_s) : Promise.reject(new Error('no lab'))) : null, (lesson) => lessons.open(lesson), () => tabs.show('why'));
+recordings.compare = runs.compare.bind(runs);
 const calibration = new CalibrationDialog(send);
 new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
-new ReportDialog();
+const report = new ReportDialog();
 const tune = new TuneDialog(send);
 const robotPort = new RobotPort(askLab);
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
@@ -250,7 +273,7 @@ function receive(message) {
       panel.setModes(message.modes);
       plots.modes = message.modes;
       stateLine.modes = message.modes;
-      machine.modes = message.modes;
+      machine.modes = law.modes = message.modes;
       parameters.setModes(message.modes);
       tune.modes = message.modes;
       document.body.classList.toggle('several', (message.robots ?? []).length > 0);
@@ -273,6 +296,7 @@ function receive(message) {
       tune.setScene(simulated);
       panel.setScene(message.scene);
       experiment.setScene(simulated);
+      runs.setScene(simulated);
       stateLine.setScene(simulated);
       setBody();
       document.body.classList.toggle('simulated', simulated !== null);
@@ -303,6 +327,7 @@ function receive(message) {
       showSilence();
       if (state.replay) redraw();
       machine.setMode(state.robot.mode);
+      law.setMode(isOwn(state) || state.robot.foreign ? -1 : state.robot.mode);
       if (table.length > 0 && state.robot.rig !== null) checkup.meet(sonars, servo);
       calibration.show(state);
       meter.update(state);
@@ -312,12 +337,15 @@ function receive(message) {
       // Check and calibration use commands that such a robot does not have.
       document.body.classList.toggle('foreign', state.robot.foreign || Boolean(state.robot.text));
       map.servo_rad = state.robot.servo_rad;
+      map.lift = simulated && !state.replay && state.experiment?.phase !== 'running' && !document.body.classList.contains('viewer') ? lift : null;
       break;
     case 'parameters':
       parameters.show(message.parameters);
       calibration.setParameters(message.parameters);
       tune.setParameters(message.parameters);
       lessons.setParameters(message.parameters);
+      runs.setParameters(message.parameters);
+      law.setParameters(message.parameters);
       table = message.parameters;
       setBody();
       break;
@@ -325,9 +353,13 @@ function receive(message) {
       events.add(message.events);
       break;
     case 'consoles':
-      if (message.run !== consoleRun) consoles.clear();
+      if (message.run !== consoleRun) {
+        consoles.clear();
+        parts.clear();
+      }
       consoleRun = message.run;
-      consoles.add(message.said);
+      consoles.add(message.said.filter(({ usart }) => usart !== PARTS));
+      for (const { text } of message.said.filter(({ usart }) => usart === PARTS)) parts.tell(text);
       break;
     case 'bytes':
       meter.add(message.bytes);
@@ -351,7 +383,7 @@ function receive(message) {
       break;
     case 'control':
       seat.show(message);
-      recordings.page = message.page;
+      recordings.page = runs.page = report.page = message.page;
       tune.setControl(message);
       break;
     case 'error':
@@ -391,6 +423,8 @@ Object.assign(window, {
     others: () => map.others().map(({ other: { name }, at }) => ({ name, ...at })),
     /** The plots and what is seen of them. */
     plots: () => ({ layout: plots.layout, range_s: plots.range_s, mark_s: plots.mark_s, following: plots.following }),
+    /** The modes, as the control core describes them. */
+    modes: () => plots.modes,
     /** The figures of every step of the setpoint. */
     figures: () => store.steps.map((step) => figures(store, step)),
     /** What is seen of a plot's axes. @param {string} title */

@@ -9,6 +9,7 @@
  */
 import { element } from './dom.js';
 import { IDENTITY, compose, inverse, nextTo, place } from './geometry.js';
+import { on_s } from './kept.js';
 import { Sketch } from './sketch.js';
 import { colours, onThemeChange } from './theme.js';
 import { watchFingers } from './touch.js';
@@ -47,6 +48,8 @@ const KEY_PAN_PX = 40;
 const CLICK_PX = 4;
 /** A tool holds what is so near [px]; a finger is thicker. */
 const REACH_PX = { mouse: 8, touch: 18 };
+/** Minimum time between two places of a robot that is carried [ms]. */
+const LIFT_MS = 100;
 /** The goal in the robot's frame is drawn separately from this distance on [px]. */
 const APART_PX = 3;
 
@@ -77,6 +80,12 @@ export class WorldMap {
   #followButton = element('follow', HTMLButtonElement);
   /** The robot is also shown where it was then [s]. @type {number | null} */
   #hover_s = null;
+  /** The same run with other seeds. @type {Store[]} */
+  #seeds = [];
+  /** Puts the robot down elsewhere; null: it cannot be lifted. @type {((at: Pose) => void) | null} */
+  lift = null;
+  /** Where it is held, how from its middle it was taken, and the view before, which stands still meanwhile. @type {{at: Pose, by: Point, sent_ms: number, view: View | null} | null} */
+  #lifted = null;
   servo_rad = 0;
   /** The place of the route that the robot goes to now, from its origin. @type {Point | null} */
   target = null;
@@ -153,6 +162,12 @@ export class WorldMap {
     this.#redraw();
   }
 
+  /** Shows the robots of other seeds, faint. @param {Store[]} seeds */
+  setSeeds(seeds) {
+    this.#seeds = seeds;
+    this.#redraw();
+  }
+
   /** Shows the robot also where it was then [s]. @param {number | null} t_s */
   hover(t_s) {
     if (t_s === this.#hover_s) return;
@@ -211,7 +226,7 @@ export class WorldMap {
     sketch.drawGrid(view, px);
     if (this.#tool) return this.#tool.draw(sketch, px);
     sketch.drawWorld(px, this.#store.latest?.t_s ?? 0);
-    for (const { other, at } of this.others()) sketch.drawOther(other, at, px);
+    this.others().forEach(({ other, at }, number) => sketch.drawOther(other, at, number, px));
     sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
     sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
     sketch.drawTrail(this.#store.trails.ghost, colours.goal, px);
@@ -220,6 +235,12 @@ export class WorldMap {
     this.#drawTask(px);
     const latest = this.#store.latest;
     const then = this.#hover_s === null ? null : this.#store.poseAt(this.#hover_s);
+    const began_s = on_s(this.#store);
+    for (const seed of this.#seeds) {
+      // From ON on, as this one.
+      const at = seed.poseAt((latest?.t_s ?? 0) - (began_s === null ? 0 : began_s - (on_s(seed) ?? 0)));
+      if (at) sketch.drawOutline(at, px);
+    }
     if (then) sketch.drawRobot(then, px, 'estimated', false);
     if (!latest) return;
     const estimated = latest.estimated && compose(latest.origin, latest.estimated);
@@ -229,6 +250,7 @@ export class WorldMap {
     if (estimated) sketch.drawRobot(estimated, px, latest.truth ? 'estimated' : 'real', false);
     if (latest.truth) sketch.drawRobot(latest.truth, px, 'real', latest.contact);
     if (estimated && latest.spread) sketch.drawSpread(estimated, latest.origin, latest.spread, px);
+    if (this.#lifted) sketch.drawRobot(this.#lifted.at, px, 'ghost', false);
     if (this.#pick && canvas.matches(':focus-visible')) sketch.drawAim();
   }
 
@@ -424,6 +446,30 @@ export class WorldMap {
     return [this.#canvas.clientWidth / 2, this.#canvas.clientHeight / 2];
   }
 
+  /** A press on the robot holds it. @param {Point} at */
+  #take([x_m, y_m]) {
+    const truth = this.#store.latest?.truth;
+    if (!this.lift || this.#tool || !truth || this.#store.playhead_s !== Infinity) return;
+    const by = place(inverse(truth), [x_m, y_m]);
+    const reach_m = Math.max(...(this.#sketch.scene?.footprint_m ?? []).map(([x, y]) => Math.hypot(x, y)), 0);
+    if (Math.hypot(...by) >= reach_m) return;
+    this.#lifted = { at: truth, by, sent_ms: -Infinity, view: this.#view };
+    this.#view ??= this.#fitted();
+  }
+
+  /** It follows the hand, or turns to it. @param {Point} at @param {boolean} turns */
+  #carry([x_m, y_m], turns) {
+    const held = this.#lifted;
+    if (!held) return;
+    const { at, by } = held;
+    const { cos, sin } = { cos: Math.cos(at.heading_rad), sin: Math.sin(at.heading_rad) };
+    held.at = turns ? { ...at, heading_rad: Math.atan2(y_m - at.y_m, x_m - at.x_m) } : { ...at, x_m: x_m - cos * by[0] + sin * by[1], y_m: y_m - sin * by[0] - cos * by[1] };
+    this.#redraw();
+    if (performance.now() - held.sent_ms < LIFT_MS) return;
+    held.sent_ms = performance.now();
+    this.lift?.(held.at);
+  }
+
   #makePickable() {
     const canvas = this.#canvas;
     /** Where the button went down, until it has moved too far for a click [px]. @type {Point | null} */
@@ -431,6 +477,9 @@ export class WorldMap {
     /** The tool holds something. */
     let held = false;
     const release = () => {
+      if (this.#lifted && !pressed) this.lift?.(this.#lifted.at);
+      if (this.#lifted) this.#view = this.#lifted.view;
+      this.#lifted = null;
       if (held) this.#tool?.release();
       held = false;
       pressed = null;
@@ -439,6 +488,7 @@ export class WorldMap {
       canvas.setPointerCapture(event.pointerId);
       // A second finger zooms.
       if (!event.isPrimary) return release();
+      if (event.button === 0) this.#take(this.#toWorld([event.offsetX, event.offsetY]));
       pressed = event.button === 0 ? [event.offsetX, event.offsetY] : null;
       const reach_px = event.pointerType === 'touch' ? REACH_PX.touch : REACH_PX.mouse;
       held = pressed !== null && (this.#tool?.press(this.#toWorld(pressed), reach_px / (this.#view ?? this.#fitted()).px_per_m) ?? false);
@@ -449,6 +499,7 @@ export class WorldMap {
       if (!canvas.hasPointerCapture(event.pointerId) || !event.isPrimary) return;
       if (pressed && Math.hypot(event.offsetX - pressed[0], event.offsetY - pressed[1]) <= CLICK_PX) return;
       pressed = null;
+      if (this.#lifted) return this.#carry(this.#toWorld([event.offsetX, event.offsetY]), event.shiftKey);
       if (held) return this.#tool?.drag(this.#toWorld([event.offsetX, event.offsetY]));
       this.#pan(event.movementX, event.movementY);
     });

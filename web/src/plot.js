@@ -174,6 +174,7 @@ export class PlotPanel {
         setSelect: [(/** @type {uPlot} */ each) => this.#zoom(each)],
         setCursor: [() => this.#view.label()],
         drawAxes: [(/** @type {uPlot} */ each) => {
+          this.#view.overlay.draw(each, this.curves, this.#store, this.#view.range_s);
           if (this.#store.limits) drawExperiment(each, this.unit, this.#store, this.#view.range_s);
           drawTransitions(each, this.#store, this.#view.range_s);
         }],

@@ -6,6 +6,7 @@
 import { BAND_PX, StateBand } from './band.js';
 import { create, element, setText } from './dom.js';
 import { LONGEST_S, LOOP_PLOTS, OWN_PLOTS, OWN_PROGRAM, PLOTS, SHORTEST_S, Shelf, unitsOf } from './layout.js';
+import { Overlay } from './overlay.js';
 import { portName } from './signals.js';
 import { PlotPanel } from './plot.js';
 import { t } from './text.js';
@@ -40,6 +41,8 @@ export class Plots {
   #following = true;
   /** The visible time. @type {[number, number]} */
   range_s = [0, 20];
+  /** Other runs, behind the curves. */
+  overlay = new Overlay();
   /** Differences are counted from here. @type {number | null} */
   mark_s = null;
   /** Duration of the log that is shown [s]; null: live. @type {number | null} */

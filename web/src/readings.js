@@ -21,7 +21,7 @@ const YAW = ['_rad_s', '_deg_s', DEG_PER_RAD];
 
 /** A signal with the unit that people see. @param {string} name @returns {[string, number]} */
 function seen(name) {
-  const unit = /^(yaw|heading)_.*_rad_s$/.test(name) ? YAW : SEEN.find(([suffix]) => name.endsWith(suffix));
+  const unit = /(^|_)(yaw|heading)(_.*)?_rad_s$/.test(name) ? YAW : SEEN.find(([suffix]) => name.endsWith(suffix));
   return unit && !/^true_[xy]_m$/.test(name) ? [name.slice(0, -unit[0].length) + unit[1], unit[2]] : [name, 1];
 }
 

@@ -1,8 +1,8 @@
 // @ts-check
-/** The recordings of this computer: find one, open it as a replay, compare two, delete. */
-import { Comparison } from './comparison.js';
+/** The recordings of this computer: find one, open it as a replay, compare some, delete. */
 import { complaint, dialog, fileButton } from './dialog.js';
 import { create, element, setText } from './dom.js';
+import { MOST } from './kept.js';
 import { ask } from './key.js';
 import { language, said, t } from './text.js';
 import { format } from './units.js';
@@ -17,7 +17,6 @@ export class Recordings {
   #rows = create('tbody');
   #none = create('p', { className: 'hint' });
   #complaint = complaint();
-  #comparison = new Comparison();
   /** @type {Recording[]} */
   #list = [];
   /** Names of those to compare, the one chosen last at the end. @type {string[]} */
@@ -26,16 +25,14 @@ export class Recordings {
   page = 0;
   /** Titles of scenarios by their names. @type {Map<string, string>} */
   titles = new Map();
-  /** @type {() => import('./types.js').ModeEntry[]} */
-  #modes;
+  /** Shows some side by side. @type {(contents: (import('./types.js').RecordingContent & {about: import('./kept.js').About})[]) => void} */
+  compare = () => {};
 
   /**
-   * @param {() => import('./types.js').ModeEntry[]} modes
    * @param {(what: 'save' | 'replay') => void} ask asks the site's lab for its run
    * @param {(file: File) => void} show shows a recording on the site
    */
-  constructor(modes, ask, show) {
-    this.#modes = modes;
+  constructor(ask, show) {
     element('recordings', HTMLButtonElement).addEventListener('click', () => this.open());
     if (isSite) {
       const saves = create('button', { type: 'button', className: 'go', textContent: t('Save this run'), title: t('Save the recording of the run so far as a file') });
@@ -56,14 +53,13 @@ export class Recordings {
     const find = create('label', {}, `${t('find')} `, this.#find);
     this.#dialog.body.append(
       create('div', { className: 'row' }, find, create('span', { className: 'spacer' }), this.#compare),
-      this.#complaint, create('div', { className: 'scroll recordings', tabIndex: 0 }, create('table', {}, head, this.#rows)), this.#none, this.#comparison.body,
+      this.#complaint, create('div', { className: 'scroll recordings', tabIndex: 0 }, create('table', {}, head, this.#rows)), this.#none,
     );
     this.#find.addEventListener('input', () => this.#show());
     this.#compare.addEventListener('click', () => this.#try(() => this.#compareChosen()));
   }
 
   open() {
-    this.#comparison.clear();
     this.#dialog.open();
     if (isSite) return Promise.resolve();
     return this.#try(() => this.#load());
@@ -91,8 +87,8 @@ export class Recordings {
     const found = this.#list.filter((each) => this.#words(each).toLowerCase().includes(wanted));
     this.#rows.replaceChildren(...found.map((each) => this.#row(each)));
     setText(this.#none, found.length > 0 ? t('recordings: {} of {}', found.length, this.#list.length) : t('no recordings'));
-    this.#compare.disabled = this.#chosen.length !== 2;
-    this.#compare.title = t('Choose two recordings to compare');
+    this.#compare.disabled = this.#chosen.length < 2;
+    this.#compare.title = t('Choose two to eight recordings to compare');
   }
 
   /** What a recording is found by. @param {Recording} recording */
@@ -112,7 +108,7 @@ export class Recordings {
     const box = create('input', { type: 'checkbox', checked: this.#chosen.includes(name), disabled: !readable || open });
     box.setAttribute('aria-label', t('Compare {}', name));
     box.addEventListener('change', () => {
-      this.#chosen = [...this.#chosen.filter((each) => each !== name), ...(box.checked ? [name] : [])].slice(-2);
+      this.#chosen = [...this.#chosen.filter((each) => each !== name), ...(box.checked ? [name] : [])].slice(-MOST);
       this.#show();
     });
     const show = create('button', { type: 'button', textContent: t('Open|replay'), disabled: !readable, title: t('Show it as a replay, in a page of its own') });
@@ -160,12 +156,15 @@ export class Recordings {
   }
 
   async #compareChosen() {
-    const contents = await Promise.all(this.#chosen.map(async (name) => JSON.parse(await ask(`/recordings/${encodeURIComponent(name)}`))));
-    const names = this.#chosen.map((name) => {
+    const contents = await Promise.all(this.#chosen.map(async (name) => {
+      const content = JSON.parse(await ask(`/recordings/${encodeURIComponent(name)}`));
       const recording = this.#list.find((each) => each.name === name);
-      return recording ? [this.#title(recording), ...(recording.seed === null ? [] : [t('seed {}', recording.seed)]), when(recording)].join(', ') : name;
-    });
-    this.#comparison.show(contents, this.#modes(), names);
+      if (!recording) return { ...content, about: {} };
+      const { scenario, robot, seed } = recording;
+      return { ...content, about: { scenario, robot, seed }, name: [this.#title(recording), ...(seed === null ? [] : [t('seed {}', seed)]), when(recording)].join(', ') };
+    }));
+    this.#dialog.dialog.close();
+    this.compare(contents);
   }
 }
 

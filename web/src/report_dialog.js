@@ -6,6 +6,7 @@
 import { complaint, copyButton, dialog, saveFile } from './dialog.js';
 import { create, element, setText, withCode } from './dom.js';
 import { language, said, t } from './text.js';
+import { Search } from './tune_search.js';
 import { format } from './units.js';
 import { isSite } from './worker_link.js';
 
@@ -34,19 +35,24 @@ export class ReportDialog {
   #worker = null;
   /** What it is to make as soon as it is there. @type {Wanted | null} */
   #wanted = null;
+  /** The number of this page, which has to be in control. */
+  page = 0;
   /** The page that was made last. */
   #url = '';
 
   constructor() {
     element('report', HTMLButtonElement).addEventListener('click', () => this.#open());
+    this.#part.setAttribute('aria-label', t('Make the report'));
     if (!isSite) {
+      this.#make.disabled = false;
+      this.#make.addEventListener('click', () => this.#askStation());
       this.#dialog.body.append(
         create('p', { textContent: t('Rumbo writes the report on this computer: every experiment of the course, run faster than real time, with its figures, as one page.') }),
-        create('div', { className: 'row' }, create('code', { textContent: COMMAND }), copyButton(COMMAND)),
+        create('div', { className: 'row' }, this.#make, this.#part, this.#result), this.#complaint,
+        create('p', { className: 'hint', textContent: t('The same on the command line:') }), create('div', { className: 'row' }, create('code', { textContent: COMMAND }), copyButton(COMMAND)),
         create('p', { className: 'hint' }, ...withCode(t('`--only mode1 mode5` writes chosen chapters, `--real FOLDER` puts recorded runs of a robot beside ours.'))));
       return;
     }
-    this.#part.setAttribute('aria-label', t('Make the report'));
     this.#experiments.append(create('label', {}, this.#all, ` ${t('all')}`));
     this.#all.addEventListener('change', () => this.#boxes.forEach((box) => { box.checked = this.#all.checked; }));
     this.#cancel.addEventListener('click', () => this.#end());
@@ -64,6 +70,26 @@ export class ReportDialog {
   #open() {
     this.#dialog.open();
     if (isSite) this.#start();
+  }
+
+  /** The station makes it, in threads beside its session. */
+  #askStation() {
+    setText(this.#complaint, '');
+    this.#result.hidden = true;
+    this.#show(true);
+    this.#cancel.hidden = true;
+    const search = new Search(this.page, { report: language }, {
+      share: (share) => { this.#part.value = share; },
+      found: ({ page }) => {
+        search.end();
+        this.#offer(new TextEncoder().encode(page));
+      },
+      failed: (why) => {
+        search.end();
+        this.#show(false);
+        setText(this.#complaint, said(why));
+      },
+    });
   }
 
   /** Loads what makes reports, unless it is there. */
@@ -144,8 +170,9 @@ export class ReportDialog {
     save.addEventListener('click', () => saveFile(FILE, file));
     const open = create('a', { href: this.#url, target: '_blank', textContent: t('Open the report') });
     setText(this.#note, `${FILE}, ${format(page.length / 1e3, 0)} kB`);
-    this.#result.replaceChildren(open, save, this.#note);
+    // The station allows its own pages no styles within: the saved file shows them.
+    this.#result.replaceChildren(...(isSite ? [open] : []), save, this.#note);
     this.#result.hidden = false;
-    open.focus();
+    (isSite ? open : save).focus();
   }
 }

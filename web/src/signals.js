@@ -6,7 +6,7 @@ import { named, t } from './text.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
 
 /** @typedef {import('./theme.js').ColourName} ColourName */
-/** @typedef {'cm' | 'rpm' | 'of 255' | '°' | 'm' | '°/s' | 'm/s' | 'level' | 'edges' | 'µs' | 'printed'} Unit */
+/** @typedef {'cm' | 'rpm' | 'of 255' | '°' | 'm' | '°/s' | 'm/s' | 'm/s²' | 'level' | 'edges' | 'µs' | 'printed'} Unit */
 
 /**
  * @typedef {object} Signal
@@ -27,6 +27,7 @@ export const UNITS = {
   m: { step: 0.5, decimals: 2 },
   '°/s': { step: 10, decimals: 1 },
   'm/s': { step: 0.05, decimals: 3 },
+  'm/s²': { step: 1, decimals: 2, free: true },
   level: { step: 0.1, decimals: 2 },
   edges: { step: 10, decimals: 0, free: true },
   'µs': { step: 100, decimals: 0, free: true },
@@ -81,16 +82,18 @@ const COLOURS = ['left', 'right', 'front', 'goal', 'reference'];
 /** Signals by their names, in the reader's language. @type {Map<string, Signal>} */
 const met = new Map([...SIGNALS, ...LOOPS].map((each) => [each.name, { ...each, label: t(each.label), about: t(each.about) }]));
 
-/** The signal with this name: one of those above, a pin's, or a printed one. @param {string} name @returns {Signal | null} */
+/** The signal with this name: one of those above, a pin's, an inertial sensor's, or a printed one. @param {string} name @returns {Signal | null} */
 export function signal(name) {
   const known = met.get(name) ?? null;
-  const [, pin = null, port = null, printed = null] = name.match(/^(?:pin_(\w+)|serial(\d+):(.+))$/) ?? [];
-  const label = pin ? named(pin) : printed;
+  const [, pin = null, port = null, printed = null, felt = null, turn = null] = name.match(/^(?:pin_(\w+)|serial(\d+):(.+)|(\w+)_m_s2|(\w+_yaw)_deg_s)$/) ?? [];
+  const inertial = felt ?? turn;
+  const label = pin ? named(pin) : inertial?.replaceAll('_', ' ') ?? printed;
   if (known || label === null) return known;
-  const about = pin ? t('level of the pin {}', named(pin)) : `${portName(Number(port))}: ${label}`;
+  const about = pin ? t('level of the pin {}', named(pin)) : inertial ? t('by the inertial sensor: {}', label) : `${portName(Number(port))}: ${label}`;
+  const unit = pin ? 'level' : felt ? 'm/s²' : turn ? '°/s' : 'printed';
   const colour = COLOURS[(met.size - SIGNALS.length - LOOPS.length) % COLOURS.length] ?? 'left';
   /** @type {Signal} */
-  const made = { name, label, about, unit: pin ? 'level' : 'printed', colour, kind: 'measured' };
+  const made = { name, label, about, unit, colour, kind: 'measured' };
   met.set(name, made);
   return made;
 }

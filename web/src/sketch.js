@@ -2,7 +2,7 @@
 /** What the map shows, drawn on a canvas in metres: world, trails, robot, the sonars' cones with their readings, goal and route. */
 import { compose, likelyArea, place } from './geometry.js';
 import { poseOf } from './movers.js';
-import { colours } from './theme.js';
+import { colours, stateColour } from './theme.js';
 import { formatShort } from './units.js';
 
 /** @typedef {import('./types.js').Scene} Scene */
@@ -256,14 +256,15 @@ export class Sketch {
   }
 
   /**
-   * Another robot, with its name.
+   * Another robot, with its name, in a colour of its own.
    * @param {{name: string, footprint_m: Point[]}} other
    * @param {Pose} at
+   * @param {number} number among the others
    * @param {number} px
    */
-  drawOther({ name, footprint_m }, at, px) {
+  drawOther({ name, footprint_m }, at, number, px) {
     const context = this.context;
-    this.drawOutlines(px, [{ corners_m: footprint_m.map((corner) => place(at, corner)), closed: true }]);
+    this.drawOutlines(px, [{ corners_m: footprint_m.map((corner) => place(at, corner)), closed: true }], stateColour(number));
     context.save();
     context.translate(at.x_m, at.y_m);
     // Fonts of a few hundredths of a unit are badly set.
@@ -279,6 +280,20 @@ export class Sketch {
     context.lineWidth = 2 * px;
     context.strokeStyle = colours.text;
     context.stroke();
+  }
+
+  /** A robot of another seed: its outline, faint. @param {Pose} at @param {number} px */
+  drawOutline(at, px) {
+    const { context, scene } = this;
+    context.save();
+    context.translate(at.x_m, at.y_m);
+    context.rotate(at.heading_rad);
+    tracePath(context, scene?.footprint_m ?? DEFAULT_FOOTPRINT, true);
+    context.lineWidth = px;
+    context.globalAlpha = 0.4;
+    context.strokeStyle = colours.robot;
+    context.stroke();
+    context.restore();
   }
 
   /**

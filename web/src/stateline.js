@@ -81,7 +81,7 @@ export class StateLine {
     const end = task.end;
     // What was reached before it was switched off is over.
     const shown = slow.robot.armed && (slow.replay || this.#store.playhead_s === Infinity) ? end : null;
-    setText(this.#end, said(shown ?? ''));
+    setText(this.#end, said(shown?.replace('_', ' ') ?? ''));
     this.#end.className = shown === null ? '' : `chip ${end === 'reached' ? 'good' : 'warning'}`;
     this.#showPose(slow);
   }

@@ -180,6 +180,13 @@ export class Store {
     return at ? at.truth ?? (at.estimated && compose(at.origin, at.estimated)) : null;
   }
 
+  /** What there is of this run so far: for a comparison. */
+  frozen() {
+    const made = new Store();
+    const steps = this.steps.map((step) => ({ ...step, until_s: Math.min(step.until_s, this.newest_s) }));
+    return Object.assign(made, { slow: this.slow.copy(), fast: this.fast.copy(), steps, stretches: structuredClone(this.stretches) });
+  }
+
   #rewind() {
     this.latest = null;
     this.trails = { estimated: [], truth: [], ghost: [] };

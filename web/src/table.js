@@ -137,6 +137,16 @@ export class Table extends Lines {
     this.#inBucket = 0;
   }
 
+  /** The same lines, which stay as they are. */
+  copy() {
+    const made = new Table([], this.#kept_s);
+    for (const [from, into] of /** @type {const} */ ([[this, made], [this.coarse, made.coarse]])) {
+      into.t = [...from.t];
+      into.columns = new Map([...from.columns].map(([name, column]) => [name, [...column]]));
+    }
+    return made;
+  }
+
   clear() {
     this.drop(this.t.length);
     this.coarse.drop(this.coarse.t.length);

@@ -25,7 +25,9 @@ import { askForKey } from './key.js';
  * @property {Difference[]} differences
  * @property {string | null} robot_file
  */
-/** @typedef {{share: (share: number) => void, found: (found: Found) => void, failed: (why: string) => void}} Listener */
+/** The experiment with seeds from `seed` on, `seeds` of them. @typedef {{scenario: string, world: string | null, rig: string | null, seed: number, seeds: number, params: Record<string, number>}} Seeds */
+/** The report, in a language. @typedef {{report: string}} Report */
+/** @typedef {{share: (share: number) => void, found: (found: any) => void, failed: (why: string) => void}} Listener */
 
 const LOST = 'the connection to the station was lost, and the search with it';
 
@@ -34,12 +36,12 @@ export class Search {
   #socket = null;
   #over = false;
 
-  /** @param {number} page the number of this page, which has to be in control @param {Wanted} wanted @param {Listener} listener */
+  /** @param {number} page the number of this page, which has to be in control @param {Wanted | Seeds | Report} wanted @param {Listener} listener */
   constructor(page, wanted, listener) {
     this.#open(page, wanted, listener);
   }
 
-  /** @param {number} page @param {Wanted} wanted @param {Listener} listener */
+  /** @param {number} page @param {Wanted | Seeds | Report} wanted @param {Listener} listener */
   async #open(page, wanted, listener) {
     const { key } = await askForKey();
     if (this.#over) return;

@@ -17,6 +17,7 @@
  * @property {boolean} lane Follows a lane on command.
  * @property {string[]} rigs The rigs it can drive with.
  * @property {[string, number[]][]} parameters Title and numbers of each group, the most important first.
+ * @property {[string, string, number[]][]} laws Its equations: the signal that each gives, what it is, and the parameters within its terms.
  * @property {string[]} plots Titles of the default plots.
  * @property {string[]} states
  * @property {[number, number, string][]} ways Between the states: from, to, when.
@@ -78,7 +79,7 @@
  * @property {boolean} lane
  * @property {Route | null} route
  * @property {[number, number, number] | null} from Where it stood when it was armed: x, y [m] and heading [rad].
- * @property {'reached' | 'unreachable' | null} end
+ * @property {'reached' | 'unreachable' | 'gave_up' | null} end
  *
  * @typedef {{rows: {name: string, found: number, standard_error: number | null}[], parameters: [number, number][], before: [number, number][]}} Findings Of a calibration: what was found, and the parameters set, with their values before.
  *
@@ -121,7 +122,7 @@
  *
  * @typedef {{ticket: number, model: import('./world_shapes.js').World | null, toml: string, problem: string | null, driven: boolean}} EditedWorld A world to edit: what its file holds, its text, what is wrong with it.
  *
- * @typedef {{name: string, kind: 'button' | 'switch' | 'potentiometer' | 'led' | 'buzzer', percent: number}} Part Something at a pin of an emulated robot.
+ * @typedef {{name: string, kind: 'button' | 'switch' | 'potentiometer' | 'led' | 'buzzer' | 'infrared' | 'mpu6050' | 'ssd1306' | 'hd44780', percent: number, address?: number, keys?: string[]}} Part Something at a pin of an emulated robot, or at an address of its two-wire bus.
  * @typedef {{usart: number, text: string}} ConsoleText Output of a USART of an emulated chip.
  *
  * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[], robots?: string[], robot: number}

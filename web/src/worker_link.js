@@ -37,6 +37,8 @@ export class WorkerLink {
   #onChange;
   /** Those who wait for the run. @type {((shared: Shared) => void)[]} */
   #waiting = [];
+  /** Those who wait for causes. @type {((causes: string) => void)[]} */
+  #asking = [];
   /** @type {(news: PortNews) => void} */
   onPort = () => {};
 
@@ -56,6 +58,7 @@ export class WorkerLink {
     worker.addEventListener('message', ({ data }) => {
       if (data.bytes) return saveFile(data.name, new Blob([data.bytes], { type: 'application/octet-stream' }));
       if (data.shared) return this.#waiting.shift()?.(JSON.parse(data.shared));
+      if (data.explained) return this.#asking.shift()?.(data.explained);
       if (['port', 'back', 'refused', 'flashed'].some((name) => name in data)) return this.onPort(data);
       if (!Array.isArray(data)) return this.#end(data.error);
       if (!this.#open) onChange('open', null);
@@ -91,6 +94,14 @@ export class WorkerLink {
     return new Promise((done) => {
       this.#waiting.push(done);
       this.#worker?.postMessage('share');
+    });
+  }
+
+  /** What explains a stretch [s], as JSON. @param {number} from_s @param {number} to_s @returns {Promise<string>} */
+  explain(from_s, to_s) {
+    return new Promise((done) => {
+      this.#asking.push(done);
+      this.#worker?.postMessage({ explain: [from_s, to_s] });
     });
   }
 

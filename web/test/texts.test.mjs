@@ -94,7 +94,7 @@ test('why nothing is tuned', () => {
 const WITHIN = ['not valid TOML: {}{}', '; write decimals with a point', 'must be a number{}, without quotes', ' in {}', ' or ', 'turn rate', ', or '];
 
 test('what is wrong with a scenario, a world or an image', () => {
-  const files = ['read', 'value', 'word', 'near', 'scenario', 'commands', 'fleet', 'mover', 'route', 'world', 'fit', 'start'].map((name) => `experiment/src/files/${name}`);
+  const files = ['read', 'value', 'word', 'near', 'scenario/mod', 'scenario/read', 'scenario/fleet', 'commands', 'mover', 'route', 'world', 'fit', 'start'].map((name) => `experiment/src/files/${name}`);
   const texts = [...files, 'sim/src/fleet', 'lab/src/fleet', 'emulator/src/image/error', 'emulator/src/image/hex'].flatMap((name) => {
     const source = (read(`../../crates/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '');
     return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped((found[1] ?? '').replaceAll('{{', '').replace(/\{[^}]*\}+/g, '{}')));

@@ -3,6 +3,7 @@
 use crate::drive::Change;
 use crate::recording::{ROOM, Recording};
 use rumbo_log::{Level, LoggedEvent, Manifest};
+use rumbo_session::explain::{Cause, explain_news};
 use rumbo_session::{
     Board, Cursor, Driver, Event, Extras, Host, Lease, Order, PageId, Target, ToPage, View,
 };
@@ -160,6 +161,12 @@ impl<T: Target + ?Sized> Desk<T> {
     /// The recording of the run.
     pub(crate) fn recording(&mut self) -> Option<&Recording> {
         self.driver.host().recording.as_ref()
+    }
+
+    /// What explains a stretch \[s\] of what the page sees.
+    pub(crate) fn explain(&mut self, shown: Option<&Board>, from_s: f64, to_s: f64) -> Vec<Cause> {
+        let board = shown.unwrap_or(&self.driver.host().board);
+        explain_news(&board.news(&mut Cursor::default()), from_s, to_s)
     }
 
     /// What is new to the page, as JSON; `shown` is a recording's board that it reads of instead.

@@ -75,6 +75,11 @@ impl Lab {
         serde_json::to_string(&self.0.share()).map_err(|error| error.to_string())
     }
 
+    /// What explains a stretch \[s\] of what the page sees, as JSON.
+    pub fn explain(&mut self, from_s: f64, to_s: f64) -> Result<String, String> {
+        serde_json::to_string(&self.0.explain(from_s, to_s)).map_err(|error| error.to_string())
+    }
+
     /// Shows a recording in place of the lab, which waits.
     pub fn show(&mut self, recording: Recording) {
         self.0.show(Some(recording.0));

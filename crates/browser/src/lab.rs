@@ -8,7 +8,8 @@ use crate::start::Start;
 use rumbo_experiment::files::FileError;
 use rumbo_lab::edited_world;
 use rumbo_log::Level;
-use rumbo_session::{Extras, Order, Target, TargetError, stop_first};
+use rumbo_session::explain::Cause;
+use rumbo_session::{Board, Extras, Order, Target, TargetError, stop_first};
 use rumbo_wire::Command;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -284,13 +285,25 @@ impl Lab {
         }
     }
 
+    /// What explains a stretch \[s\] of what the page sees.
+    pub fn explain(&mut self, from_s: f64, to_s: f64) -> Vec<Cause> {
+        let (desk, shown) = self.seen();
+        desk.explain(shown, from_s, to_s)
+    }
+
     /// What is new to the page, as JSON.
     pub fn news(&mut self) -> Vec<String> {
+        let (desk, shown) = self.seen();
+        desk.news(shown)
+    }
+
+    /// Whose page it is, and the board of a recording that it shows instead.
+    fn seen(&mut self) -> (&mut Desk<dyn Target>, Option<&Board>) {
         let shown = self.showing.as_ref().map(|showing| &showing.board);
         let desk = match self.own {
             0 => &mut self.first,
             other => &mut self.others[other - 1],
         };
-        desk.news(shown)
+        (desk, shown)
     }
 }

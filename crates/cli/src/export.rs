@@ -8,7 +8,7 @@ use crate::mark::Mark;
 use crate::output;
 use crate::place::{self, Guard};
 use crate::ros2bag::Bag;
-use rumbo_log::{Kind, Log, Manifest, Reading, Row, Source};
+use rumbo_log::{Kind, Log, Manifest, Reading, Row, SIGNALS, Source};
 use rumbo_report::Stamp;
 use rumbo_station::log_file;
 use std::collections::BTreeSet;
@@ -37,8 +37,23 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
         bag.check(&guard)?;
     }
     logs::mend(&args.log);
-    let log = log_file::read(&args.log).map_err(Failure::input)?;
+    let mut log = log_file::read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log)?;
+    if let Some(name) = args
+        .signals
+        .iter()
+        .find(|name| figures::signal(name).is_none())
+    {
+        let known = SIGNALS.iter().map(|signal| signal.name);
+        let known: Vec<&str> = known
+            .filter(|name| figures::signal(name).is_some())
+            .collect();
+        return Err(Failure::Input(format!(
+            "--signals {name}: no signal that is plotted; known are {}",
+            known.join(", ")
+        )));
+    }
+    cut_out(&mut log, args)?;
     // Which columns they have is known only now.
     let readings = readings_of(&log);
     if formats.contains(&Format::Csv) {
@@ -52,7 +67,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     if args.ros2bag {
         bag.write(&args.log, &log, args.scan)?;
     }
-    let figures = figures::of_one(&log);
+    let figures = figures::of_one(&log, &args.signals);
     for format in formats {
         match format {
             // Nobody asked for one: the tables are what there is.
@@ -81,6 +96,25 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// Leaves of a log what lies between the times that were asked for.
+fn cut_out(log: &mut Log, args: &ExportArgs) -> Result<(), Failure> {
+    let (from_s, to_s) = (
+        args.from_s.unwrap_or(0.0),
+        args.to_s.unwrap_or(f64::INFINITY),
+    );
+    let within = |t_s: f64| (from_s..=to_s).contains(&t_s);
+    log.rows.retain(|row| within(row.t_ms as f64 / 1e3));
+    log.readings.retain(|each| within(each.t_ms as f64 / 1e3));
+    log.events.retain(|event| within(event.t_s));
+    match log.rows.is_empty() && (args.from_s.is_some() || args.to_s.is_some()) {
+        true => Err(Failure::Input(format!(
+            "{}: holds nothing from {from_s} s to {to_s} s; give times of the log, --from before --to",
+            args.log.display()
+        ))),
+        false => Ok(()),
+    }
 }
 
 /// The files of a format: suffix and mark.

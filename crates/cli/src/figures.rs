@@ -18,9 +18,26 @@ const OVER_TIME: [(&str, &[&str]); 4] = [
     ("Heading", &["heading_rad", "true_heading_rad"]),
 ];
 
-/// One log: what it has of distances, speeds, PWM and heading over time, and the map.
-pub(crate) fn of_one(log: &Log) -> Sheet {
+/// One log: what it has of distances, speeds, PWM and heading over time, and the map; or the signals with these names, those
+/// of one unit together.
+pub(crate) fn of_one(log: &Log, chosen: &[String]) -> Sheet {
     let mut panels = Vec::new();
+    if !chosen.is_empty() {
+        let mut left: Vec<&Signal> = chosen.iter().filter_map(|name| signal(name)).collect();
+        while let Some(unit) = left.first().map(|signal| signal.shown.0) {
+            let (of_unit, others) = left.into_iter().partition(|each| each.shown.0 == unit);
+            left = others;
+            let of_unit: Vec<&Signal> = of_unit;
+            let curves = of_unit.into_iter().zip(Ink::PALETTE.into_iter().cycle());
+            let curves =
+                curves.map(|(signal, ink)| Curve::new(signal.about, ink, over(log, signal)));
+            let curves: Vec<Curve> = curves.filter(|curve| has_values(&curve.points)).collect();
+            if !curves.is_empty() {
+                panels.push(Panel::new(unit, curves));
+            }
+        }
+        return sheet(panels, Vec::new(), Vec::new());
+    }
     for (title, names) in OVER_TIME {
         let signals = || names.iter().filter_map(|name| signal(name));
         let curves = signals().zip(Ink::PALETTE);
@@ -93,8 +110,11 @@ fn sheet(panels: Vec<Panel>, shapes: Vec<Shape>, mut ways: Vec<Curve>) -> Sheet 
     }
 }
 
-fn signal(name: &str) -> Option<&'static Signal> {
-    SIGNALS.iter().find(|signal| signal.name == name)
+/// A signal that is plotted.
+pub(crate) fn signal(name: &str) -> Option<&'static Signal> {
+    SIGNALS
+        .iter()
+        .find(|signal| signal.name == name && !signal.about.is_empty())
 }
 
 fn has_values(points: &Points) -> bool {
@@ -128,9 +148,8 @@ fn over(log: &Log, signal: &Signal) -> Points {
 
 /// The references that belong to this panel.
 fn references(log: &Log, title: &str) -> Vec<Curve> {
-    let given = |name, points: Points| {
-        has_values(&points).then(|| Curve::new(name, Ink::Reference, points))
-    };
+    let given =
+        |name, ink, points: Points| has_values(&points).then(|| Curve::new(name, ink, points));
     match title {
         "Distances" => {
             let points = log.rows.iter().map(|row| {
@@ -144,12 +163,15 @@ fn references(log: &Log, title: &str) -> Vec<Curve> {
                 )
             });
             let points: Points = points.filter(|(_, value)| value.is_finite()).collect();
-            given("reference", points).into_iter().collect()
+            given("reference", Ink::Reference, points)
+                .into_iter()
+                .collect()
         }
         "Wheel speeds" => ["left_ref_rad_s", "right_ref_rad_s"]
             .iter()
             .filter_map(|name| signal(name))
-            .filter_map(|signal| given(signal.label, over(log, signal)))
+            .zip([Ink::FirstReference, Ink::SecondReference])
+            .filter_map(|(signal, ink)| given(signal.label, ink, over(log, signal)))
             .collect(),
         _ => Vec::new(),
     }

@@ -13,6 +13,7 @@ mod compare;
 mod connect;
 mod csv_rows;
 mod experiments;
+mod explain;
 mod export;
 mod export_policy;
 mod failure;
@@ -102,6 +103,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Some(Command::Grade(args)) => grade::grade(&args),
         Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Export(args)) => export::export(&args),
+        Some(Command::Explain(args)) => explain::explain(&args),
         Some(Command::ExportPolicy(args)) => export_policy::export_policy(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Rerun(args)) => rerun::rerun(&args),

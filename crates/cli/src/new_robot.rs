@@ -137,14 +137,18 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
     };
     let mut pins = args.pins.clone();
     if pins.is_empty() {
-        output::line("pins, by number or as A0; nothing where there is none")?;
+        output::line(match driver.shield {
+            Some(_) => "motors as M1, pins by number or as A0; nothing where there is none",
+            None => "pins, by number or as A0; nothing where there is none",
+        })?;
         let motors = needed(driver, jumpers);
         for signal in motors.iter().map(String::as_str).chain(MORE) {
             if signal == "standby" && !driver.has_standby {
                 continue;
             }
             let pin = ask_until(signal, |text| {
-                match text.is_empty() || board.numbered(text).is_some() {
+                let motor = driver.shield.and_then(|shield| shield.motor(text));
+                match text.is_empty() || motor.is_some() || board.numbered(text).is_some() {
                     true => Ok(text.to_owned()),
                     false => Err(format!("no pin of the {}", board.title)),
                 }
@@ -160,6 +164,8 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
         driver,
         jumpers,
         pins,
+        four_wheels: args.wheels == 4,
+        parts: args.parts.clone(),
     })
 }
 

@@ -114,7 +114,7 @@ pub(crate) fn figure(value: f64) -> String {
         return format!("{value}");
     }
     let magnitude = value.abs().log10().floor();
-    if !(-4.0..9.0).contains(&magnitude) {
+    if !(-7.0..9.0).contains(&magnitude) {
         return format!("{value:.3e}");
     }
     let decimals = (3.0 - magnitude).max(0.0) as usize;
@@ -178,6 +178,7 @@ mod tests {
             (0.0, "0"),
             (2.4, "2.4"),
             (0.001_234_56, "0.001235"),
+            (4.446e-5, "0.00004446"),
             (1234.56, "1235"),
             (-0.3, "-0.3"),
         ] {

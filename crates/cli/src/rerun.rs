@@ -15,7 +15,7 @@ use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_experiment::{MODEL, calibration_run};
 use rumbo_log::{Burst, Kind, Log, Manifest, Row, Said, Sample, Sent};
-use rumbo_sim::mega::CONSOLES;
+use rumbo_sim::mega::{CONSOLES, PARTS};
 use rumbo_sim::{Config, Sim};
 use rumbo_station::log_file;
 use rumbo_wire::text::TextCommand;
@@ -382,7 +382,11 @@ impl Recorded for Said {
 
     fn words(&self) -> String {
         let text = rumbo_session::readable(&self.bytes);
-        format!("serial port {} `{}`", self.usart, text.replace('\n', "\\n"))
+        let port = match self.usart {
+            PARTS => "displays".to_owned(),
+            usart => format!("serial port {usart}"),
+        };
+        format!("{port} `{}`", text.replace('\n', "\\n"))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::run_log::{self, Source};
 use rumbo_experiment::files::{ScenarioFile, Setup};
 use rumbo_experiment::run::RunResult;
 use rumbo_session::readable;
-use rumbo_sim::mega::{CONSOLES, ON_PINS};
+use rumbo_sim::mega::{CONSOLES, ON_PINS, PARTS};
 use rumbo_sim::trace::Trace;
 use std::path::{Path, PathBuf};
 
@@ -39,6 +39,7 @@ impl Results {
     fn usart(&self, usart: u8) -> PathBuf {
         match usart {
             ON_PINS => self.file("-bluetooth.txt"),
+            PARTS => self.file("-displays.txt"),
             usart => self.file(&format!("-usart{usart}.txt")),
         }
     }

@@ -222,11 +222,12 @@ fn report(setup: &Setup, results: &[RunResult]) -> Result<(), Failure> {
                 .to_vec(),
         );
     }
-    rows.extend(
-        values
-            .into_iter()
-            .map(|(metric, values)| row(scenario, metric, values)),
-    );
+    // What is judged comes first.
+    let (judged, others): (Vec<_>, Vec<_>) = values
+        .into_iter()
+        .partition(|(metric, _)| scenario.limits.contains_key(*metric));
+    let both = judged.into_iter().chain(others);
+    rows.extend(both.map(|(metric, values)| row(scenario, metric, values)));
     output::table(&rows)?;
     for table in of_robots {
         output::table(&table)?;
@@ -236,7 +237,11 @@ fn report(setup: &Setup, results: &[RunResult]) -> Result<(), Failure> {
             output::line(&format!("  FAILED, seed {}: {failure}", result.seed))?;
         }
         for note in &result.notes {
-            output::line(&format!("  note, seed {}: {note}", result.seed))?;
+            // What a display shows has lines of its own.
+            let mut lines = note.lines();
+            let first = lines.next().unwrap_or_default();
+            output::line(&format!("  note, seed {}: {first}", result.seed))?;
+            lines.try_for_each(|line| output::line(&format!("    {line}")))?;
         }
     }
     Ok(())

@@ -162,7 +162,8 @@ pub(crate) fn begin(
         _ => String::new(),
     };
     output::line(&format!(
-        "{file}: edit it, then `rumbo run mode1{robot} --sketch {folder}`"
+        "{file}: `rumbo lab --scenario mode1{robot} --sketch {folder}` shows it drive, also while it is edited; \
+         `rumbo run mode1{robot} --sketch {folder}` judges it, and the template does not take the second setpoint"
     ))
 }
 

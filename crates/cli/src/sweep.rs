@@ -274,6 +274,10 @@ fn report(args: &SweepArgs, sweep: &Sweep, by: &str) -> Result<(), Failure> {
         });
         rows.push(row);
     }
+    let points = sweep.points_done();
+    if points > SHOWN {
+        output::line(&format!("the best {SHOWN} of {points} points, by {by}:"))?;
+    }
     output::table(&rows)?;
     output::line(&output::shown(&args.out.join(PAGE)))
 }

@@ -1,6 +1,7 @@
 //! `rumbo tune`: values of control parameters for an aim, checked on robots that the search has not seen.
 
 mod dashboard;
+mod seeds;
 
 pub(crate) use dashboard::in_dashboard;
 

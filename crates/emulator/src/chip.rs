@@ -103,6 +103,13 @@ impl Chip {
         self.devices.watch(pins);
     }
 
+    /// Makes runs pause ([`Stopped::Output`]) where a byte begins on the two-wire bus; with `pull_ups` of devices on it, both
+    /// of its lines are high where nobody pulls them down.
+    pub fn watch_two_wire(&mut self, pull_ups: bool) {
+        let cycle = self.cycle();
+        self.devices.watch_two_wire(pull_ups, cycle);
+    }
+
     /// What the chip did since the last call, in order.
     pub fn take_outputs(&mut self) -> Vec<Output> {
         self.devices.take_outputs()

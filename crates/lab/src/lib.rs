@@ -21,6 +21,6 @@ pub use calibration::calibration;
 pub use fleet::{FleetRobot, fleet};
 pub use hash::{recorded_hash, run_hash};
 pub use program::{Made, Make, OwnProgram, Workshop, problem};
-pub use robot::{Cable, SimulatedRobot, type_to};
+pub use robot::{Cable, HAND, SimulatedRobot, type_to};
 pub use scene::{others, scene};
 pub use world::{EDITED, edited_world};

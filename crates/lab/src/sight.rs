@@ -3,10 +3,12 @@
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_log::{MapPose, Source, Truth};
-use rumbo_session::{Abilities, Shown};
-use rumbo_sim::mega::CONSOLES;
+use rumbo_session::{Abilities, PARTS_CONSOLE, Shown};
 use rumbo_sim::mega::firmware::Language;
+use rumbo_sim::mega::{CONSOLES, PARTS};
 use rumbo_sim::{READING_US, Sim, loop_signals};
+
+const _: () = assert!(PARTS == PARTS_CONSOLE);
 
 /// What can be done with the only robot of a world, in this mode at first.
 pub(crate) fn abilities(sim: &Sim, mode: ModeId) -> Abilities {

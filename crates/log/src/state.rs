@@ -117,10 +117,16 @@ pub struct ProgramState {
 pub struct PartState {
     /// Its name in the robot file.
     pub name: String,
-    /// `button`, `switch`, `potentiometer`, `led`, `buzzer`.
+    /// `button`, `switch`, `potentiometer`, `led`, `buzzer`, `infrared`; on the two-wire bus `mpu6050`, `ssd1306`, `hd44780`.
     pub kind: String,
     /// How far it is pressed, closed or turned up \[%\].
     pub percent: u8,
+    /// Its address on the two-wire bus.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub address: Option<u8>,
+    /// The keys of its remote control.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub keys: Vec<String>,
 }
 
 /// Where the time of a program goes; all times in cycles of its clock.
@@ -274,6 +280,8 @@ pub enum End {
     Reached,
     /// There is no path to the goal.
     Unreachable,
+    /// The time for a way to the goal is over.
+    GaveUp,
 }
 
 /// The robot's task: goal, lane or route, and its outcome. Positions are relative to the robot's origin.

@@ -161,6 +161,12 @@ impl Plant {
         }
     }
 
+    /// Whether the body has room at a pose now.
+    #[must_use]
+    pub fn has_room(&self, state: &State, at: &Pose) -> bool {
+        self.footprint.clearance_m(&self.world, state.now_us, at) > 0.0
+    }
+
     /// The world.
     #[must_use]
     pub fn world(&self) -> &World {

@@ -28,6 +28,10 @@ pub enum Ink {
     True,
     /// References and ideals.
     Reference,
+    /// The reference of the first curve, where each has its own.
+    FirstReference,
+    /// That of the second.
+    SecondReference,
 }
 
 impl Ink {
@@ -51,6 +55,8 @@ impl Ink {
             Self::Sixth => "i6",
             Self::True => "it",
             Self::Reference => "ir",
+            Self::FirstReference => "i1 d",
+            Self::SecondReference => "i2 d",
         }
     }
 }

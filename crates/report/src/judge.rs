@@ -42,7 +42,7 @@ pub(crate) fn value(language: Language, shown: &Shown, value: f64) -> String {
     with_unit(text, shown.unit)
 }
 
-fn bounds(language: Language, shown: &Shown, bounds: Bounds) -> String {
+pub(crate) fn bounds(language: Language, shown: &Shown, bounds: Bounds) -> String {
     // A limit in rad was a round number of degrees before it was converted and rounded.
     let number = |value: f64| {
         let value = value * shown.factor;

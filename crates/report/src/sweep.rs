@@ -6,6 +6,7 @@ use crate::summary::{figure, heading, shell};
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, escape, put, with_unit, word};
 use rumbo_control::params::ParamId;
+use rumbo_experiment::compare::median;
 use rumbo_experiment::files::ScenarioFile;
 use rumbo_experiment::metrics;
 use rumbo_experiment::sweep::{Axis, Design, Row, Spread, Sweep};
@@ -28,6 +29,7 @@ const OVER_PAIRS: Text = word("over-pairs");
 const PAIRS_NOTE: Text = word("pairs-note");
 const ALL_AT_ONCE: Text = word("all-parameters-at-once");
 const LINES_NOTE: Text = word("lines-note");
+const MISSED: Text = word("missed-limits");
 const OTHERS: Text = word("other-metrics");
 const MEDIAN: Text = word("median");
 
@@ -83,7 +85,8 @@ impl Page<'_> {
         body += &self.curves(language);
         body += &self.heats(language);
         body += &self.parallel(language, &ranked);
-        shell(language, &self.scenario.title, &self.subtitle(), &body)
+        let title = self.scenario.title.replace("->", "→");
+        shell(language, &title, &self.subtitle(), &body)
     }
 
     fn subtitle(&self) -> String {
@@ -172,7 +175,7 @@ impl Page<'_> {
             .collect();
         let axes = &self.sweep.plan.axes;
         let mut header: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
-        header.push(PASS.of(language));
+        header.extend([PASS, MISSED].map(|text| text.of(language)));
         header.extend(names.iter().map(String::as_str));
         header.extend([BEST_RUN.of(language), WORST_RUN.of(language)]);
         let row = |point: &usize| {
@@ -184,6 +187,7 @@ impl Page<'_> {
             let tone = if share >= 1.0 { Tone::Good } else { Tone::Bad };
             let percent = with_unit(language.number(100.0 * share, 0), "%");
             row.push(Cell::text(&percent).tone(tone));
+            row.push(Cell::text(&self.missed(language, *point)));
             for metric in &limited {
                 let shown = self.shown(language, metric);
                 let spread = self.sweep.spread(*point, metric);
@@ -197,6 +201,31 @@ impl Page<'_> {
             row
         };
         table(&header, &points.iter().map(row).collect::<Vec<_>>())
+    }
+
+    /// The limits that runs of a point miss, each with the share of them and the median of what they had.
+    fn missed(&self, language: Language, point: usize) -> String {
+        let runs = || self.sweep.rows.iter().filter(|row| row.point == point);
+        let missed = self.scenario.limits.iter().filter_map(|(key, limit)| {
+            let values = runs().map(|run| run.metrics.get(key).copied().unwrap_or(f64::NAN));
+            let beyond: Vec<f64> = values.filter(|value| !limit.admit(*value)).collect();
+            if beyond.is_empty() {
+                return None;
+            }
+            let shown = self.shown(language, key);
+            Some(format!(
+                "{}{}: {}, {} ({}/{})",
+                key.strip_suffix(metrics::bare(key))
+                    .unwrap_or_default()
+                    .replace('.', ": "),
+                shown.name,
+                judge::value(language, &shown, median(&beyond)),
+                judge::bounds(language, &shown, *limit),
+                beyond.len(),
+                runs().count()
+            ))
+        });
+        missed.collect::<Vec<_>>().join("; ")
     }
 
     /// A run, linked to its log.

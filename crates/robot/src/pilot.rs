@@ -59,8 +59,8 @@ pub(crate) struct Pilot {
 pub(crate) struct Found {
     /// It reached its reference at this tick.
     pub(crate) reached: bool,
-    /// It found at this tick that its goal cannot be reached.
-    pub(crate) unreachable: bool,
+    /// It stopped trying to reach its goal at this tick: every way was tried, or else its time \[s\] was over.
+    pub(crate) unreachable: Option<Result<(), u16>>,
 }
 
 impl Default for Pilot {
@@ -144,13 +144,17 @@ impl Pilot {
         let Action {
             reached,
             unreachable,
+            out_of_time,
             ..
         } = self.action;
         let before = (self.reached, self.unreachable);
         (self.reached, self.unreachable) = (reached, unreachable);
         Ok(Found {
             reached: reached && !before.0,
-            unreachable: unreachable && !before.1,
+            unreachable: (unreachable && !before.1).then(|| match out_of_time {
+                true => Err(round(self.params.get(ParamId::MissionGiveUp)) as u16),
+                false => Ok(()),
+            }),
         })
     }
 

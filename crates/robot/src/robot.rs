@@ -161,12 +161,14 @@ impl Robot {
         match self.pilot.think(self.supervisor.is_armed()) {
             Err(fault) => self.fail(fault),
             Ok(found) => {
-                busy |= found.reached || found.unreachable;
+                busy |= found.reached || found.unreachable.is_some();
                 if found.reached {
                     self.event(EventKind::Reached);
                 }
-                if found.unreachable {
-                    self.event(EventKind::Unreachable);
+                match found.unreachable {
+                    Some(Ok(())) => self.event(EventKind::Unreachable),
+                    Some(Err(after_s)) => self.event(EventKind::GaveUp { after_s }),
+                    None => {}
                 }
             }
         }

@@ -6,11 +6,12 @@
 
 mod ring;
 
-use crate::console::{ConsoleText, readable};
+use crate::console::{ConsoleText, PARTS_CONSOLE, readable};
 use crate::event::Event;
 use crate::world::EditedWorld;
 use ring::{Ring, Versioned};
 use rumbo_log::{Burst, Entry, LoggedEvent, ParameterState, Reading, Row, Scene, Source, State};
+use std::collections::BTreeMap;
 
 /// Samples kept: ten minutes of telemetry at 25 Hz.
 pub const SAMPLES_KEPT: usize = 15_000;
@@ -38,6 +39,8 @@ pub struct Board {
     printed: Ring<Reading>,
     events: Ring<LoggedEvent>,
     consoles: Ring<ConsoleText>,
+    /// What each display shows.
+    displays: Versioned<BTreeMap<String, String>>,
     bytes: Ring<Burst>,
     scene: Versioned<Option<Scene>>,
     parameters: Versioned<Vec<ParameterState>>,
@@ -54,6 +57,7 @@ pub struct Cursor {
     printed: u64,
     events: u64,
     consoles: u64,
+    displays: u64,
     bytes: u64,
     scene: u64,
     parameters: u64,
@@ -102,6 +106,7 @@ impl Default for Board {
             printed: Ring::new(READINGS_KEPT),
             events: Ring::new(EVENTS_KEPT),
             consoles: Ring::new(CONSOLES_KEPT),
+            displays: Versioned::default(),
             bytes: Ring::new(BURSTS_KEPT),
             scene: Versioned::default(),
             parameters: Versioned::default(),
@@ -121,6 +126,10 @@ impl Board {
                 self.shown.clear();
                 self.printed.clear();
                 self.consoles.clear();
+                // Of a robot without displays there is no news.
+                if !self.displays.value().is_empty() {
+                    self.displays.set(BTreeMap::new());
+                }
                 self.bytes.clear();
                 false
             }
@@ -129,10 +138,7 @@ impl Board {
                 self.received = (wall_ms, *now_ms);
                 false
             }
-            Event::Console(said) => {
-                self.consoles.push(said.clone());
-                true
-            }
+            Event::Console(said) => self.hear(said.clone()),
             Event::World(world) => self.world.set(world.clone()),
             Event::Entry(entry) => self.show(entry),
         }
@@ -148,8 +154,7 @@ impl Board {
             Entry::Said(said) if said.to_chip => false,
             Entry::Said(said) => {
                 let (usart, text) = (said.usart, readable(&said.bytes));
-                self.consoles.push(ConsoleText { usart, text });
-                true
+                self.hear(ConsoleText { usart, text })
             }
             Entry::Rows(rows) => {
                 rows.iter().for_each(|row| self.samples.push(*row));
@@ -177,13 +182,34 @@ impl Board {
         }
     }
 
+    /// Text is kept as it comes; of the displays only what they show now.
+    fn hear(&mut self, said: ConsoleText) -> bool {
+        if said.usart != PARTS_CONSOLE {
+            self.consoles.push(said);
+            return true;
+        }
+        let mut displays = self.displays.value().clone();
+        let lines = said.text.lines().filter_map(|line| line.split_once('='));
+        displays.extend(lines.map(|(name, content)| (name.to_owned(), content.to_owned())));
+        self.displays.set(displays)
+    }
+
     /// What is new since `cursor`, which moves on.
     pub fn news(&self, cursor: &mut Cursor) -> News {
         let (samples, _) = self.samples.read(&mut cursor.samples);
         let (mut readings, _) = self.shown.read(&mut cursor.shown);
         readings.extend(self.printed.read(&mut cursor.printed).0);
         let (events, gone) = self.events.read(&mut cursor.events);
-        let (consoles, _) = self.consoles.read(&mut cursor.consoles);
+        let (mut consoles, _) = self.consoles.read(&mut cursor.consoles);
+        if let Some(displays) = self.displays.newer(&mut cursor.displays) {
+            let lines = displays
+                .iter()
+                .map(|(name, content)| format!("{name}={content}\n"));
+            consoles.push(ConsoleText {
+                usart: PARTS_CONSOLE,
+                text: lines.collect(),
+            });
+        }
         let (bytes, _) = self.bytes.read(&mut cursor.bytes);
         let first_time = cursor.run == 0;
         cursor.run = self.run;
@@ -258,6 +284,30 @@ mod tests {
         assert_eq!(news.samples.len(), SAMPLES_KEPT);
         assert_eq!(news.events.len(), EVENTS_KEPT);
         assert_eq!(news.events_gone, 5);
+    }
+
+    #[test]
+    fn of_a_display_a_page_gets_what_it_shows_now_and_text_is_not_pushed_out_by_it() {
+        let mut board = Board::default();
+        let said = |usart: u8, text: &str| {
+            let text = text.to_owned();
+            Event::Console(ConsoleText { usart, text })
+        };
+        board.take(&said(0, "Ready\n"), 0.0);
+        board.take(&said(PARTS_CONSOLE, "eye=1\n"), 0.0);
+        for frame in 0..2 * CONSOLES_KEPT {
+            board.take(&said(PARTS_CONSOLE, &format!("screen={frame}\n")), 0.0);
+        }
+        let mut cursor = Cursor::default();
+        let shown = board.news(&mut cursor).consoles;
+        let last = 2 * CONSOLES_KEPT - 1;
+        assert_eq!(shown[0].text, "Ready\n");
+        assert_eq!(shown[1].text, format!("eye=1\nscreen={last}\n"));
+        assert!(board.news(&mut cursor).consoles.is_empty());
+        board.take(&Event::Run, 0.0);
+        assert_eq!(board.news(&mut cursor).consoles[0].text, "");
+        board.take(&Event::Run, 0.0);
+        assert!(board.news(&mut cursor).consoles.is_empty());
     }
 
     #[test]

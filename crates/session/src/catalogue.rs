@@ -31,6 +31,8 @@ pub struct ModeEntry {
     rigs: Vec<&'static str>,
     /// Its parameters by number, those that matter most first: title and numbers.
     parameters: Vec<(&'static str, Vec<u8>)>,
+    /// Its equations: the signal that each gives, what it is, and the parameters within its terms.
+    laws: Vec<(&'static str, &'static str, Vec<u8>)>,
     /// Names of the plots to begin with.
     plots: Vec<&'static str>,
 }
@@ -87,6 +89,68 @@ fn mode_entry(mode: ModeId) -> ModeEntry {
                 )
             })
             .collect(),
+        laws: about
+            .laws
+            .iter()
+            .flat_map(|laws| laws.iter())
+            .map(|law| {
+                let gains = law.gains.iter().map(|id| *id as u8);
+                (law.gives, law.is, gains.collect())
+            })
+            .collect(),
         plots: about.plots.iter().map(|plot| plot.name()).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rumbo_control::params::ParamId;
+    use rumbo_log::SIGNALS;
+
+    /// Signals that the simulated loops add ([`rumbo_log::Source::Loops`]), and the distance setpoint as the page has it.
+    const LOOPS: [&str; 15] = [
+        "left_p_pwm",
+        "left_i_pwm",
+        "left_d_pwm",
+        "left_feedforward_pwm",
+        "right_p_pwm",
+        "right_i_pwm",
+        "right_d_pwm",
+        "right_feedforward_pwm",
+        "forward_ref_m_s",
+        "yaw_ref_rad_s",
+        "distance_p_rad",
+        "distance_i_rad",
+        "heading_p_rad_s",
+        "heading_d_rad_s",
+        "reference_m",
+    ];
+
+    #[test]
+    fn every_name_in_a_law_is_a_parameter_a_signal_or_a_function() {
+        let functions = ["min", "max", "abs", "sqrt", "sign", "clamp"];
+        let is_known = |name: &str| {
+            ParamId::from_name(name).is_some()
+                || SIGNALS.iter().any(|signal| signal.name == name)
+                || LOOPS.contains(&name)
+                || functions.contains(&name)
+        };
+        for mode in modes() {
+            for (gives, is, _) in &mode.laws {
+                let names = is.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+                let names =
+                    names.filter(|name| name.starts_with(|c: char| c.is_ascii_alphabetic()));
+                for name in names {
+                    let is_given = mode.laws.iter().any(|(given, _, _)| *given == name);
+                    assert!(is_given || is_known(name), "{}: {name}", mode.name);
+                }
+                assert!(
+                    is_known(gives) || *gives == "error_m",
+                    "{}: {gives}",
+                    mode.name
+                );
+            }
+        }
     }
 }

@@ -5,6 +5,9 @@ use serde::Serialize;
 /// In place of a USART's number: the link to a real robot that speaks text.
 pub const LINK_CONSOLE: u8 = 255;
 
+/// In place of a USART's number: what the displays at an emulated chip show, lines `name=content`.
+pub const PARTS_CONSOLE: u8 = 5;
+
 /// What a USART of an emulated chip said, or a robot that speaks text.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConsoleText {

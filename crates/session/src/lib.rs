@@ -15,6 +15,7 @@ mod console;
 mod driver;
 mod error;
 mod event;
+pub mod explain;
 pub mod fault;
 mod guest;
 pub mod headless;
@@ -40,7 +41,7 @@ mod world;
 
 pub use board::{Arrival, Board, Cursor, EVENTS_KEPT, News, SAMPLES_KEPT};
 pub use catalogue::ModeEntry;
-pub use console::{ConsoleText, LINK_CONSOLE, readable};
+pub use console::{ConsoleText, LINK_CONSOLE, PARTS_CONSOLE, readable};
 pub use driver::{Calibration, Driver, Extras, Host};
 pub use error::{CalibrationError, TargetError};
 pub use event::Event;

@@ -4,7 +4,7 @@ pub(crate) mod describe;
 
 use crate::client::{LinkEvent, RobotClient};
 use crate::commands::{Fate, Outcome};
-use crate::console::{ConsoleText, LINK_CONSOLE, readable};
+use crate::console::{ConsoleText, LINK_CONSOLE, PARTS_CONSOLE, readable};
 use crate::event::Event;
 use crate::origin::Origin;
 use crate::printed::Printed;
@@ -248,7 +248,7 @@ impl Observer {
 
     /// Records what crossed a USART of an emulated chip, and the numbers that its program printed.
     pub(crate) fn said(&mut self, said: Said) {
-        if !said.to_chip {
+        if !said.to_chip && said.usart != PARTS_CONSOLE {
             self.read_numbers(said.usart, &said.bytes, (said.t_us / 1_000) as i64);
         }
         self.emit(Entry::Said(said));
@@ -414,14 +414,19 @@ impl Observer {
                 self.status.fault = Some(fault);
                 Level::Fault
             }
-            EventKind::Unreachable => Level::Warning,
+            EventKind::Unreachable | EventKind::GaveUp { .. } => Level::Warning,
             EventKind::Cleared(_) => {
                 self.status.fault = None;
                 Level::Info
             }
         };
         let text = match kind.detail() {
-            Some(detail) => format!("{}: {detail}", kind.title()),
+            Some(detail) => match kind {
+                EventKind::GaveUp { after_s } => {
+                    format!("gave up after {after_s} s: {detail}")
+                }
+                _ => format!("{}: {detail}", kind.title()),
+            },
             None => kind.title().into(),
         };
         self.note(t_ms, level, text);

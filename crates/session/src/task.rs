@@ -67,6 +67,7 @@ pub(crate) fn happened(task: &mut Task, kind: EventKind, pose: Pose) {
             task.goal = None;
         }
         EventKind::Unreachable => task.end = Some(End::Unreachable),
+        EventKind::GaveUp { .. } => task.end = Some(End::GaveUp),
         EventKind::Disarmed
         | EventKind::Faulted(_)
         | EventKind::Cleared(_)

@@ -20,6 +20,8 @@ pub struct Board {
     usarts: &'static [[u8; 2]],
     /// Pins with a resistor of 10 kOhm to the supply on the board.
     pulled_up: &'static [u8],
+    /// The pins of the two-wire bus, SDA and SCL.
+    pub two_wire: [u8; 2],
     /// The number of pin A0; the others follow.
     pub first_analogue: u8,
     /// The number of the last analogue input, which may have no digital pin.
@@ -51,6 +53,7 @@ pub static MEGA: Board = Board {
     usarts: &[[0, 1], [19, 18], [17, 16], [15, 14]],
     // Of the two-wire bus.
     pulled_up: &[20, 21],
+    two_wire: [20, 21],
     first_analogue: 54,
     last_analogue: 69,
     pwm: &[2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 44, 45, 46],
@@ -73,6 +76,7 @@ pub static UNO: Board = Board {
     ],
     usarts: &[[0, 1]],
     pulled_up: &[],
+    two_wire: [18, 19],
     first_analogue: 14,
     last_analogue: 19,
     pwm: &[3, 5, 6, 9, 10, 11],

@@ -28,7 +28,51 @@ pub enum Direction {
     Two,
     /// By one, high or low.
     One,
+    /// By two outputs of a shield's register: a wheel is on one of its motors.
+    Motor,
 }
+
+/// A shield on which a chip has the inputs of the motors: a register, 74HC595, those of their directions; or a PCA9685 all.
+pub struct Shield {
+    /// The board's pins of the register: latch, clock, data, and enable, whose low switches its outputs on.
+    pub(crate) lines: Option<[u8; 4]>,
+    /// The address of the PCA9685 on the two-wire bus.
+    pub(crate) address: Option<u8>,
+    /// Of each motor, M1 first, where its PWM is, the board's pin or the PCA9685's output, and the chip's outputs on its inputs, that
+    /// of forward first.
+    motors: [(u8, [u8; 2]); 4],
+}
+
+impl Shield {
+    /// The number of a motor by its name, `M1` to `M4`.
+    #[must_use]
+    pub fn motor(&self, name: &str) -> Option<u8> {
+        let number: u8 = name.strip_prefix(['M', 'm'])?.parse().ok()?;
+        (1..=self.motors.len() as u8)
+            .contains(&number)
+            .then_some(number)
+    }
+
+    /// Where a motor's PWM is, and the chip's outputs on its inputs.
+    pub(crate) fn inputs_of(&self, motor: u8) -> (u8, [u8; 2]) {
+        let motors = &self.motors;
+        motors[usize::from(motor.saturating_sub(1)) % motors.len()]
+    }
+}
+
+/// The Adafruit motor shield, version 1, and its many copies: schematic and AFMotor.h.
+static MOTOR_SHIELD: Shield = Shield {
+    lines: Some([12, 4, 8, 7]),
+    address: None,
+    motors: [(11, [2, 3]), (3, [1, 4]), (6, [5, 7]), (5, [0, 6])],
+};
+
+/// The Adafruit motor shield, version 2: schematic and Adafruit_MotorShield.cpp.
+static MOTOR_SHIELD_V2: Shield = Shield {
+    lines: None,
+    address: Some(0x60),
+    motors: [(8, [10, 9]), (13, [11, 12]), (2, [4, 3]), (7, [5, 6])],
+};
 
 /// A driver of two motors.
 pub struct Driver {
@@ -44,6 +88,8 @@ pub struct Driver {
     pub direction: Direction,
     /// Whether one input, low, switches both halves off.
     pub has_standby: bool,
+    /// The shield that it is on, if that decides its pins.
+    pub shield: Option<&'static Shield>,
     /// What a half does, by enable (low, high) and by inputs: none high, forward, backward, both.
     pub(crate) does: [[Stage; 4]; 2],
     drop_v: f64,
@@ -60,6 +106,7 @@ pub static L298N: Driver = Driver {
     has_enable: true,
     direction: Direction::Two,
     has_standby: false,
+    shield: None,
     // L298 data sheet, "bidirectional DC motor control".
     does: [[Coast; 4], [Brake, Forward, Backward, Brake]],
     drop_v: 1.4,
@@ -68,35 +115,60 @@ pub static L298N: Driver = Driver {
     brake_v: 1.6,
 };
 
+/// The L293D.
+static L293D: Driver = Driver {
+    name: "l293d",
+    title: "L293D",
+    // Saturation 1.4 V above and 1.2 V below at 0.6 A, diodes 1.3 V; a motor is shorted over one of each.
+    source: Some("its data sheet (TI SLRS008)"),
+    drop_v: 2.6,
+    drop_ohm: 0.0,
+    diode_v: 1.3,
+    brake_v: 2.5,
+    ..L298N
+};
+
+/// The TB6612FNG.
+static TB6612: Driver = Driver {
+    name: "tb6612",
+    title: "TB6612FNG",
+    // 0.5 ohm above and below together, diodes 1.0 V at 1 A.
+    source: Some("its data sheet (Toshiba TB6612FNG, 2014-10-01)"),
+    has_standby: true,
+    does: [
+        [Coast, Brake, Brake, Brake],
+        [Coast, Forward, Backward, Brake],
+    ],
+    drop_v: 0.0,
+    drop_ohm: 0.5,
+    diode_v: 1.0,
+    brake_v: 0.0,
+    ..L298N
+};
+
 /// The drivers that there are.
-pub static DRIVERS: [&Driver; 5] = [
+pub static DRIVERS: [&Driver; 7] = [
     &L298N,
+    &L293D,
     &Driver {
-        name: "l293d",
-        title: "L293D",
-        // Saturation 1.4 V above and 1.2 V below at 0.6 A, diodes 1.3 V; a motor is shorted over one of each.
-        source: Some("its data sheet (TI SLRS008)"),
-        drop_v: 2.6,
-        drop_ohm: 0.0,
-        diode_v: 1.3,
-        brake_v: 2.5,
-        ..L298N
+        name: "motor-shield",
+        title: "motor shield with L293D and 74HC595",
+        source: Some("the data sheet of the L293D (TI SLRS008)"),
+        has_enable: false,
+        direction: Direction::Motor,
+        shield: Some(&MOTOR_SHIELD),
+        ..L293D
     },
+    &TB6612,
     &Driver {
-        name: "tb6612",
-        title: "TB6612FNG",
-        // 0.5 ohm above and below together, diodes 1.0 V at 1 A.
-        source: Some("its data sheet (Toshiba TB6612FNG, 2014-10-01)"),
-        has_standby: true,
-        does: [
-            [Coast, Brake, Brake, Brake],
-            [Coast, Forward, Backward, Brake],
-        ],
-        drop_v: 0.0,
-        drop_ohm: 0.5,
-        diode_v: 1.0,
-        brake_v: 0.0,
-        ..L298N
+        name: "motor-shield-v2",
+        title: "motor shield with TB6612FNG and PCA9685",
+        source: Some("the data sheet of the TB6612FNG"),
+        has_enable: false,
+        direction: Direction::Motor,
+        has_standby: false,
+        shield: Some(&MOTOR_SHIELD_V2),
+        ..TB6612
     },
     &Driver {
         name: "drv8833",

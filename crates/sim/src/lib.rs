@@ -7,6 +7,7 @@
 mod baseline;
 mod board;
 pub mod boards;
+pub mod bus;
 mod config;
 pub mod debugging;
 pub mod drivers;
@@ -15,6 +16,7 @@ pub mod fleet;
 pub mod floor;
 mod instruments;
 pub mod mega;
+pub mod remote;
 mod sim;
 pub mod sonar_fault;
 pub mod trace;

@@ -1,8 +1,10 @@
 //! Which signal is on which pin of the board.
 
 use crate::boards::Board;
+use crate::bus::{BusDevice, DeviceKind};
 use crate::drivers::Driver;
 use crate::floor::LineSensor;
+use crate::remote::Key;
 use std::collections::BTreeMap;
 
 /// The signals that a wiring may place: enable and direction inputs of the bridge, encoders, servo, sonars and UARTs.
@@ -40,16 +42,69 @@ pub struct Wiring {
     pub driver: &'static Driver,
     /// Pin of each signal.
     pub pins: BTreeMap<String, u8>,
+    /// The motor of a shield that each wheel is on, left and right, where the driver is one.
+    pub motors: [Option<Motor>; 2],
     /// Inputs of the driver that are held high or low instead, as by a jumper.
     pub held: BTreeMap<String, bool>,
     /// Sensors for lines on the floor.
     pub line_sensors: Vec<LineSensor>,
     /// What else is at pins: what a person works, and what shows something.
     pub parts: Vec<Part>,
+    /// The devices on the two-wire bus.
+    pub bus: Vec<BusDevice>,
     /// Rate of the Bluetooth module, where it is not the usual one \[baud\].
     pub link_baud: Option<u32>,
     /// The divider that brings the battery's voltage to an analogue input, where there is one.
     pub battery: Option<Divider>,
+}
+
+/// A motor of a shield.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Motor {
+    /// 1 is M1.
+    pub number: u8,
+    /// What the shield calls forward drives the wheel backward.
+    pub reversed: bool,
+}
+
+impl Wiring {
+    /// The board's pins that a shield takes: those of its register, and the PWM of the motors that are wired.
+    pub fn shield_pins(&self) -> impl Iterator<Item = u8> {
+        let motors = self.motors.into_iter().flatten();
+        let shield = self.driver.shield.filter(|_| self.motors != [None; 2]);
+        let lines = shield.and_then(|shield| shield.lines);
+        let speeds = motors.filter_map(move |motor| {
+            lines?;
+            Some(shield?.inputs_of(motor.number).0)
+        });
+        let bus = shield.filter(|shield| shield.address.is_some());
+        let bus = bus.map(|_| self.board.two_wire);
+        let (lines, bus) = (lines.into_iter().flatten(), bus.into_iter().flatten());
+        lines.chain(bus).chain(speeds)
+    }
+
+    /// The name of what is on a pin of the board, if anything is: a signal, a part, a line sensor, the two-wire bus.
+    #[must_use]
+    pub fn owner_of(&self, pin: u8) -> Option<&str> {
+        let signals = self.pins.iter().map(|(name, on)| (name.as_str(), *on));
+        let parts = self.parts.iter().map(|part| (part.name.as_str(), part.pin));
+        let sensors = self.line_sensors.iter();
+        let sensors = sensors.map(|sensor| (sensor.name.as_str(), sensor.pin));
+        let interrupts = self.bus.iter().filter_map(|device| match device.kind {
+            DeviceKind::Mpu6050 { interrupt, .. } => Some((device.name.as_str(), interrupt?)),
+            _ => None,
+        });
+        let lines = self.board.two_wire.map(|pin| ("the two-wire bus", pin));
+        let lines = lines.into_iter().filter(|_| !self.bus.is_empty());
+        let shield = self.shield_pins().map(|pin| ("the motor shield", pin));
+        let mut all = signals
+            .chain(shield)
+            .chain(parts)
+            .chain(sensors)
+            .chain(interrupts)
+            .chain(lines);
+        all.find(|(_, on)| *on == pin).map(|(name, _)| name)
+    }
 }
 
 /// Something at a pin that a person works or looks at.
@@ -63,6 +118,8 @@ pub struct Part {
     pub pin: u8,
     /// A button or switch closes to 5 V, over a resistor to GND, instead of to GND.
     pub to_supply: bool,
+    /// The keys of the remote control of an infrared receiver.
+    pub keys: &'static [Key],
 }
 
 /// What a part is.
@@ -78,16 +135,19 @@ pub enum PartKind {
     Led,
     /// A sound.
     Buzzer,
+    /// A receiver for the remote control in somebody's hand.
+    Infrared,
 }
 
 impl PartKind {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Button,
         Self::Switch,
         Self::Potentiometer,
         Self::Led,
         Self::Buzzer,
+        Self::Infrared,
     ];
 
     /// Its key in robot files.
@@ -99,13 +159,14 @@ impl PartKind {
             Self::Potentiometer => "potentiometer",
             Self::Led => "led",
             Self::Buzzer => "buzzer",
+            Self::Infrared => "infrared",
         }
     }
 
     /// Whether a person works it.
     #[must_use]
     pub const fn is_worked(self) -> bool {
-        matches!(self, Self::Button | Self::Switch | Self::Potentiometer)
+        !matches!(self, Self::Led | Self::Buzzer)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The session's board, shared with the pages: the session writes, each page's connection reads on from where it was.
 
 use rumbo_log::Entry;
+use rumbo_session::explain::{Cause, explain_news};
 use rumbo_session::{Cursor, Event, News};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -50,6 +51,12 @@ impl Board {
     /// The session, which calls this, has taken so many orders more.
     pub(crate) fn took(&self, orders: usize) {
         self.taken.fetch_add(orders as u64, Ordering::Relaxed);
+    }
+
+    /// What explains a stretch \[s\] of what pages see. The session does not wait for it.
+    pub(crate) fn explain(&self, from_s: f64, to_s: f64) -> Vec<Cause> {
+        let news = self.lock().board.news(&mut Cursor::default());
+        explain_news(&news, from_s, to_s)
     }
 
     /// What is new since `cursor`, which moves on; orders that had been taken when the state was so.

@@ -72,6 +72,7 @@ pub(crate) fn router(guard: Arc<Guard>, hubs: Vec<Hub>) -> Router {
             get(recordings::content).delete(recordings::delete),
         )
         .route("/recordings/{name}/replay", post(recordings::replay))
+        .route("/explain", get(explain))
         .route("/tune", get(tuning::offers))
         .route("/tune/search", get(tuning::search))
         .fallback(file)
@@ -130,6 +131,26 @@ fn role_of_socket(guard: &Guard, headers: &HeaderMap) -> Result<Role, Denied> {
 fn queried<'a>(uri: &'a Uri, name: &str) -> Option<&'a str> {
     let mut parts = uri.query()?.split('&');
     parts.find_map(|part| part.strip_prefix(name)?.strip_prefix('='))
+}
+
+/// What explains a stretch, `from` a time `to` another \[s\], of what the pages of a robot see.
+async fn explain(
+    State(Hubs(hubs)): State<Hubs>,
+    Extension(guard): Extension<Arc<Guard>>,
+    uri: Uri,
+    headers: HeaderMap,
+) -> Result<Response, Denied> {
+    guard.role_of(bearer(&headers))?;
+    let time_s = |name| queried(&uri, name).and_then(|text| text.parse::<f64>().ok());
+    let (Some(from_s), Some(to_s)) = (time_s("from"), time_s("to")) else {
+        let text = "say from when to when, in seconds: /explain?from=1&to=3";
+        return Ok((StatusCode::BAD_REQUEST, text).into_response());
+    };
+    let board = named(&hubs, &uri).board;
+    // In a thread of its own: STOP does not wait for it.
+    let causes = tokio::task::spawn_blocking(move || board.explain(from_s, to_s)).await;
+    let json = serde_json::to_string(&causes.unwrap_or_default()).unwrap_or_default();
+    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
 }
 
 /// The robot that the address names, or the first one.

@@ -357,6 +357,7 @@ fn put_event(to: &mut Writer, event: &Event) -> Kind {
         EventKind::Unreachable => to.put([7]),
         EventKind::Recalled(recalled) => to.put([8, recalled as u8]),
         EventKind::Saved => to.put([9]),
+        EventKind::GaveUp { after_s } => to.put([10]).put(after_s.to_le_bytes()),
     };
     Kind::Event
 }
@@ -373,6 +374,9 @@ fn event(from: &mut Reader) -> Result<Event, Malformed> {
         7 => EventKind::Unreachable,
         8 => EventKind::Recalled(Recalled::from_number(from.u8()).ok_or(from.wrong())?),
         9 => EventKind::Saved,
+        10 => EventKind::GaveUp {
+            after_s: from.u16(),
+        },
         _ => return Err(from.wrong()),
     };
     Ok(Event { t_ms, kind })

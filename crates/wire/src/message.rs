@@ -222,6 +222,11 @@ pub enum EventKind {
     Reached,
     /// The mode found that its goal cannot be reached; the robot waits.
     Unreachable,
+    /// The mode has sought a way to its goal for so long \[s\], and found none; the robot waits.
+    GaveUp {
+        /// Its parameter `mission_give_up_s`.
+        after_s: u16,
+    },
     /// After HELLO, if parameters have been saved: the source of those in force at the start.
     Recalled(Recalled),
     /// A save of the parameters is complete.

@@ -84,6 +84,7 @@ impl EventKind {
             EventKind::ModeChanged(_) => "mode changed",
             EventKind::Reached => "setpoint reached",
             EventKind::Unreachable => "goal unreachable",
+            EventKind::GaveUp { .. } => "gave up",
             EventKind::Recalled(_) => "saved parameters",
             EventKind::Saved => "parameters saved on the robot",
         }
@@ -98,6 +99,9 @@ impl EventKind {
             EventKind::ModeChanged(mode) => Some(mode.name()),
             EventKind::Unreachable => {
                 Some("every way round was tried; give another goal, or clear the way")
+            }
+            EventKind::GaveUp { .. } => {
+                Some("no way was found in time; raise mission_give_up_s, or give another goal")
             }
             EventKind::Recalled(recalled) => Some(recalled.explanation()),
             EventKind::Armed | EventKind::Disarmed | EventKind::Reached | EventKind::Saved => None,

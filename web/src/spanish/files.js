@@ -23,7 +23,8 @@ export const FILES = {
   // Scenarios.
   'one line that says what the experiment is': 'una línea que diga qué experimento es', 'name of a robot, e.g. "memoria"': 'nombre de un robot, p. ej. "memoria"',
   'name of a world, e.g. "open"': 'nombre de un mundo, p. ej. "open"',
-  '{}: `{}` is to be pressed, and the wiring has no button, switch or potentiometer of that name: {}': '{}: `{}` se va a pulsar, y el cableado no tiene ningún botón, interruptor ni potenciómetro con ese nombre: {}',
+  '{}: `{}` is to be pressed, and the wiring has no button, switch, potentiometer or remote control of that name: {}': '{}: `{}` se va a pulsar, y el cableado no tiene ningún botón, interruptor, potenciómetro ni mando con ese nombre: {}',
+  '`{}` is a remote control, and {} none of its keys: {}, e.g. {}={}': '`{}` es un mando, y {} no es ninguna de sus teclas: {}, p. ej. {}={}', '`{}` is put to {}: give a value from 0 to 1': '`{}` se pone a {}: da un valor de 0 a 1',
   'there are none; the robot file has them, e.g. parts.start = {} in its [wiring.NAME], for a sketch': 'no hay ninguno; se ponen en el archivo del robot, p. ej. parts.start = {} en su [wiring.NOMBRE], para un sketch', 'there are {}': 'hay {}',
   '"left", "right" or "front"': '"left", "right" o "front"', 'write "left", "right" or "front"': 'escribe "left", "right" o "front"',
   '"cut", "stuck", "clear" or "spiking"': '"cut", "stuck", "clear" o "spiking"', 'write "cut", "stuck", "clear", or "spiking" with share = 0.3': 'escribe "cut", "stuck", "clear", o "spiking" con share = 0.3',

@@ -6,7 +6,8 @@ import { readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { violations } from '../axe.mjs';
-import { folder, open, program, rare } from '../dashboard.mjs';
+import { parse, work } from '../../src/law.js';
+import { eventually, folder, open, program, rare } from '../dashboard.mjs';
 
 test('the experiment is run, and its verdict has the numbers of rumbo run; the session runs again byte for byte', async () => {
   const out = folder();
@@ -55,6 +56,131 @@ rare('changed parameters are part of the experiment, and STOP ends it without a 
     await page.keyboard.press('Space');
     await page.locator('#experiment-words', { hasText: 'stopped, no verdict' }).waitFor();
     await page.locator('#armed', { hasText: 'off' }).waitFor();
+  } finally {
+    await dashboard.close();
+  }
+});
+
+/** The equations that the control core has for people give what the robot computed: of the wheels' PWM and mode 1's speed. @param {import('playwright-core').Page} page */
+async function lawsHold(page) {
+  const { laws, parameters, series } = await page.evaluate(() => {
+    const rumbo = /** @type {any} */ (window).rumbo;
+    const rows = [...document.querySelectorAll('#parameters tr')].flatMap((row) => {
+      const [name, value] = [row.querySelector('td')?.textContent, row.querySelector('input')?.value];
+      return name && value ? [[name.trim(), Number(value)]] : [];
+    });
+    const names = ['left_pwm', 'left_p_pwm', 'left_i_pwm', 'left_d_pwm', 'left_feedforward_pwm', 'forward_ref_m_s', 'range_front_cm', 'reference_cm'];
+    return { laws: rumbo.modes().find((/** @type {any} */ { id }) => id === 1).laws, parameters: Object.fromEntries(rows), series: Object.fromEntries(names.map((name) => [name, rumbo.series(name)])) };
+  });
+  /** @param {string} name @param {number} t_s */
+  const at = (name, t_s) => {
+    const own = { range_front_m: 'range_front_cm', reference_m: 'reference_cm' }[name] ?? name;
+    const { t, y } = series[own];
+    return y[t.findLastIndex((/** @type {number} */ each) => each <= t_s)] / (own === name ? 1 : 100);
+  };
+  const lawOf = (/** @type {string} */ gives) => parse(laws.find((/** @type {any} */ [name]) => name === gives)[1]);
+  for (const [gives, near] of /** @type {[string, number][]} */ ([['forward_ref_m_s', 0.01], ['left_pwm', 10]])) {
+    const { t, y } = series[gives];
+    const off = t.flatMap((/** @type {number} */ t_s, /** @type {number} */ index) => {
+      const given = y[index];
+      const value = (/** @type {string} */ name) => (name === 'error_m' ? work(lawOf('error_m'), value) : parameters[name] ?? at(name, t_s));
+      const own = work(lawOf(gives), value);
+      return typeof given === 'number' && given !== 0 && Number.isFinite(own) ? [Math.abs(own - given)] : [];
+    });
+    // Telemetry and loops are of instants up to 40 ms apart: where the PWM jumps they differ.
+    const middle = off.sort((/** @type {number} */ one, /** @type {number} */ other) => one - other)[off.length >> 1];
+    assert.ok(off.length > 50 && middle < near, `${gives}: ${middle}, of ${off.length}`);
+  }
+}
+
+test('a kept run stays behind the curves and is compared with the next, which is explained; twenty seeds are driven beside it, and one becomes it', async () => {
+  const dashboard = await open(['lab', '--scenario', 'mode1', '--speed', '8', '--out', folder()]);
+  const { page } = dashboard;
+  const passed = () => page.locator('#experiment-words', { hasText: /passed|failed/ }).waitFor();
+  const shot = (/** @type {string} */ name) => process.env['SCREENSHOTS'] && page.screenshot({ path: `${process.env['SCREENSHOTS']}/${name}.png` });
+  try {
+    await page.waitForSelector('#connection.good');
+    await page.locator('#play').click();
+    await passed();
+    await lawsHold(page);
+    await page.locator('#keep-run').click();
+    await page.locator('#runs', { hasText: 'Runs: 1' }).waitFor();
+    // Later and harder than friction can brake.
+    for (const [name, value] of [['front_kp', '15'], ['front_brake_m_s2', '2']]) {
+      const gain = page.locator('#parameters tr', { hasText: name }).locator('input').first();
+      await gain.fill(value ?? '');
+      await gain.press('Enter');
+    }
+    await page.waitForFunction(() => ![...document.querySelectorAll('#parameters tr.pending')].length);
+    await page.getByRole('tab', { name: 'Law' }).click();
+    await page.locator('#play').click();
+    await page.locator('#law .law', { hasText: 'forward_ref_m_s' }).locator('.lit', { hasText: 'front_cruise_m_s' }).waitFor();
+    await passed();
+    await page.locator('#law button', { hasText: 'front_kp' }).first().click();
+    const slider = page.getByRole('slider', { name: 'front_kp' });
+    assert.deepEqual([await slider.getAttribute('min'), await slider.getAttribute('max')], ['3.75', '20']);
+    await shot('overlay');
+    await page.locator('#explain').click();
+    await page.locator('#why', { hasText: /friction slowed the robot by [\d.]+ m\/s²; front_brake_m_s2 counts on 2/ }).waitFor();
+    assert.deepEqual(await violations(page, '#event-section'), []);
+    await shot('explain');
+    await page.locator('#runs').click();
+    const cells = (/** @type {string} */ row) => page.locator('#comparison tr', { hasText: row }).first().locator('td').allInnerTexts();
+    await eventually(async () => assert.deepEqual((await cells('front_kp')).slice(1, 3), ['5', '15']));
+    const [, one, other] = (await cells('step 1: overshoot')).map(Number);
+    assert.ok(Number(other) > Number(one) + 1, 'it goes beyond the setpoint');
+    assert.deepEqual(await violations(page, '#runs-dialog'), []);
+    await shot('runs');
+    await page.locator('#seeds-start').click();
+    await page.locator('#seeds button', { hasText: /^7$/ }).waitFor();
+    assert.equal(await page.locator('#seeds button').count(), 21);
+    await page.locator('#play').click();
+    await page.waitForFunction(() => /** @type {any} */ (window).rumbo.shown()?.t_s > 2);
+    await shot('seeds');
+    await page.locator('#seeds button', { hasText: /^7$/ }).click();
+    await page.waitForFunction(() => /** @type {HTMLInputElement} */ (document.getElementById('seed')).value === '7');
+    await passed();
+    assert.deepEqual(dashboard.complaints, []);
+  } finally {
+    await dashboard.close();
+  }
+});
+
+test('the robot is carried on the map, its program does not notice, and the session runs again byte for byte', async () => {
+  const out = folder();
+  const dashboard = await open(['lab', '--scenario', 'mode1', '--out', out]);
+  const { page } = dashboard;
+  const shown = () => page.evaluate(() => {
+    const { truth, estimated } = /** @type {any} */ (window).rumbo.shown();
+    return { x_m: truth.x_m, y_m: truth.y_m, heading_rad: truth.heading_rad, believed_m: estimated.x_m };
+  });
+  try {
+    await page.waitForSelector('#connection.good');
+    await page.waitForFunction(() => /** @type {any} */ (window).rumbo.shown()?.truth);
+    const before = await shown();
+    const box = await page.locator('#map').boundingBox();
+    const at = async (/** @type {number} */ x_m, /** @type {number} */ y_m) => {
+      const [x = 0, y = 0] = await page.evaluate((to) => /** @type {any} */ (window).rumbo.worldOnMap(to), [x_m, y_m]);
+      return /** @type {const} */ ([(box?.x ?? 0) + x, (box?.y ?? 0) + y]);
+    };
+    const [from, to] = [await at(before.x_m, before.y_m), await at(before.x_m + 0.2, before.y_m + 0.1)];
+    await page.mouse.move(...from);
+    await page.mouse.down();
+    await page.mouse.move((from[0] + to[0]) / 2, to[1]);
+    await page.mouse.move(...to);
+    await page.mouse.up();
+    await eventually(async () => {
+      const after = await shown();
+      assert.ok(Math.abs(after.x_m - before.x_m - 0.2) < 0.03 && Math.abs(after.y_m - before.y_m - 0.1) < 0.03, JSON.stringify(after));
+      assert.ok(Math.abs(after.believed_m - before.believed_m) < 0.001, 'its odometry has not moved');
+    });
+    await page.locator('#on').click();
+    await page.locator('#end', { hasText: 'reached' }).waitFor();
+    assert.deepEqual(dashboard.complaints, []);
+    await page.locator('#simulation button[type="submit"]').click();
+    await page.locator('#events li', { hasText: 'reset: mode1' }).waitFor();
+    const carried = readdirSync(out).filter((name) => name.endsWith('.mcap')).sort()[0] ?? '';
+    assert.match(execFileSync(program(), ['rerun', join(out, carried)], { encoding: 'utf8' }), /: equal, \d{3,} bytes/);
   } finally {
     await dashboard.close();
   }

@@ -1,5 +1,5 @@
 // @ts-check
-/** The recordings: find one, open it, compare two, delete one. SCREENSHOT_RECORDINGS is a file for a picture. */
+/** The recordings: find one, open it, compare some, delete one. SCREENSHOT_RECORDINGS is a file for a picture. */
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readdirSync, symlinkSync, writeFileSync } from 'node:fs';
@@ -55,6 +55,8 @@ test('two are compared: a signal of both, their metrics, the difference', async 
   assert.ok(one && other && one > 1 && Math.abs(other - one - (difference ?? NaN)) < 0.011, settling.join());
   await page.locator('#compare-signal').selectOption('left_rpm');
   if (process.env['SCREENSHOT_RECORDINGS']) await page.screenshot({ path: process.env['SCREENSHOT_RECORDINGS'] });
+  await page.locator('#runs-dialog').getByRole('button', { name: 'Close' }).click();
+  await page.locator('#recordings').click();
 });
 
 test('one opens as a replay in a page of its own, beside the lab', async () => {

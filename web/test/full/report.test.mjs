@@ -1,6 +1,7 @@
 // @ts-check
 /** The report of `rumbo experiments` as a browser shows it: whole, without a word of complaint, on a screen, a phone and paper. */
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { execFileSync } from 'node:child_process';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -61,13 +62,17 @@ for (const language of ['en', 'es']) {
   });
 }
 
-test('the lab at a station says which command writes the report', async (context) => {
+test('the lab at a station makes the report, and says which command does', async (context) => {
   const { page, complaints, close } = await open(['lab', '--out', folder()], { locale: 'es-ES' });
   context.after(() => close());
   await page.waitForSelector('#connection.good');
   await page.getByRole('button', { name: 'Memoria' }).click();
-  assert.equal(await page.locator('#report-dialog code').textContent(), 'rumbo experiments --language es');
+  assert.equal(await page.locator('#report-dialog code').first().textContent(), 'rumbo experiments --language es');
   assert.equal(await page.locator('#report-dialog form').count(), 0);
+  await page.locator('#report-make').click();
+  const [saved] = await Promise.all([page.waitForEvent('download'), page.locator('#report-result button').click()]);
+  const made = readFileSync(await saved.path(), 'utf8');
+  assert.ok(saved.suggestedFilename() === 'report.html' && made.startsWith('<!doctype html>') && made.includes('lang="es"'), made.slice(0, 100));
   assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
   assert.deepEqual(complaints, []);
 });

@@ -79,6 +79,7 @@ pub(crate) struct ReplayArgs {
 Examples:
   rumbo export out/mode1-7.mcap
   rumbo export out/mode1-7.mcap --format svg --out figures
+  rumbo export out/mode1-7.mcap --format svg --signals range_front_m,left_pwm --from 2 --to 5
   rumbo export out/mode8-goals-1.mcap --ros2bag
 
 CSV: one row per telemetry frame, time and units in the names of the columns; empty where a value is not known, inf where a sonar
@@ -90,6 +91,15 @@ pub(crate) struct ExportArgs {
     /// What to write; may be repeated [default: csv and svg]
     #[arg(long = "format", value_enum, value_name = "FORMAT")]
     pub(crate) formats: Vec<Format>,
+    /// Signals of the figure instead of the usual ones, with commas between them; each unit gets a panel
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) signals: Vec<String>,
+    /// Only from this time on \[s\]; not of a bag
+    #[arg(long = "from", value_name = "S", conflicts_with = "ros2bag")]
+    pub(crate) from_s: Option<f64>,
+    /// Only up to this time \[s\]; not of a bag
+    #[arg(long = "to", value_name = "S", conflicts_with = "ros2bag")]
+    pub(crate) to_s: Option<f64>,
     /// A bag of ROS 2 instead, or besides: odometry, transforms, sonars, map, joints, battery, diagnostics, events
     #[arg(long)]
     pub(crate) ros2bag: bool,
@@ -101,6 +111,29 @@ pub(crate) struct ExportArgs {
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) overwrite: OverwriteArgs,
+}
+
+/// Options of `rumbo explain`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo explain out/mode1-7.mcap
+  rumbo explain out/mode1-7.mcap --from 2 --to 5 --json
+
+Each line says what the log shows; without ground truth, of a real robot, fewer causes can be told.")]
+pub(crate) struct ExplainArgs {
+    /// The log
+    #[arg(value_name = "LOG")]
+    pub(crate) log: PathBuf,
+    /// From this time on \[s\] [default: the begin]
+    #[arg(long = "from", value_name = "S")]
+    pub(crate) from_s: Option<f64>,
+    /// Up to this time \[s\] [default: the end]
+    #[arg(long = "to", value_name = "S")]
+    pub(crate) to_s: Option<f64>,
+    /// As JSON on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// What a log can be written as.

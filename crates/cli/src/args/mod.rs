@@ -10,7 +10,7 @@ mod values;
 pub(crate) use groups::{OverwriteArgs, ServeArgs, board};
 pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs};
 pub(crate) use logs::{
-    CompareArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
+    CompareArgs, ExplainArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
 };
 pub(crate) use runs::{
     CalibrateArgs, CheckArgs, ExperimentsArgs, GradeArgs, IdentifyArgs, LanguageName, RunArgs,
@@ -80,6 +80,8 @@ pub(crate) enum Command {
     Replay(ReplayArgs),
     /// Write a log as CSV or SVG
     Export(ExportArgs),
+    /// Say what explains a stretch of a log: what friction, sonars, wheels, link and limits did
+    Explain(ExplainArgs),
     /// Make a policy of a learned network: integers that the robot evaluates in mode 9
     ExportPolicy(ExportPolicyArgs),
     /// Run a recorded simulation again and compare it bit for bit
@@ -132,7 +134,7 @@ Examples:
   rumbo new sketch small --board uno
   rumbo run mode1 --robot uno --sketch small      the robot with an Arduino Uno
   rumbo new robot my_car --board uno --driver l298n-jumpers --pins left_forward=5,left_backward=6,right_forward=9,right_backward=10
-  rumbo new robot my_car --board nano --driver drv8833 --pins left_forward=3,...,line_left=A0,line_right=A1,button_start=2
+  rumbo new robot my_car --board nano --driver drv8833 --pins left_forward=3,...,line_left=A0,line_right=A1
   rumbo new robot my_car --like kit_elegoo_v3
   rumbo run free --robot my_car.toml --sketch my_sketch")]
 pub(crate) struct NewArgs {
@@ -145,15 +147,21 @@ pub(crate) struct NewArgs {
     /// Board: mega, uno or nano; a sketch's is a mega where it is left out
     #[arg(long, value_name = "BOARD", value_parser = values::board)]
     pub(crate) board: Option<&'static Board>,
-    /// Driver of the robot's motors: l298n, l298n-jumpers, l293d, tb6612, drv8833 or dir-pwm
+    /// Driver of the robot's motors: l298n, l298n-jumpers, l293d, motor-shield, tb6612, motor-shield-v2, drv8833 or dir-pwm
     #[arg(long, value_name = "DRIVER", value_parser = values::driver_named)]
     pub(crate) driver: Option<(&'static Driver, bool)>,
-    /// Pins of the robot's parts, e.g. left_forward=7,servo=9,front_echo=A1; line sensors from left to right, and other parts by a name
-    /// of yours: line_left=2,line_right=A1,line_dark=low,button_start=8,pot_speed=A3,led_front=13,buzzer=11; link_baud=38400 is the rate of a Bluetooth module
+    /// Pins of the robot's signals, e.g. left_forward=7,servo=9,front_echo=A1; line sensors from left to right, by names of yours,
+    /// as line_left=2,line_right=A1, and line_dark=low; link_baud=38400 is the rate of a Bluetooth module
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,
+    /// Wheels, 2 or 4; the two of a side are driven alike
+    #[arg(long, value_name = "COUNT", default_value_t = 2, value_parser = values::wheels)]
+    pub(crate) wheels: u8,
+    /// Parts of the robot at a pin or an address, e.g. start=button:8,remote=infrared:2,screen=ssd1306:0x3c
+    #[arg(long, value_name = "NAME=KIND:PLACE", value_delimiter = ',', value_parser = values::part)]
+    pub(crate) parts: Vec<[String; 3]>,
     /// Begin with the file of this robot (`rumbo list robots`), or with this example (`rumbo list sketches`)
-    #[arg(long, value_name = "ROBOT", conflicts_with_all = ["board", "driver", "pins"])]
+    #[arg(long, value_name = "ROBOT", conflicts_with_all = ["board", "driver", "pins", "parts", "wheels"])]
     pub(crate) like: Option<String>,
 }
 

@@ -60,7 +60,8 @@ pub(crate) struct RunArgs {
     /// Line of text typed on the board's USB port (Serial) at a time, e.g. 'go@2'; may be repeated
     #[arg(long, value_name = "TEXT@SECONDS", value_parser = usb_text, requires = "image")]
     pub(crate) usb: Vec<TimedText>,
-    /// Button pressed at a time, or switch or potentiometer put to a value from 0 to 1, e.g. 'start@2', 'speed=0.7@3'; may be
+    /// Button pressed at a time, switch or potentiometer put to a value from 0 to 1, or key of a remote control pressed,
+    /// e.g. 'start@2', 'speed=0.7@3', 'remote=ok@4'; may be
     /// repeated
     #[arg(long, value_name = "NAME@SECONDS", value_parser = press, requires = "image")]
     pub(crate) press: Vec<Vec<TimedText>>,

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
-use rumbo_experiment::files::new_robot::{ACCESSORIES, JUMPERS, LINK_BAUD, accessory};
+use rumbo_experiment::files::new_robot::{JUMPERS, LINE, LINK_BAUD};
 use rumbo_experiment::files::{Port, TimedText, check_line, parameters, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Driver};
@@ -43,16 +43,33 @@ pub(super) fn pin(text: &str) -> Result<(String, String), String> {
         .split_once('=')
         .ok_or("write it as left_forward=7,left_backward=8")?;
     let (signal, pin) = (signal.trim(), pin.trim());
-    if !SIGNALS.contains(&signal) && accessory(signal).is_none() && signal != LINK_BAUD {
+    if !SIGNALS.contains(&signal) && !signal.starts_with(LINE) && signal != LINK_BAUD {
         return Err(format!(
-            "no signal `{signal}`; there are {}, {LINK_BAUD}, and with a name of yours {}",
-            SIGNALS.join(", "),
-            ACCESSORIES
-                .map(|(prefix, _)| format!("{prefix}_NAME"))
-                .join(", ")
+            "no signal `{signal}`; there are {}, {LINK_BAUD}, and with a name of yours {LINE}NAME",
+            SIGNALS.join(", ")
         ));
     }
     Ok((signal.to_owned(), pin.to_owned()))
+}
+
+/// How many wheels a robot has.
+pub(super) fn wheels(text: &str) -> Result<u8, &'static str> {
+    match text {
+        "2" => Ok(2),
+        "4" => Ok(4),
+        _ => Err("must be 2, with a castor, or 4"),
+    }
+}
+
+/// A part of a robot with its kind and its place: `start=button:8`.
+pub(super) fn part(text: &str) -> Result<[String; 3], String> {
+    let split = text.split_once('=').and_then(|(name, rest)| {
+        let (kind, place) = rest.split_once(':')?;
+        Some([name, kind, place].map(|each| each.trim().to_owned()))
+    });
+    split
+        .filter(|words| words.iter().all(|word| !word.is_empty()))
+        .ok_or_else(|| "write it as start=button:8,screen=ssd1306:0x3c".to_owned())
 }
 
 /// Seconds of simulation or of a log per second.
@@ -90,21 +107,21 @@ pub(super) fn usb_text(text: &str) -> Result<TimedText, Failure> {
     timed_text(text).map(|timed| TimedText { port, ..timed })
 }
 
-/// A part and when it is pressed, or put to a value: `start@2`, `speed=0.7@3`.
+/// A part and when it is pressed, or put to a value: `start@2`, `speed=0.7@3`, `remote=ok@4`.
 pub(super) fn press(text: &str) -> Result<Vec<TimedText>, Failure> {
     let wrong = || {
-        Failure::input("write it as NAME@SECONDS, or NAME=VALUE@SECONDS with a value from 0 to 1")
+        Failure::input(
+            "write it as NAME@SECONDS, or NAME=VALUE@SECONDS with a value from 0 to 1 or a key of a remote control",
+        )
     };
     let TimedText { at_s, text, .. } = timed_text(text).map_err(|_| wrong())?;
     let Some((name, value)) = text.split_once('=') else {
         return Ok(pressed(&text, None, at_s));
     };
-    let value = value
-        .trim()
-        .parse()
-        .ok()
-        .filter(|value| (0.0..=1.0).contains(value));
-    Ok(pressed(name.trim(), Some(value.ok_or_else(wrong)?), at_s))
+    match (name.trim(), value.trim()) {
+        ("", _) | (_, "") => Err(wrong()),
+        (name, value) => Ok(pressed(name, Some(value), at_s)),
+    }
 }
 
 /// What ends typed lines.

@@ -1,15 +1,17 @@
-//! Tuning from the dashboard of the lab: the search of `rumbo tune`, for a page, on some of the cores.
+//! Work for the dashboard of the lab, on some of the cores: the search of `rumbo tune`, and the experiment with many seeds.
 
-use super::as_json;
+use super::{as_json, seeds};
 use crate::calibrate::rewritten;
-use rayon::ThreadPoolBuilder;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup, unknown};
 use rumbo_experiment::tune::{Objective, Over, Plan, Request, Search, tunable};
+use rumbo_report::text::Language;
 use rumbo_station::{NotTuned, Tuner};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Display;
+use std::sync::{Mutex, PoisonError};
 
 /// Most runs that a page may ask for: more than any scenario's default.
 const MOST_RUNS: u32 = 200_000;
@@ -38,6 +40,13 @@ struct Asked {
     aims: String,
     runs: Option<u32>,
     seed: u64,
+}
+
+/// The report of `rumbo experiments`, in a language: `en` or `es`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Report {
+    report: String,
 }
 
 /// Makes searches for the robot of a lab.
@@ -113,6 +122,34 @@ impl OfLab {
         }))
     }
 
+    /// Runs every experiment, and writes them up.
+    fn report(&self, language: &str, progress: &(dyn Fn(f64) + Sync)) -> Result<Value, NotTuned> {
+        let language = match language {
+            "es" => Language::Spanish,
+            _ => Language::English,
+        };
+        let request = rumbo_report::Request {
+            seed: 1,
+            overrides: Overrides {
+                robot: self.robot.clone(),
+                ..Overrides::default()
+            },
+            ..rumbo_report::Request::default()
+        };
+        let plan = rumbo_report::Plan::new(&Library::new(), request).map_err(refused)?;
+        let (all_s, done_s) = (plan.simulated_s(), Mutex::new(0.0));
+        let stamp = plan.stamp(language);
+        let done = |run_s: f64| {
+            let mut done_s = done_s.lock().unwrap_or_else(PoisonError::into_inner);
+            *done_s += run_s;
+            progress(*done_s / all_s);
+        };
+        let data = pool()?.install(|| plan.run(done));
+        let (page, _) = rumbo_report::html(&data.map_err(refused)?, language).map_err(refused)?;
+        let page = stamp.put_on(page);
+        Ok(json!({ "page": String::from_utf8_lossy(&page) }))
+    }
+
     fn plan(&self, asked: Asked) -> Result<Plan, NotTuned> {
         let library = Library::new();
         let names = self.names(&library);
@@ -175,11 +212,16 @@ impl Tuner for OfLab {
         progress: &(dyn Fn(f64) + Sync),
         goes_on: &(dyn Fn() -> bool + Sync),
     ) -> Result<Value, NotTuned> {
+        if let Ok(asked) = serde_json::from_str(request) {
+            let names = self.names(&Library::new());
+            return seeds::drive(asked, (&self.robot, &names), threads(), progress, goes_on);
+        }
+        if let Ok(Report { report }) = serde_json::from_str(request) {
+            return self.report(&report, progress);
+        }
         let asked = serde_json::from_str(request).map_err(refused)?;
         let plan = self.plan(asked)?;
-        let pool = ThreadPoolBuilder::new().num_threads(threads());
-        let pool = pool.build().map_err(refused)?;
-        let outcome = pool.install(|| plan.run(progress, goes_on));
+        let outcome = pool()?.install(|| plan.run(progress, goes_on));
         let outcome = outcome.map_err(refused)?;
         let file = match outcome.is_kept() {
             true => {
@@ -193,6 +235,12 @@ impl Tuner for OfLab {
         answer["robot_file"] = json!(file);
         Ok(answer)
     }
+}
+
+/// Threads of its own for one request.
+fn pool() -> Result<ThreadPool, NotTuned> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads());
+    pool.build().map_err(refused)
 }
 
 /// All cores but one, which the session has.

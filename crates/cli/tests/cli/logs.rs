@@ -215,6 +215,57 @@ fn a_log_has_what_the_control_loops_add_up_to() {
 }
 
 #[test]
+fn a_figure_has_the_signals_and_the_time_that_were_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    rumbo(&["run", "mode5", "--out", "."], folder.path());
+    let export = |more: &[&str]| {
+        let all = [&["export", "mode5-1.mcap"], more].concat();
+        rumbo(&all, folder.path())
+    };
+    let picture = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(export(&["--format", "svg"]).status.code(), Some(0));
+    // Each wheel has its reference in its own colour.
+    let whole = picture("mode5-1.svg");
+    assert!(whole.contains("class=\"i1 d\"") && whole.contains("class=\"i2 d\""));
+    let some = [
+        "--signals",
+        "left_pwm,right_pwm",
+        "--from",
+        "1",
+        "--to",
+        "2",
+        "--force",
+    ];
+    assert_eq!(export(&some).status.code(), Some(0));
+    let part = picture("mode5-1.svg");
+    assert!(part.contains("of 255") && !part.contains("rpm"), "{part}");
+    let table = picture("mode5-1.csv");
+    let times = table
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').next().unwrap());
+    assert!(
+        times
+            .map(|t_s| t_s.parse::<f64>().unwrap())
+            .all(|t_s| (1.0..=2.0).contains(&t_s))
+    );
+    for (wrong, said) in [
+        (
+            ["--signals", "left_pmw"],
+            "left_pmw: no signal that is plotted",
+        ),
+        (["--from", "1e4"], "holds nothing from"),
+    ] {
+        let refused = export(&wrong);
+        assert!(
+            text(&refused.stderr).contains(said),
+            "{}",
+            text(&refused.stderr)
+        );
+    }
+}
+
+#[test]
 fn a_log_is_exported_with_units_and_compared_with_another() {
     let folder = tempfile::tempdir().unwrap();
     let done = rumbo(

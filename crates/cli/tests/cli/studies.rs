@@ -64,6 +64,17 @@ fn a_sweep_writes_tables_a_page_and_logs_and_its_runs_are_those_of_run() {
 }
 
 #[test]
+fn the_page_of_a_sweep_names_the_limits_that_were_missed() {
+    let (folder, text) = out("sweep-missed");
+    let axes = ["sweep", "mode1", "front_kp=3,5", "--runs", "1"];
+    let done = rumbo(&[&axes[..], &["--language", "en", "--out", &text]].concat());
+    assert!(done.status.success(), "{}", stderr(&done));
+    let page = read(&folder, "index.html");
+    assert!(page.contains("step2: Settling time: 1.") && page.contains("(1/1)"));
+    assert!(page.contains("107 → 30 → 50 cm"));
+}
+
+#[test]
 fn a_sweep_that_was_cut_off_goes_on_to_the_same_bytes() {
     let (whole, whole_text) = out("sweep-whole");
     assert!(sweep(&whole_text, &[]).status.success());

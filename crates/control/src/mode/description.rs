@@ -30,6 +30,8 @@ pub struct Description {
     pub rigs: Rigs,
     /// The parameters it uses, the most important ones first. A parameter of no mode belongs to the robot.
     pub parameters: &'static [Group],
+    /// What its control loops compute, from the outer to the inner ones, as far as signals show it.
+    pub laws: &'static [&'static [Law]],
     /// The plots to show, in this order.
     pub plots: &'static [Plot],
     /// The metrics of its runs, besides those of every run.
@@ -148,6 +150,34 @@ impl Group {
     }
 }
 
+/// An equation of a control law, for people to see with the numbers of an instant. Names are those of parameters and of
+/// signals, in SI units; there are `+ - * /`, `min`, `max`, `abs`, `sqrt`, `sign` and `clamp(x, least, most)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Law {
+    /// The signal that it gives, or a name that the equations after it have.
+    pub gives: &'static str,
+    /// What it adds up.
+    pub is: &'static str,
+    /// Parameters within the terms that the equation does not spell out.
+    pub gains: &'static [ParamId],
+}
+
+impl Law {
+    /// An equation with all its parameters.
+    pub const fn new(gives: &'static str, is: &'static str) -> Self {
+        Self {
+            gives,
+            is,
+            gains: &[],
+        }
+    }
+
+    /// One whose terms have these parameters within.
+    pub const fn with(self, gains: &'static [ParamId]) -> Self {
+        Self { gains, ..self }
+    }
+}
+
 /// A plot that a mode may show by default; the page decides its curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plot {
@@ -236,6 +266,40 @@ pub(super) const WHEEL_RAMPS: Group = Group::new(
     "ramps of the wheels",
     &[ParamId::WheelAccel, ParamId::WheelDecel],
 );
+/// From the robot's motion to its wheels ([`crate::odometry`]).
+pub(super) const TWIST: &[Law] = &[
+    Law::new(
+        "left_ref_rad_s",
+        "(forward_ref_m_s - yaw_ref_rad_s * base_m / 2) / radius_left_m",
+    ),
+    Law::new(
+        "right_ref_rad_s",
+        "(forward_ref_m_s + yaw_ref_rad_s * base_m / 2) / radius_right_m",
+    ),
+];
+/// Of each wheel ([`crate::drive`]).
+pub(super) const SPEED: &[Law] = &[
+    Law::new(
+        "left_pwm",
+        "clamp(left_feedforward_pwm + left_p_pwm + left_i_pwm + left_d_pwm, -255, 255)",
+    )
+    .with(&[
+        ParamId::SpeedKpLeft,
+        ParamId::SpeedKiLeft,
+        ParamId::SpeedKdLeft,
+        ParamId::Velocity,
+    ]),
+    Law::new(
+        "right_pwm",
+        "clamp(right_feedforward_pwm + right_p_pwm + right_i_pwm + right_d_pwm, -255, 255)",
+    )
+    .with(&[
+        ParamId::SpeedKpRight,
+        ParamId::SpeedKiRight,
+        ParamId::SpeedKdRight,
+        ParamId::Velocity,
+    ]),
+];
 /// Of [`crate::motion::Turn`].
 pub(super) const TURNS: Group = Group::new(
     "turns on the spot",

@@ -18,7 +18,7 @@
 //! it can drive at mode 1's speed and square up at the same time: 119 -> 30 cm in 2.2 s from 20 degrees askew instead
 //! of 3.4, within a degree (`rumbo run mode2 --runs 20`). Derivation and figures: docs/theory/front_align.md.
 
-use super::description::{FEEDFORWARD, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
+use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states};
 use super::front_distance::{self, FrontDistance};
 use super::{Action, Description, Group, MetricGroup, Mode, Plot, SetpointError};
 use crate::ahead::{Ahead, AheadState};
@@ -57,6 +57,7 @@ pub const DESCRIPTION: Description = Description {
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
+    laws: &[TWIST, SPEED],
     plots: &[Plot::Distance, Plot::Heading, Plot::Wheels],
     metrics: &[MetricGroup::Alignment],
 };

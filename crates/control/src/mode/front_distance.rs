@@ -18,10 +18,10 @@
 //! A sonar with many outliers slows the robot, then stops it ([`crate::unrest`]). Derivation, margins and figures:
 //! docs/theory/front_distance.md.
 
-use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
 use super::{
-    Action, Description, Group, MAX_DISTANCE_M, MIN_DISTANCE_M, MetricGroup, Mode, Plot, Reference,
-    ReferenceKind, SetpointError,
+    Action, Description, Group, Law, MAX_DISTANCE_M, MIN_DISTANCE_M, MetricGroup, Mode, Plot,
+    Reference, ReferenceKind, SetpointError,
 };
 use crate::ahead::drivable_m;
 use crate::estimate::Estimate;
@@ -49,6 +49,7 @@ pub const DESCRIPTION: Description = Description {
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
+    laws: &[LAWS, TWIST, SPEED],
     plots: &[Plot::Distance, Plot::Wheels, Plot::Pwm],
     metrics: &[MetricGroup::DistanceSteps],
 };
@@ -71,6 +72,16 @@ pub(super) const APPROACH: Group = Group::new(
         ParamId::FrontTolerance,
     ],
 );
+
+/// [`FrontDistance::speed_m_s`]; a sonar in doubt makes it slower.
+const LAWS: &[Law] = &[
+    Law::new("error_m", "range_front_m - reference_m"),
+    Law::new(
+        "forward_ref_m_s",
+        "sign(error_m) * max(0.03, min(front_cruise_m_s, \
+         sqrt(2 * front_brake_m_s2 * abs(error_m)), front_kp * abs(error_m)))",
+    ),
+];
 
 states! {
     /// States of mode 1.

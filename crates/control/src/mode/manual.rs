@@ -6,7 +6,7 @@
 //!
 //! The report moves open loop only; by speed the two wheels keep their ratio on any floor.
 
-use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{Action, Description, Group, Level, MetricGroup, Mode, Movement, Plot, Takes};
 use crate::estimate::Estimate;
 use crate::params::{ParamId, Params};
@@ -30,6 +30,7 @@ pub const DESCRIPTION: Description = Description {
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
+    laws: &[SPEED],
     plots: &[Plot::Wheels, Plot::Pwm, Plot::Heading],
     metrics: &[
         MetricGroup::Movement,

@@ -24,7 +24,8 @@ mod movement;
 
 pub use active::{ActiveMode, ModeId};
 pub use description::{
-    Description, Group, MetricGroup, Plot, Reference, ReferenceKind, StateDescription, Takes, Way,
+    Description, Group, Law, MetricGroup, Plot, Reference, ReferenceKind, StateDescription, Takes,
+    Way,
 };
 pub use movement::{Level, Movement};
 
@@ -61,8 +62,10 @@ pub struct Action {
     pub heading_ref_rad: f32,
     /// It has reached its reference.
     pub reached: bool,
-    /// It has found that its goal cannot be reached.
+    /// It has stopped trying to reach its goal.
     pub unreachable: bool,
+    /// It did so because its time was over, not because every way was tried.
+    pub out_of_time: bool,
     /// The present pose becomes the origin.
     pub new_origin: bool,
 }

@@ -7,7 +7,7 @@
 //! every mode, and the robot stops at the goal by its odometry, where it stays until another one is given.
 //! docs/theory/policy.md.
 
-use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::mission::Watch;
 use super::{Action, Description, MetricGroup, Mode, Plot, waypoints};
 use crate::estimate::Estimate;
@@ -30,6 +30,7 @@ pub const DESCRIPTION: Description = Description {
     takes: None,
     rigs: Rigs::of(&[Rig::Final]),
     parameters: &[SPEED_LOOPS, FEEDFORWARD, WHEEL_RAMPS],
+    laws: &[SPEED],
     plots: &[Plot::Position, Plot::Wheels, Plot::Distance],
     metrics: &[MetricGroup::Journey],
 };

@@ -15,7 +15,7 @@
 //! corrects both wheels against each other so that their mean stays as commanded, and returns the robot to its line,
 //! not only to its heading. Figures: docs/theory/straight_line.md.
 
-use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
 use super::{
     Action, Description, Group, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference, ReferenceKind,
     SetpointError,
@@ -48,6 +48,7 @@ pub const DESCRIPTION: Description = Description {
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
+    laws: &[TWIST, SPEED],
     plots: &[Plot::Wheels, Plot::Heading, Plot::Position],
     metrics: &[MetricGroup::Drift],
 };

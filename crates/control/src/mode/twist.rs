@@ -6,7 +6,7 @@
 //! Both wheels follow their speed loops ([`crate::drive`]), ramps included. Where a wheel would have to turn faster than
 //! [`MAX_WHEEL_RAD_S`], both are slowed by the same factor: the arc stays.
 
-use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
 use super::{Action, Description, MAX_WHEEL_RAD_S, Mode, Plot, SetpointError, Takes, within};
 use crate::estimate::Estimate;
 use crate::math::abs;
@@ -27,6 +27,7 @@ pub const DESCRIPTION: Description = Description {
     takes: Some(Takes::Velocity),
     rigs: Rigs::ANY,
     parameters: &[WHEEL_RAMPS, SPEED_LOOPS, FEEDFORWARD],
+    laws: &[TWIST, SPEED],
     plots: &[Plot::Wheels, Plot::Heading, Plot::Pwm],
     metrics: &[],
 };

@@ -24,10 +24,10 @@
 
 #[cfg(not(target_arch = "avr"))]
 use super::WallTerms;
-use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
 use super::{
-    Action, DEFAULT_WALL_M, Description, Group, MAX_WALL_M, MIN_WALL_M, MetricGroup, Mode, Plot,
-    Reference, ReferenceKind, SetpointError,
+    Action, DEFAULT_WALL_M, Description, Group, Law, MAX_WALL_M, MIN_WALL_M, MetricGroup, Mode,
+    Plot, Reference, ReferenceKind, SetpointError,
 };
 use crate::beside::Beside;
 use crate::estimate::Estimate;
@@ -69,6 +69,7 @@ pub const DESCRIPTION: Description = Description {
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
+    laws: &[LAWS, TWIST, SPEED],
     plots: &[Plot::Distance, Plot::Heading, Plot::Wheels],
     metrics: &[MetricGroup::Wall],
 };
@@ -80,6 +81,20 @@ pub(super) const REFERENCE: Reference = Reference::commanded(
     MAX_WALL_M,
     DEFAULT_WALL_M,
 );
+
+/// The angle is limited more where the wall's is poorly known, the yaw rate where the inner wheel would stick.
+pub(super) const LAWS: &[Law] = &[
+    Law::new(
+        "heading_ref_rad",
+        "clamp(distance_p_rad + distance_i_rad, -wall_heading_limit_rad, wall_heading_limit_rad)",
+    )
+    .with(&[ParamId::WallKp, ParamId::WallKi, ParamId::WallCruise]),
+    Law::new(
+        "yaw_ref_rad_s",
+        "clamp(heading_p_rad_s + heading_d_rad_s, -wall_yaw_limit_rad_s, wall_yaw_limit_rad_s)",
+    )
+    .with(&[ParamId::WallHeadingKp, ParamId::WallDamping]),
+];
 
 states! {
     /// States of modes 3 and 4.

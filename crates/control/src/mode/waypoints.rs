@@ -17,7 +17,9 @@
 
 mod route;
 
-use super::description::{FEEDFORWARD, LINES, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
+use super::description::{
+    FEEDFORWARD, LINES, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states,
+};
 use super::{Action, Description, Group, MetricGroup, Mode, Plot, Reference, ReferenceKind, Takes};
 use crate::estimate::Estimate;
 use crate::math::wrap_angle;
@@ -57,6 +59,7 @@ pub const DESCRIPTION: Description = Description {
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
+    laws: &[TWIST, SPEED],
     plots: &[Plot::Position, Plot::Heading, Plot::Wheels],
     metrics: &[MetricGroup::Route],
 };

@@ -8,7 +8,7 @@
 //! docs/theory/wheel_speed.md. Worst of 20 simulated robots against the real one: 0 -> 60 rpm in 0.32 s instead of 3.7,
 //! 0 -> -100 rpm in 0.44 s instead of 5.3 (`rumbo run mode5 --runs 20`).
 
-use super::description::{FEEDFORWARD, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
     Action, Description, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference, ReferenceKind,
     SetpointError,
@@ -31,6 +31,7 @@ pub const DESCRIPTION: Description = Description {
     takes: None,
     rigs: Rigs::ANY,
     parameters: &[SPEED_LOOPS, FEEDFORWARD, WHEEL_RAMPS],
+    laws: &[SPEED],
     plots: &[Plot::Wheels, Plot::Pwm],
     metrics: &[MetricGroup::SpeedSteps],
 };

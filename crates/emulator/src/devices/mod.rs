@@ -38,7 +38,7 @@ pub use programming::Fuses;
 use programming::Programming;
 use schedule::Source;
 pub(crate) use shared::Core;
-pub use signal::{Cause, Event, Input, Level, Output, Pwm};
+pub use signal::{Cause, Event, Input, Level, Output, Pwm, Reply, Transfer};
 use spi::Spi;
 use system::System;
 use timer::Timer;
@@ -152,6 +152,14 @@ impl Devices {
     pub fn watch(&mut self, pins: &[Pin]) {
         let bits = pins.iter().map(|pin| 1 << pin.number());
         self.core.watched = bits.fold(0, |all, bit: u128| all | bit);
+    }
+
+    /// The run pauses where a byte begins on the two-wire bus, whose lines may have pull-ups.
+    pub(crate) fn watch_two_wire(&mut self, pull_ups: bool, cycle: u64) {
+        self.core.bus_watched = true;
+        for pin in self.core.model.twi.into_iter().filter(|_| pull_ups) {
+            self.input(cycle, Input::Pin(pin, Some(true)));
+        }
     }
 
     /// The cycle in which an interrupt was requested last: flag raised and enabled, whether the CPU serves it or not.
@@ -277,6 +285,7 @@ impl Devices {
                     core.note(Some(change), cycle);
                 }
             }
+            Input::TwoWire(reply) => self.twi.answer(core, reply, cycle),
             Input::Reset(cause) => self.reset(cause, cycle),
         }
     }
@@ -303,7 +312,7 @@ impl Devices {
             usart.reset(&mut self.core);
         }
         self.spi.reset(&mut self.core);
-        self.twi.reset(&mut self.core);
+        self.twi.reset(&mut self.core, cycle);
         self.analog.reset(&mut self.core);
         self.eeprom.reset();
         self.core.schedule.set(Source::Eeprom, None);

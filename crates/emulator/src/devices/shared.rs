@@ -25,6 +25,8 @@ pub(crate) struct Core {
     /// Pins whose outputs pause the run, by their number.
     pub(super) watched: u128,
     pub(super) noticed: bool,
+    /// The bytes of the two-wire bus pause the run.
+    pub(super) bus_watched: bool,
     /// Levels since the last call, while they are recorded.
     pub(super) levels: Option<Vec<Level>>,
     /// The system clock has another divisor.
@@ -52,6 +54,7 @@ impl Core {
         if let Event::Pin(pin, _) | Event::Duty { pin, .. } = event {
             self.noticed |= self.watched >> pin.number() & 1 != 0;
         }
+        self.noticed |= matches!(event, Event::TwoWire(_));
         let cycle = self.clock.time(cycle);
         self.outputs.push(Output { cycle, event });
     }

@@ -37,8 +37,32 @@ pub enum Input {
         /// Against ground [V], 0 to 5.
         volts: f64,
     },
+    /// What a device on the two-wire bus does with the byte that [`Event::TwoWire`] told of, until that byte is over.
+    TwoWire(Reply),
     /// The chip is reset.
     Reset(Cause),
+}
+
+/// What a device on the two-wire bus does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reply {
+    /// It acknowledges the byte that it gets.
+    Acknowledge,
+    /// It sends this one.
+    Byte(u8),
+}
+
+/// A byte that begins on the two-wire bus, with the chip as the master.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Transfer {
+    /// A device is addressed: its address in the upper seven bits, and whether it is to send.
+    Address(u8),
+    /// The addressed device gets this byte.
+    Write(u8),
+    /// The addressed device is to send one.
+    Read,
+    /// The transmission ends: a stop.
+    End,
 }
 
 /// Something to the outside, at its cycle.
@@ -71,6 +95,9 @@ pub enum Event {
         /// What it does there.
         pwm: Option<Pwm>,
     },
+    /// A byte begins on the two-wire bus; told to whoever asked ([`crate::chip::Chip::watch_two_wire`]). The run pauses, for
+    /// [`Input::TwoWire`]: without one nobody answers.
+    TwoWire(Transfer),
     /// The chip was reset, and starts over.
     Reset(Cause),
 }

@@ -2,7 +2,8 @@
 //!
 //! Both lines are pulled down or released; a released line is high through the pull-ups of the board. What another
 //! drives counts: an acknowledgement, bits read, a clock held low, arbitration lost. With nothing connected an address is
-//! not acknowledged.
+//! not acknowledged. A device beyond the chip need not follow the edges: it is told of each byte that begins
+//! ([`Event::TwoWire`]), and its [`Reply`] is put on SDA bit by bit.
 //!
 //! # Theory of operation
 //!
@@ -21,6 +22,7 @@
 use super::Core;
 use super::ports::{Force, Pin};
 use super::schedule::Source;
+use super::signal::{Event, Reply, Transfer};
 use crate::registers::{TWAMR, TWAR, TWBR, TWCR, TWDR, TWSR};
 
 const TWINT: u8 = 0x80;
@@ -87,6 +89,9 @@ pub(super) struct Twi {
     /// The lines are released, not pulled down.
     clock: bool,
     line: bool,
+    /// What a device does with the byte on its way, and whether it pulls SDA down for it.
+    reply: Option<Reply>,
+    pulled: bool,
     /// The cycle in which it lost its clock.
     stopped: Option<u64>,
 }
@@ -109,6 +114,8 @@ impl Default for Twi {
             taken: 0,
             clock: true,
             line: true,
+            reply: None,
+            pulled: false,
             stopped: None,
         }
     }
@@ -174,6 +181,8 @@ impl Twi {
             self.flag = false;
             self.status = NOTHING;
             (self.clock, self.line) = (true, true);
+            self.reply = None;
+            self.pull(core, cycle);
         } else if value & TWINT != 0 && self.action.is_none() {
             // The flag, cleared by a one, sets the next action going.
             self.flag = false;
@@ -221,11 +230,55 @@ impl Twi {
         match self.action {
             Some(Action::Start) if !(clock(core) && line(core)) => {}
             Some(Action::Start) => self.next = Some(cycle + self.half_period()),
-            Some(_) => {
+            Some(action) => {
+                self.announce(core, action, cycle);
                 self.next = Some(cycle);
                 self.happen(core, cycle);
             }
             None => {}
+        }
+    }
+
+    /// Tells the devices on the bus of the byte that begins.
+    fn announce(&mut self, core: &mut Core, action: Action, cycle: u64) {
+        self.reply = None;
+        if !core.bus_watched {
+            return;
+        }
+        let transfer = match action {
+            Action::Write(WRITTEN) => Transfer::Write(self.data),
+            Action::Write(_) => Transfer::Address(self.data),
+            Action::Read => Transfer::Read,
+            Action::Stop => Transfer::End,
+            Action::Start | Action::RepeatedStart => return,
+        };
+        core.emit(cycle, Event::TwoWire(transfer));
+    }
+
+    /// A device replies to the byte that has begun.
+    pub(super) fn answer(&mut self, core: &mut Core, reply: Reply, cycle: u64) {
+        if matches!(self.action, Some(Action::Write(_) | Action::Read)) {
+            self.reply = Some(reply);
+            self.pull(core, cycle);
+        }
+    }
+
+    /// A device pulls SDA down for a zero of its own, or lets it go.
+    fn pull(&mut self, core: &mut Core, cycle: u64) {
+        let bit = self.moves.saturating_sub(1) / 2;
+        let pulled = match self.reply {
+            Some(Reply::Acknowledge) => bit == 8 && matches!(self.action, Some(Action::Write(_))),
+            Some(Reply::Byte(byte)) => {
+                bit < 8 && self.action == Some(Action::Read) && byte >> (7 - bit) & 1 == 0
+            }
+            None => false,
+        };
+        if pulled != self.pulled {
+            self.pulled = pulled;
+            let change = core
+                .ports
+                .set_outside(core.model.twi[1], Some(!pulled), cycle);
+            core.note(Some(change), cycle);
         }
     }
 
@@ -283,6 +336,7 @@ impl Twi {
             self.drive_pins(core, cycle);
         }
         self.moves += 1;
+        self.pull(core, cycle);
         let lost = self.has_lost(core, action);
         if last || lost {
             self.end(core, action, lost, cycle);
@@ -306,6 +360,8 @@ impl Twi {
     fn end(&mut self, core: &mut Core, action: Action, lost: bool, cycle: u64) {
         self.action = None;
         self.next = None;
+        self.reply = None;
+        self.pull(core, cycle);
         if lost {
             self.status = ARBITRATION_LOST;
             (self.clock, self.line) = (true, true);
@@ -386,7 +442,9 @@ impl Twi {
         self.reschedule(core);
     }
 
-    pub(super) fn reset(&mut self, core: &mut Core) {
+    pub(super) fn reset(&mut self, core: &mut Core, cycle: u64) {
+        self.reply = None;
+        self.pull(core, cycle);
         *self = Twi::default();
         self.reschedule(core);
     }

@@ -5,7 +5,7 @@ use crate::common;
 use common::*;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::devices::ports::{Drive, Pin};
-use rumbo_emulator::devices::{Event, Input, Output};
+use rumbo_emulator::devices::{Event, Input, Output, Reply, Transfer};
 
 const TWBR: u16 = 0xB8;
 const TWSR: u16 = 0xB9;
@@ -246,4 +246,72 @@ fn whoever_sends_a_zero_against_a_one_has_the_bus() {
     assert_eq!(on_bus(&mut chip, 0), (3 * HALF, 0x38));
     assert_eq!(chip.devices().drive(sda()), Drive::Floating);
     assert_eq!(chip.devices().drive(scl()), Drive::Floating);
+}
+
+#[test]
+fn a_device_is_told_of_each_byte_and_its_reply_is_on_the_lines() {
+    let mut chip = at_100_khz();
+    chip.watch_two_wire(true);
+    let told = |chip: &mut Chip| {
+        let outputs = chip.take_outputs().into_iter();
+        let told = outputs.filter_map(|Output { event, .. }| match event {
+            Event::TwoWire(transfer) => Some(transfer),
+            _ => None,
+        });
+        told.collect::<Vec<_>>()
+    };
+    // What is written, what the device is told, what it replies, and the status.
+    let ack = Some(Reply::Acknowledge);
+    let bytes = [
+        (0x42, Transfer::Address(0x42), ack, 0x18),
+        (0x99, Transfer::Write(0x99), ack, 0x28),
+        (0x98, Transfer::Write(0x98), None, 0x30),
+    ];
+    on_bus(&mut chip, TWSTA);
+    for (byte, transfer, reply, status) in bytes {
+        told(&mut chip);
+        write(&mut chip, TWDR, byte);
+        let start = chip.cpu().cycle();
+        write(&mut chip, TWCR, TWINT | TWEN);
+        assert_eq!(told(&mut chip), [transfer]);
+        if let Some(reply) = reply {
+            chip.input(start, Input::TwoWire(reply));
+        }
+        chip.record_levels();
+        assert_eq!(read_at(&mut chip, TWCR, start + 18 * HALF) & TWINT, TWINT);
+        assert_eq!(read(&mut chip, TWSR), status);
+        let low = |at: u64| {
+            let levels = chip.clone().take_levels().into_iter();
+            let before =
+                levels.filter(|level| level.pin == sda() && level.cycle <= start + at * HALF);
+            before
+                .max_by_key(|level| level.cycle)
+                .is_some_and(|level| !level.high)
+        };
+        assert_eq!(low(17), reply.is_some());
+        assert!(!low(19));
+    }
+    on_bus(&mut chip, TWSTA);
+    write(&mut chip, TWDR, 0x43);
+    write(&mut chip, TWCR, TWINT | TWEN);
+    let start = chip.cycle();
+    chip.input(start, Input::TwoWire(Reply::Acknowledge));
+    read_at(&mut chip, TWCR, start + 20 * HALF);
+    assert_eq!(read(&mut chip, TWSR), 0x40);
+    told(&mut chip);
+    for (reply, data, command, status) in [
+        (Reply::Byte(0x35), 0x35, TWEA, 0x50),
+        (Reply::Byte(0x80), 0x80, 0, 0x58),
+    ] {
+        write(&mut chip, TWCR, TWINT | TWEN | command);
+        assert_eq!(told(&mut chip), [Transfer::Read]);
+        let start = chip.cycle();
+        chip.input(start, Input::TwoWire(reply));
+        read_at(&mut chip, TWCR, start + 20 * HALF);
+        assert_eq!(
+            [read(&mut chip, TWDR), read(&mut chip, TWSR)],
+            [data, status]
+        );
+    }
+    assert!(chip.devices().level(sda()), "the device has let it go");
 }

@@ -425,7 +425,9 @@ fn one(
                     named = Some((message.t_s, Named::Fault(fault)));
                     end_s = message.t_s + ROLLED_OUT_S;
                 }
-                EventKind::Reached | EventKind::Unreachable if message.t_s > at_s => {
+                EventKind::Reached | EventKind::Unreachable | EventKind::GaveUp { .. }
+                    if message.t_s > at_s =>
+                {
                     end_s = end_s.min(message.t_s + ARRIVED_S);
                 }
                 _ => {}

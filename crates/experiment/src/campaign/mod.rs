@@ -169,7 +169,7 @@ pub fn judge_worlds(runs: &[&Metrics]) -> Vec<Finding> {
     let (reachable, walled_in): (Vec<&Metrics>, Vec<&Metrics>) =
         runs.iter().partition(|run| is(run, "reachable"));
     let reached = part(&reachable, "reached");
-    let given_up = part(&reachable, "unreachable_reported");
+    let given_up = part(&reachable, "given_up_wrongly");
     let blocked = part(runs, "blocked");
     let touched: Vec<_> = runs
         .iter()
@@ -181,7 +181,8 @@ pub fn judge_worlds(runs: &[&Metrics]) -> Vec<Finding> {
         .fold(0.0, f64::max);
     let in_time = walled_in
         .iter()
-        .filter(|run| is(run, "unreachable_reported") && value(run, "time_s") <= UNREACHABLE_S)
+        .filter(|run| is(run, "unreachable_reported") || is(run, "gave_up"))
+        .filter(|run| value(run, "time_s") <= UNREACHABLE_S)
         .count();
     let at_least = |share: f64| format!("at least {}", percent(share));
     let [median, high] = ways(&reachable);
@@ -198,12 +199,7 @@ pub fn judge_worlds(runs: &[&Metrics]) -> Vec<Finding> {
             share_of(reached, reachable.len()),
             reached as f64 >= REACHED * reachable.len() as f64,
         ),
-        Finding::new(
-            "of the others: called unreachable",
-            "",
-            given_up.to_string(),
-            true,
-        ),
+        Finding::new("of the others: given up", "", given_up.to_string(), true),
         median,
         high,
         Finding::new(
@@ -219,7 +215,7 @@ pub fn judge_worlds(runs: &[&Metrics]) -> Vec<Finding> {
             fastest_m_s < CONTACT_M_S,
         ),
         Finding::new(
-            "unreachable goals called so within 180 s",
+            "unreachable goals given up within 180 s",
             "all",
             format!("{in_time} of {}", walled_in.len()),
             in_time == walled_in.len(),
@@ -331,17 +327,14 @@ mod tests {
         let never = run(&[("reachable", 0.0), ("reached", 0.0), ("time_s", f64::NAN)]);
         assert_eq!(
             missed(&[never]),
-            ["unreachable goals called so within 180 s"]
+            ["unreachable goals given up within 180 s"]
         );
         let late = run(&[
             ("reachable", 0.0),
             ("unreachable_reported", 1.0),
             ("time_s", 181.0),
         ]);
-        assert_eq!(
-            missed(&[late]),
-            ["unreachable goals called so within 180 s"]
-        );
+        assert_eq!(missed(&[late]), ["unreachable goals given up within 180 s"]);
     }
 
     #[test]

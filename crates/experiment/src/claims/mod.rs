@@ -23,7 +23,7 @@
 //!
 //! | keys | does |
 //! |---|---|
-//! | `expect = "text"`, `within_s`, `port` | waits until the port has sent it, in what no step has read yet |
+//! | `expect = "text"`, `within_s`, `port` | waits until the port has sent it, in what no step has read yet; `"displays"` show it |
 //! | `send = "text"`, `line_ending`, `port` | types a line |
 //! | `press = "start"`, `to` | presses a part of the robot's file, or puts it to a value |
 //! | `pin`, `apply_v = 2.5` or `release = true` | connects a pin from outside, or takes that away |
@@ -95,7 +95,7 @@ enum Port {
 enum Act {
     Expect(Port, String, f64),
     Send(Port, Vec<u8>),
-    Press(String, Option<f64>),
+    Press(String, Option<String>),
     Apply(String, Option<f64>),
     Level(String, bool, f64),
     Judge(Pulses),

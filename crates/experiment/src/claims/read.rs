@@ -5,8 +5,9 @@ use crate::batch::TRUE;
 use crate::files::read::{Allowed, Placed, Source, Table};
 use crate::files::{
     Bounds, FileError, Library, Overrides, bounded, did_you_mean, near_or_all, read_bounds,
+    read_value,
 };
-use rumbo_sim::mega::{CONSOLES, USB};
+use rumbo_sim::mega::{ON_PINS, PARTS, USB};
 use rumbo_wire::LineEnding;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -17,7 +18,6 @@ const SEED: Allowed = Allowed::new(0.0, 4_294_967_295.0, "count");
 const WITHIN: Allowed = Allowed::new(0.0, 3_600.0, "s");
 const OVER: Allowed = Allowed::new(0.01, 3_600.0, "s");
 const VOLTS: Allowed = Allowed::new(0.0, 5.0, "V");
-const SHARE: Allowed = Allowed::new(0.0, 1.0, "");
 /// How long a step waits where it does not say.
 const USUAL_S: f64 = 1.0;
 /// The keys that select what a step does.
@@ -146,7 +146,7 @@ fn read_act(table: &Table<'_, '_>, key: &str) -> Option<Act> {
         }
         "press" => {
             let part = table.required_text(key, "the name of a part").value;
-            Some(Act::Press(part, table.number("to", SHARE)))
+            Some(Act::Press(part, read_value(table)))
         }
         "apply_v" => Some(Act::Apply(
             read_pin(table)?,
@@ -211,9 +211,10 @@ fn read_port(table: &Table<'_, '_>) -> Port {
     match (value.as_str(), value.parse::<u8>()) {
         ("usb", _) => Port::Usart(USB),
         ("link", _) => Port::Link,
-        (_, Ok(number)) if number < CONSOLES - 1 => Port::Usart(number),
+        ("displays", _) => Port::Usart(PARTS),
+        (_, Ok(number)) if number < ON_PINS => Port::Usart(number),
         _ => {
-            let remedy = "must be \"usb\", \"link\" for the Bluetooth module, or a USART, 0 to 3";
+            let remedy = "must be \"usb\", \"link\" for the Bluetooth module, \"displays\", or a USART, 0 to 3";
             table.complain("port", line, &value, remedy);
             Port::Link
         }

@@ -2,7 +2,7 @@
 
 use super::{Act, Port, Pulses, Step, Suite, Test};
 use crate::batch::{Driver, Pulse, Robot, TRUE};
-use crate::files::{Bounds, FileError, Setup, unknown};
+use crate::files::{Bounds, FileError, Setup, takes, unknown};
 use rumbo_emulator::devices::ports::Pin;
 use rumbo_sim::mega::firmware::Firmware;
 use rumbo_sim::mega::{CONSOLES, ON_PINS, PARTS};
@@ -53,10 +53,16 @@ impl Suite {
                     let none = firmware.find(pin).is_none();
                     none.then(|| unknown("pin", pin, known))
                 }
-                Act::Press(part, _) => {
+                Act::Press(name, value) => {
                     let worked = firmware.parts().iter().filter(|part| part.kind.is_worked());
                     let known: Vec<&str> = worked.map(|part| part.name.as_str()).collect();
-                    (!known.contains(&part.as_str())).then(|| unknown("part", part, known))
+                    let part = firmware.parts().iter().find(|part| part.name == *name);
+                    match part.filter(|part| part.kind.is_worked()) {
+                        Some(part) => takes(part, value.as_deref().unwrap_or("on"))
+                            .err()
+                            .map(FileError::Setting),
+                        None => Some(unknown("part", name, known)),
+                    }
                 }
                 Act::Expect(Port::Link, ..) | Act::Send(Port::Link, _)
                     if firmware.link_usart().is_none() =>
@@ -127,13 +133,13 @@ impl Under {
                 Ok(())
             }
             Act::Press(part, value) => {
-                let put = |robot: &mut Robot, value: f64| {
+                let put = |robot: &mut Robot, value: &str| {
                     robot.type_in(PARTS, format!("{part}={value}\n").as_bytes());
                 };
-                put(&mut self.robot, value.unwrap_or(1.0));
+                put(&mut self.robot, value.as_deref().unwrap_or("on"));
                 if value.is_none() {
                     self.pass(PRESSED_S)?;
-                    put(&mut self.robot, 0.0);
+                    put(&mut self.robot, "off");
                 }
                 Ok(())
             }
@@ -191,6 +197,7 @@ impl Under {
         let name = match port {
             Port::Link => "the Bluetooth module".to_owned(),
             Port::Usart(0) => "Serial (USB)".to_owned(),
+            Port::Usart(PARTS) => "what the displays show".to_owned(),
             Port::Usart(number) => format!("Serial{number}"),
         };
         self.wait(

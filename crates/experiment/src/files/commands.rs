@@ -19,7 +19,7 @@
 //! | `move = "turn_left"` with `duty = 0.4` or `speed_rpm = 60` | mode `manual`, a basic movement |
 //! | the same with `duty = 0`, `ramp_to_duty = 0.4`, `ramp_s = 12` | open loop, the duty moves by one count of PWM at a time |
 //! | `parameter = "name"` and `value = 1.5` | set a control parameter |
-//! | `press = "start"`, with `to = 0.7` | press a button, or put a switch or a potentiometer |
+//! | `press = "start"`, with `to = 0.7` or `to = "ok"` | press a button, put a switch or a potentiometer, press a key of a remote control |
 //! | `text = "F"` or `usb = "F"`, `line_ending = "none"` | type a line: [`typed`] |
 
 use super::error::FileError;

@@ -5,7 +5,7 @@ use super::{Port, ScenarioFile, TimedText, WorldFile};
 use rumbo_control::SonarId;
 use rumbo_plant::plant::Rig;
 use rumbo_sim::wire_fault::Wire;
-use rumbo_sim::wiring::Part;
+use rumbo_sim::wiring::{Part, PartKind};
 
 /// Reports a goal that only a random world could provide.
 pub(super) fn has_its_goal(scenario: &ScenarioFile, world: &WorldFile) -> Result<(), FileError> {
@@ -27,10 +27,17 @@ pub(super) fn has_its_parts(
 ) -> Result<(), FileError> {
     let worked = || parts.iter().filter(|part| part.kind.is_worked());
     let asked = texts.iter().filter(|timed| timed.port == Port::Parts);
-    let mut names = asked.filter_map(|timed| Some(timed.text.split_once('=')?.0));
-    let missing = names.find(|name| !worked().any(|part| part.name == *name));
-    let Some(missing) = missing else {
-        return Ok(());
+    let mut asked = asked.filter_map(|timed| timed.text.split_once('='));
+    let missing = asked.find_map(|(name, value)| {
+        let Some(part) = worked().find(|part| part.name == name) else {
+            return Some(Err(name));
+        };
+        takes(part, value).err().map(Ok)
+    });
+    let missing = match missing {
+        None => return Ok(()),
+        Some(Ok(why)) => return Err(FileError::Setting(format!("{whose}: {why}"))),
+        Some(Err(missing)) => missing,
     };
     let known: Vec<&str> = worked().map(|part| part.name.as_str()).collect();
     let known = match &known[..] {
@@ -38,8 +45,30 @@ pub(super) fn has_its_parts(
         known => format!("there are {}", known.join(", ")),
     };
     Err(FileError::Setting(format!(
-        "{whose}: `{missing}` is to be pressed, and the wiring has no button, switch or potentiometer of that name: {known}"
+        "{whose}: `{missing}` is to be pressed, and the wiring has no button, switch, potentiometer or remote control of that name: {known}"
     )))
+}
+
+/// Whether a part can be put to a value; if not, why.
+pub(crate) fn takes(part: &Part, value: &str) -> Result<(), String> {
+    let name = &part.name;
+    if part.kind == PartKind::Infrared {
+        let keys: Vec<&str> = part.keys.iter().map(|(key, _)| *key).collect();
+        return match keys.contains(&value) {
+            true => Ok(()),
+            false => Err(format!(
+                "`{name}` is a remote control, and {value} none of its keys: {}, e.g. {name}={}",
+                keys.join(", "),
+                keys[0]
+            )),
+        };
+    }
+    match (value, value.parse()) {
+        ("on" | "off", _) | (_, Ok(0.0..=1.0)) => Ok(()),
+        _ => Err(format!(
+            "`{name}` is put to {value}: give a value from 0 to 1"
+        )),
+    }
 }
 
 /// Reports a sonar that is to fail and that the rig lacks.

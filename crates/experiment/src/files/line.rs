@@ -11,6 +11,7 @@
 //! right = { pin = "A1", x_m = 0.08, y_m = -0.015, analogue = true, dark = "low" }
 //! ```
 
+use super::parts::is_free;
 use super::pin::read_pin;
 use super::read::{Allowed, Table};
 use super::value::PLACE;
@@ -68,9 +69,8 @@ fn read_line(table: &Table<'_, '_>) -> Line {
     Line { points_m, width_m }
 }
 
-/// The line sensors of a wiring.
-pub(super) fn read_line_sensors(table: &Table<'_, '_>, wiring: &Wiring) -> Vec<LineSensor> {
-    let mut sensors: Vec<LineSensor> = Vec::new();
+/// Reads the line sensors into a wiring.
+pub(super) fn read_line_sensors(table: &Table<'_, '_>, wiring: &mut Wiring) {
     for key in table.keys() {
         let own = table.table(key.value);
         let analogue = own.flag("analogue").is_some_and(|flag| flag.value);
@@ -93,26 +93,8 @@ pub(super) fn read_line_sensors(table: &Table<'_, '_>, wiring: &Wiring) -> Vec<L
         });
         own.finish();
         let Some(pin) = pin else { continue };
-        let others = wiring
-            .pins
-            .iter()
-            .map(|(name, taken)| (name.as_str(), *taken));
-        let others = others.chain(
-            wiring
-                .parts
-                .iter()
-                .map(|part| (part.name.as_str(), part.pin)),
-        );
-        let others = others.chain(
-            sensors
-                .iter()
-                .map(|sensor| (sensor.name.as_str(), sensor.pin)),
-        );
-        if let Some((other, _)) = others.into_iter().find(|(_, taken)| *taken == pin) {
-            let remedy = format!("{other} is on that pin already: give each its own");
-            table.complain(key.value, key.line, &wiring.board.shown(pin), &remedy);
-        }
-        sensors.push(LineSensor {
+        is_free(&own, "pin", pin, wiring);
+        wiring.line_sensors.push(LineSensor {
             name: key.value.to_owned(),
             at_m,
             pin,
@@ -121,5 +103,4 @@ pub(super) fn read_line_sensors(table: &Table<'_, '_>, wiring: &Wiring) -> Vec<L
         });
     }
     table.finish();
-    sensors
 }

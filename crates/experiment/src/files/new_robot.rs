@@ -14,29 +14,14 @@ const ALIKE: f64 = 0.5;
 /// Name of the wiring and the rig.
 const OWN: &str = "own";
 
-/// What is at pins besides motors, sonars and links, by how its name begins: the key of a robot file.
-pub const ACCESSORIES: [(&str, &str); 6] = [
-    ("line", "line"),
-    ("button", "button"),
-    ("switch", "switch"),
-    ("pot", "potentiometer"),
-    ("led", "led"),
-    ("buzzer", "buzzer"),
-];
+/// How the name of a line sensor begins among the pins, before a name of its own.
+pub const LINE: &str = "line_";
 /// Says in place of a line sensor that a dark floor is `low` or `high`.
 const DARK: &str = "line_dark";
 /// Rate of the Bluetooth module in place of a pin \[baud\].
 pub const LINK_BAUD: &str = "link_baud";
 /// Line sensors are so far apart \[m\].
 const PITCH_M: f64 = 0.015;
-
-/// What an accessory is and what it is called: `line_left` is a line sensor `left`.
-#[must_use]
-pub fn accessory(signal: &str) -> Option<(&'static str, &str)> {
-    let (prefix, name) = signal.split_once('_').unwrap_or((signal, signal));
-    let (_, kind) = ACCESSORIES.iter().find(|(known, _)| *known == prefix)?;
-    Some((kind, name))
-}
 
 /// What a robot is made of.
 #[derive(Clone, Debug)]
@@ -51,6 +36,10 @@ pub struct NewRobot {
     pub jumpers: bool,
     /// Signals and their pins, as they were given: numbers or names.
     pub pins: Vec<(String, String)>,
+    /// It has four wheels, the two of a side driven alike.
+    pub four_wheels: bool,
+    /// Parts: name, kind, and pin or address.
+    pub parts: Vec<[String; 3]>,
 }
 
 /// The signals that a robot with such a driver needs to drive, for people; `-` stands for both ways of a direction input.
@@ -74,6 +63,12 @@ fn meaning(signal: &str, driver: &Driver) -> String {
     let (side, input) = signal.split_once('_').unwrap_or(("", signal));
     match input {
         "enable" => format!("PWM of the {side} motor"),
+        "forward" if driver.direction == Direction::Motor => {
+            format!("motor of the {side} wheel: FORWARD drives it forward")
+        }
+        "backward" if driver.direction == Direction::Motor => {
+            format!("motor of the {side} wheel: FORWARD drives it backward")
+        }
         "forward" if driver.direction == Direction::One => {
             format!("direction of the {side} motor: high is forward")
         }
@@ -92,6 +87,69 @@ fn meaning(signal: &str, driver: &Driver) -> String {
         "standby" => "low switches both motors off".into(),
         _ => signal.into(),
     }
+}
+
+/// The plant of a robot on two wheels and a castor.
+const TWO_WHEELS: &str = "
+# Measure it. What is left out, motors, friction and sonars, is nominal and not identified.
+[plant.body]
+base_m = 0.13           # between the middles of the tyres
+length_m = 0.20
+width_m = 0.15
+centre_ahead_m = 0.03
+
+[plant.wheels.left]
+radius_m = 0.0325
+
+[plant.wheels.right]
+radius_m = 0.0325
+";
+
+/// The usual car with four wheels: between the middles of the tyres, between the axles \[m\], its mass \[kg\], the radius of a
+/// wheel \[m\], and the friction of rubber on a floor.
+const TRACK_M: f64 = 0.13;
+const AXLES_M: f64 = 0.115;
+const MASS_KG: f64 = 1.1;
+const RADIUS_M: f64 = 0.0325;
+const FRICTION: f64 = 0.6;
+
+/// The plant of a car on four wheels, as two: those of a side turn alike, and slide aside as it turns.
+///
+/// Turning on the spot at w each tyre slides aside at w l/2 and along at v - w b/2, and its friction points against that. The
+/// moments balance where along is to aside as l to b: v = w/2 (b + l^2/b), so the wheels act as far apart as b + l^2/b. The force along,
+/// of a side 0.6 m g/2 l / sqrt(l^2 + b^2), loads its wheels.
+fn four_wheels() -> String {
+    let base_m = TRACK_M + AXLES_M * AXLES_M / TRACK_M;
+    let aside = AXLES_M / (AXLES_M * AXLES_M + TRACK_M * TRACK_M).sqrt();
+    let scrub_n_m = FRICTION * MASS_KG * 9.81 / 2.0 * aside * RADIUS_M;
+    let wheel = format!(
+        "radius_m = {RADIUS_M}\ncoulomb_forward_n_m = 0.016\ncoulomb_backward_n_m = 0.016\nviscous_n_m_s = 0.003\n"
+    );
+    format!(
+        "
+# Four wheels, the two of a side as one: by track b = {TRACK_M} m, axles l = {AXLES_M} m apart, mass and a friction of {FRICTION}.
+# Nothing is identified: measure it, `rumbo identify` fits it.
+[plant.body]
+mass_kg = {MASS_KG}
+base_m = {base_m:.3}          # b + l^2/b: turning, the tyres slide
+length_m = 0.25
+width_m = 0.15
+centre_ahead_m = 0.0
+
+[plant.motor]           # two side by side
+resistance_ohm = 2.0
+inductance_h = 0.00075
+inertia_kg_m2 = 0.0028
+
+[plant.floor]
+rolling_n_m = 0.02
+scrub_n_m = {scrub_n_m:.3}       # {FRICTION} m g/2 l / sqrt(l^2 + b^2) times the radius
+
+[plant.wheels.left]
+{wheel}
+[plant.wheels.right]
+{wheel}"
+    )
 }
 
 impl NewRobot {
@@ -150,19 +208,27 @@ impl NewRobot {
             put(format!("{:24}# {about}", format!("{signal} = {value}")));
         }
         if let Some((_, baud)) = self.pins.iter().find(|(signal, _)| signal == LINK_BAUD) {
-            let _ = writeln!(
-                text,
+            put(format!(
                 "{:24}# rate of the Bluetooth module",
                 format!("link_baud = {baud}")
-            );
+            ));
         }
-        text.push_str(&self.accessories());
-        let _ = write!(
-            text,
-            "\n# Measure it. What is left out, motors, friction and sonars, is nominal and not identified.\n[plant.body]\n\
-             base_m = 0.13           # between the middles of the tyres\nlength_m = 0.20\nwidth_m = 0.15\ncentre_ahead_m = 0.03\n\n\
-             [plant.wheels.left]\nradius_m = 0.0325\n\n[plant.wheels.right]\nradius_m = 0.0325\n"
-        );
+        for [name, kind, place] in &self.parts {
+            let number = match place.strip_prefix("0x") {
+                Some(digits) => u8::from_str_radix(digits, 16),
+                None => place.parse(),
+            };
+            let place = match number {
+                Ok(_) => place.clone(),
+                Err(_) => format!("{place:?}"),
+            };
+            put(format!("parts.{name} = {{ {kind} = {place} }}"));
+        }
+        text.push_str(&self.line_sensors());
+        text.push_str(&match self.four_wheels {
+            true => four_wheels(),
+            false => TWO_WHEELS.to_owned(),
+        });
         if given("left_encoder") || given("right_encoder") {
             text.push_str(
                 "\n# A disc on the wheel; of a sensor on the motor's shaft edges_per_motor_turn, and gear_ratio in [plant.motor].\n\
@@ -172,50 +238,31 @@ impl NewRobot {
         text
     }
 
-    /// Line sensors, from left to right as they were given, and what a person works or looks at.
-    fn accessories(&self) -> String {
-        let pin = |pin: &str| match pin.parse::<u8>() {
-            Ok(_) => pin.to_owned(),
-            Err(_) => format!("{pin:?}"),
-        };
-        let given = |of_line: bool| {
-            let given = self.pins.iter().filter(|(signal, _)| signal != DARK);
-            given.filter_map(move |(signal, at)| {
-                let (kind, name) = accessory(signal)?;
-                ((kind == "line") == of_line).then(|| (kind, name, pin(at), at))
-            })
-        };
-        let dark = self.pins.iter().find(|(signal, _)| signal == DARK);
-        let dark = dark.map_or_else(String::new, |(_, level)| format!(", dark = {level:?}"));
+    /// Line sensors, from left to right as they were given.
+    fn line_sensors(&self) -> String {
+        let named = |signal: &str| self.pins.iter().find(|(own, _)| own == signal);
+        let dark = named(DARK).map_or_else(String::new, |(_, level)| format!(", dark = {level:?}"));
+        let sensors = self.pins.iter().filter(|(signal, _)| signal != DARK);
+        let sensors = sensors.filter_map(|(signal, pin)| Some((signal.strip_prefix(LINE)?, pin)));
+        let sensors: Vec<_> = sensors.collect();
         let mut text = String::new();
-        let sensors = given(true).count();
-        for (index, (_, name, pin, at)) in given(true).enumerate() {
-            if index == 0 {
-                let _ = write!(
-                    text,
-                    "\n# Sensors that look down, from left to right: measure where they are. Over a dark floor they are high, unless\n\
-                     # dark = \"low\".\n[wiring.{OWN}.line]\n"
-                );
-            }
-            let y_m = PITCH_M * (0.5 * (sensors as f64 - 1.0) - index as f64);
-            let analogue = if at.starts_with(['A', 'a']) {
-                ", analogue = true"
-            } else {
-                ""
+        if !sensors.is_empty() {
+            let _ = write!(
+                text,
+                "\n# Sensors that look down, from left to right: measure where they are. Over a dark floor they are high, unless\n\
+                 # dark = \"low\".\n[wiring.{OWN}.line]\n"
+            );
+        }
+        for (index, (name, pin)) in sensors.iter().enumerate() {
+            let y_m = PITCH_M * (0.5 * (sensors.len() as f64 - 1.0) - index as f64);
+            let (pin, analogue) = match pin.parse::<u8>() {
+                Ok(_) => ((*pin).clone(), ""),
+                Err(_) => (format!("{pin:?}"), ", analogue = true"),
             };
             let _ = writeln!(
                 text,
                 "{name} = {{ pin = {pin}, x_m = 0.09, y_m = {y_m:.4}{analogue}{dark} }}"
             );
-        }
-        for (index, (kind, name, pin, _)) in given(false).enumerate() {
-            if index == 0 {
-                let _ = write!(
-                    text,
-                    "\n# To press, to turn and to look at.\n[wiring.{OWN}.parts]\n"
-                );
-            }
-            let _ = writeln!(text, "{name} = {{ {kind} = {pin} }}");
         }
         text
     }

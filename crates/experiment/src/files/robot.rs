@@ -10,7 +10,7 @@
 //! [wiring.final]         # signal = pin of the board
 //! front_echo = 3
 //! left_enable = "high"   # an input of the driver that a jumper holds
-//! parts.start = { button = 8 }          # or switch, potentiometer, led, buzzer
+//! parts.start = { button = 8 }          # and others: [`super::parts`]
 //! battery = { pin = 54, ratio = 2.0 }   # a divider to A0, where one is wired
 //! [parameters]           # control parameters that differ from their defaults
 //! [plant.battery]        # physics; what is left out is nominal
@@ -20,7 +20,8 @@
 use super::error::{FileError, did_you_mean};
 use super::line::read_line_sensors;
 use super::parameters::read_parameters;
-use super::pin::{Wired, read_pin, read_wired};
+use super::parts::read_parts;
+use super::pin::{Wired, read_wired};
 use super::read::{Allowed, Source, Table};
 use super::value::ANGLE;
 use rumbo_control::params::ParamId;
@@ -28,7 +29,7 @@ use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Rig};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Direction, Driver};
-use rumbo_sim::wiring::{Divider, Part, PartKind, SIGNALS, Wiring, is_driver_input};
+use rumbo_sim::wiring::{Divider, Motor, SIGNALS, Wiring, is_driver_input};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Position of a sonar on the body.
@@ -220,6 +221,9 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
     let baud = table.number("link_baud", BAUD);
     wiring.link_baud = baud.map(|baud| baud as u32);
     for signal in SIGNALS {
+        if read_motor(table, signal, &mut wiring) {
+            continue;
+        }
         let Some((line, wired)) = read_wired(table, signal, board, false) else {
             continue;
         };
@@ -244,68 +248,56 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
         wiring.pins.insert(signal.to_owned(), number);
     }
     read_parts(&table.table("parts"), &mut wiring);
-    wiring.line_sensors = read_line_sensors(&table.table("line"), &wiring);
+    read_line_sensors(&table.table("line"), &mut wiring);
     suits_driver(table, &wiring);
+    for (signal, pin) in &wiring.pins {
+        if wiring.shield_pins().any(|taken| taken == *pin) {
+            table.complain_here(&format!(
+                "{signal} = {}: the motor shield has that pin; take another one",
+                board.shown(*pin)
+            ));
+        }
+    }
     table.finish();
     wiring
 }
 
-/// The table of parts: `start = { button = 8 }`.
-fn read_parts(table: &Table<'_, '_>, wiring: &mut Wiring) {
-    let board = wiring.board;
-    for key in table.keys() {
-        let (name, line) = (key.value.to_owned(), key.line);
-        let own = table.table(&name);
-        let given: Vec<PartKind> = PartKind::ALL
-            .into_iter()
-            .filter(|kind| own.has(kind.name()))
-            .collect();
-        let [kind] = given[..] else {
-            let kinds = PartKind::ALL.map(PartKind::name).join(", ");
-            own.complain_here(&format!(
-                "needs one of {kinds}, with its pin, e.g. {name} = {{ button = 8 }}"
+/// Reads the motor of a shield that a wheel is on, if the driver is a shield and the signal tells of one.
+fn read_motor(table: &Table<'_, '_>, signal: &str, wiring: &mut Wiring) -> bool {
+    let Some(shield) = wiring.driver.shield else {
+        return false;
+    };
+    let (side, way) = signal.split_once('_').unwrap_or_default();
+    let side = ["left", "right"].iter().position(|known| *known == side);
+    let (Some(side), true) = (side, ["forward", "backward"].contains(&way)) else {
+        return false;
+    };
+    let name = match table.is_text(signal) {
+        true => table.text(signal),
+        false => None,
+    };
+    let motor = name.as_ref().and_then(|name| shield.motor(&name.value));
+    if let Some(number) = motor {
+        let reversed = way == "backward";
+        if wiring.motors[side]
+            .replace(Motor { number, reversed })
+            .is_some()
+        {
+            table.complain_here(&format!(
+                "{signal}: a wheel is on one motor; name it {signal} alone if its FORWARD drives {way}"
             ));
-            continue;
-        };
-        let analogue = kind == PartKind::Potentiometer;
-        let pin = read_pin(&own, kind.name(), board, analogue);
-        let to_supply = own.text("to").is_some_and(|to| {
-            if !["gnd", "5v"].contains(&to.value.as_str())
-                || !matches!(kind, PartKind::Button | PartKind::Switch)
-            {
-                own.complain(
-                    "to",
-                    to.line,
-                    &to.value,
-                    "must be \"gnd\" or \"5v\", of a button or a switch",
-                );
-            }
-            to.value == "5v"
-        });
-        own.finish();
-        let Some(pin) = pin else { continue };
-        let taken = wiring
-            .pins
-            .iter()
-            .find(|(_, taken)| **taken == pin)
-            .map(|(other, _)| other.clone());
-        let part = wiring
-            .parts
-            .iter()
-            .find(|part| part.pin == pin)
-            .map(|part| part.name.clone());
-        if let Some(other) = taken.or(part) {
-            let remedy = format!("{other} is on that pin already: give each its own");
-            table.complain(&name, line, &board.shown(pin), &remedy);
         }
-        wiring.parts.push(Part {
-            name,
-            kind,
-            pin,
-            to_supply,
-        });
+    } else if table.has(signal) {
+        let (line, value) = name.map_or((0, "a number".into()), |name| (name.line, name.value));
+        table.value(signal);
+        table.complain(
+            signal,
+            line,
+            &value,
+            "must be a motor of the shield, \"M1\" to \"M4\"",
+        );
     }
-    table.finish();
+    true
 }
 
 /// Reports inputs of the driver that it lacks, and inputs that are missing.

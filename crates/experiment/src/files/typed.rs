@@ -66,10 +66,10 @@ pub fn check_line(text: &str) -> Result<(), &'static str> {
     }
 }
 
-/// What is done with a part: pressed for a moment, or put to a value from 0 to 1.
+/// What is done with a part: pressed for a moment, or put to a value, a number from 0 to 1 or the key of a remote control.
 #[must_use]
-pub fn pressed(name: &str, value: Option<f64>, at_s: f64) -> Vec<TimedText> {
-    let put = |at_s: f64, value: f64| TimedText {
+pub fn pressed(name: &str, value: Option<&str>, at_s: f64) -> Vec<TimedText> {
+    let put = |at_s: f64, value: &str| TimedText {
         at_s,
         text: format!("{name}={value}"),
         ending: LineEnding::None,
@@ -77,15 +77,26 @@ pub fn pressed(name: &str, value: Option<f64>, at_s: f64) -> Vec<TimedText> {
     };
     match value {
         Some(value) => vec![put(at_s, value)],
-        None => vec![put(at_s, 1.0), put(at_s + PRESSED_S, 0.0)],
+        None => vec![put(at_s, "on"), put(at_s + PRESSED_S, "off")],
     }
+}
+
+/// What a part is put to: a number, or the key of a remote control.
+pub(crate) fn read_value(table: &Table<'_, '_>) -> Option<String> {
+    if table.is_text(VALUE) {
+        return table.text(VALUE).map(|key| key.value);
+    }
+    let value = table.number(VALUE, Allowed::new(0.0, 9.0, ""));
+    value.map(|value| value.to_string())
 }
 
 /// The command that has the key [`PRESS`].
 pub(super) fn read_press(table: &Table<'_, '_>, at_s: f64) -> Vec<TimedText> {
-    let value = table.number(VALUE, Allowed::new(0.0, 1.0, ""));
+    let value = read_value(table);
     let name = table.text(PRESS);
-    name.map_or_else(Vec::new, |name| pressed(&name.value, value, at_s))
+    name.map_or_else(Vec::new, |name| {
+        pressed(&name.value, value.as_deref(), at_s)
+    })
 }
 
 /// The line of a command that has a key of [`PORTS`].

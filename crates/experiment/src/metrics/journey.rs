@@ -15,7 +15,7 @@ const GOAL_ERROR_OF_WAY: f64 = 0.02;
 /// Events about the goal, with the time of their arrival at the station.
 struct Verdict {
     t_s: f64,
-    reached: bool,
+    is: EventKind,
 }
 
 /// The robot's first event about a goal commanded at `from_s`.
@@ -27,13 +27,16 @@ fn verdict(trace: &Trace, from_s: f64) -> Option<Verdict> {
     messages
         .filter_map(|message| match message.what {
             FromRobot::Event(event) => match event.kind {
-                EventKind::Reached => Some((message.t_s, true)),
-                EventKind::Unreachable => Some((message.t_s, false)),
+                EventKind::Reached | EventKind::Unreachable | EventKind::GaveUp { .. } => {
+                    Some(Verdict {
+                        t_s: message.t_s,
+                        is: event.kind,
+                    })
+                }
                 _ => None,
             },
             _ => None,
         })
-        .map(|(t_s, reached)| Verdict { t_s, reached })
         .next()
 }
 
@@ -64,14 +67,19 @@ pub(super) fn journey(setup: &Setup, worst_contact_m_s: f64, trace: &Trace, metr
     let left_m = samples.last().map_or(f64::NAN, |last| {
         (goal_m[0] - last.x_m).hypot(goal_m[1] - last.y_m)
     });
-    let said_reached = verdict.as_ref().is_some_and(|verdict| verdict.reached);
+    let said = verdict.as_ref().map(|verdict| verdict.is);
+    let said_reached = said == Some(EventKind::Reached);
     let reached = said_reached && left_m <= GOAL_ERROR_M + GOAL_ERROR_OF_WAY * path_m;
     put("reachable", share(shortest.is_some()));
     put("blocked", share(*blocked));
     put("reached", share(reached));
+    let unreachable = said == Some(EventKind::Unreachable);
+    let gave_up = matches!(said, Some(EventKind::GaveUp { .. }));
+    put("unreachable_reported", share(unreachable));
+    put("gave_up", share(gave_up));
     put(
-        "unreachable_reported",
-        share(verdict.as_ref().is_some_and(|verdict| !verdict.reached)),
+        "given_up_wrongly",
+        share((unreachable || gave_up) && shortest.is_some()),
     );
     put(
         "time_s",
@@ -179,8 +187,25 @@ mod tests {
         let [_, walled_in] = setups();
         let metrics = metrics(&walled_in, [1.0, 0.0], EventKind::Unreachable);
         assert_eq!(
-            ["reachable", "reached", "unreachable_reported"].map(|name| metrics[name]),
-            [0.0, 0.0, 1.0]
+            [
+                "reachable",
+                "reached",
+                "unreachable_reported",
+                "given_up_wrongly"
+            ]
+            .map(|name| metrics[name]),
+            [0.0, 0.0, 1.0, 0.0]
         );
+    }
+
+    #[test]
+    fn a_robot_whose_time_is_over_has_not_called_its_goal_unreachable() {
+        for (setup, wrongly) in setups().iter().zip([1.0, 0.0]) {
+            let metrics = metrics(setup, [0.1, 0.0], EventKind::GaveUp { after_s: 5 });
+            assert_eq!(
+                ["unreachable_reported", "gave_up", "given_up_wrongly"].map(|name| metrics[name]),
+                [0.0, 1.0, wrongly]
+            );
+        }
     }
 }

@@ -10,6 +10,7 @@ use rumbo_log::{
     ProgramState,
 };
 use rumbo_session::{LinkNews, TargetError};
+use rumbo_sim::bus::BusDevice;
 use rumbo_sim::wiring::Part;
 use std::path::{Path, PathBuf};
 
@@ -51,6 +52,17 @@ fn part_state((part, value): (&Part, f64)) -> PartState {
         name: part.name.clone(),
         kind: part.kind.name().to_owned(),
         percent: (100.0 * value).round() as u8,
+        keys: part.keys.iter().map(|(key, _)| (*key).into()).collect(),
+        ..PartState::default()
+    }
+}
+
+fn device_state(device: &BusDevice) -> PartState {
+    PartState {
+        name: device.name.clone(),
+        kind: device.kind.name().to_owned(),
+        address: Some(device.address),
+        ..PartState::default()
     }
 }
 
@@ -64,7 +76,11 @@ impl SimulatedRobot {
                 None => mega.firmware().name().to_owned(),
             },
             link_usart: mega.firmware().link_usart(),
-            parts: mega.parts().map(part_state).collect(),
+            parts: mega
+                .parts()
+                .map(part_state)
+                .chain(mega.firmware().bus().iter().map(device_state))
+                .collect(),
             watched: program.is_some_and(|program| program.watched),
             phase: program.map(|program| program.phase).unwrap_or_default(),
             complaints: program.map_or_else(Vec::new, |program| program.complaints.clone()),

@@ -8,7 +8,9 @@
 
 mod bench;
 mod calibration;
+mod explain;
 mod fleet;
+mod hand;
 mod play;
 mod programs;
 mod supply;

@@ -61,6 +61,12 @@ impl<T: PartialEq> Versioned<T> {
     }
 }
 
+impl<T> Versioned<T> {
+    pub(super) fn value(&self) -> &T {
+        &self.value
+    }
+}
+
 impl<T: Clone> Versioned<T> {
     /// The value, if it is newer than the one `seen`, which moves on.
     pub(super) fn newer(&self, seen: &mut u64) -> Option<T> {

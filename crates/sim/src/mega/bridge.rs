@@ -129,7 +129,7 @@ impl HalfBridge {
             driver,
             lines: inputs.map(held),
             inverse: match driver.direction {
-                Direction::Two => None,
+                Direction::Two | Direction::Motor => None,
                 Direction::One => [2, 1].into_iter().find(unwired),
             },
         }

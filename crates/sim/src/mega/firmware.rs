@@ -3,9 +3,10 @@
 use super::pins::{LinkOn, Wires};
 use super::{CYCLES_PER_US, ON_PINS};
 use crate::boards::Board;
+use crate::bus::BusDevice;
 use crate::error::SimError;
 use crate::floor::LineSensor;
-use crate::wiring::{Part, Wiring};
+use crate::wiring::{Motor, Part, Wiring};
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::ports::Drive;
@@ -49,6 +50,8 @@ pub struct Firmware {
     pins: BTreeMap<String, u8>,
     parts: Vec<Part>,
     line_sensors: Vec<LineSensor>,
+    bus: Vec<BusDevice>,
+    motors: [Option<Motor>; 2],
 }
 
 impl Firmware {
@@ -72,6 +75,8 @@ impl Firmware {
             pins: pins.pins.clone(),
             parts: pins.parts.clone(),
             line_sensors: pins.line_sensors.clone(),
+            bus: pins.bus.clone(),
+            motors: pins.motors,
             link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
         })
     }
@@ -118,6 +123,16 @@ impl Firmware {
     /// Its sensors for lines on the floor.
     pub fn line_sensors(&self) -> &[LineSensor] {
         &self.line_sensors
+    }
+
+    /// The devices on its two-wire bus.
+    pub fn bus(&self) -> &[BusDevice] {
+        &self.bus
+    }
+
+    /// The motors of a shield, left and right.
+    pub(super) fn motors(&self) -> [Option<Motor>; 2] {
+        self.motors
     }
 
     /// What else is at its pins.

@@ -10,6 +10,7 @@
 //! | file | part |
 //! |---|---|
 //! | [`pins`] | a wiring as pins of the chip |
+//! | `bus` | the two-wire bus and its devices |
 //! | `bridge`, `servo`, `module` | what driver, servo and Bluetooth module make of their lines |
 //! | `inputs` | the edges that the plant announces, scheduled for the chip |
 //! | `outputs` | the chip's outputs as actions on the robot |
@@ -19,7 +20,8 @@
 //! | `meters` | what instruments at the wired pins show |
 //! | `marks` | when the program reaches some of its functions |
 //! | `floor` | line sensors |
-//! | `parts` | buttons, switches and potentiometers |
+//! | `parts` | buttons, switches, potentiometers and remote controls |
+//! | `register` | the register of a motor shield |
 //! | `wheels` | what the program did with each motor |
 //! | `notes` | oddities of a program, for people |
 //! | [`firmware`] | a program image, the language it speaks, the wiring it is for |
@@ -32,6 +34,7 @@ pub mod firmware;
 pub mod pins;
 
 mod bridge;
+mod bus;
 mod echo;
 mod floor;
 mod inputs;
@@ -41,10 +44,13 @@ mod module;
 mod notes;
 mod outputs;
 mod parts;
+mod register;
 mod servo;
 mod uart;
 mod wheels;
 
+use crate::bus::Bus;
+use crate::remote::Remote;
 use crate::sonar_fault::SonarFaults;
 use crate::wire_fault::WireFaults;
 use crate::wiring::Divider;
@@ -56,6 +62,7 @@ use inputs::Announced;
 use marks::Marks;
 use meters::Meters;
 use pins::{LinkOn, Wires};
+use register::Register;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::devices::{Cause, Input};
@@ -71,10 +78,10 @@ use wheels::Driven;
 pub const USB: u8 = 0;
 /// In place of a USART: the Bluetooth module on other pins.
 pub const ON_PINS: u8 = 4;
-/// The consoles: of the USARTs, and of the module on other pins.
-pub const CONSOLES: u8 = 5;
-/// In place of a USART: what a person works at the robot, by lines `name=value`.
+/// In place of a USART: what a person works at the robot, and what its displays show, by lines `name=value`.
 pub const PARTS: u8 = 5;
+/// The consoles: of the USARTs, of the module on other pins, of the displays.
+pub const CONSOLES: u8 = 6;
 /// The boards' clock is 16 MHz.
 pub const CYCLES_PER_US: u64 = 16;
 /// Battery at which the chip's brown-out detector, set to 2.7 V by the boards' fuses, resets it: the regulator drops 1.1 V.
@@ -122,6 +129,8 @@ pub struct Mega {
     /// The chip's cycle at the plant's time 0.
     zero_cycle: u64,
     bridges: [HalfBridge; 2],
+    /// That of a motor shield.
+    register: Register,
     driven: [(Bridge, Modulation); 2],
     servo: ServoInput,
     triggers: [Option<u64>; 3],
@@ -136,10 +145,14 @@ pub struct Mega {
     /// What the module hears on the pin of `link_tx`, where that is no USART's.
     module: uart::Receiver,
     meters: Meters,
+    /// The devices on the two-wire bus.
+    bus: Bus,
     /// How dark it is below each line sensor, and the level that it gives.
     floor: Vec<(f64, bool)>,
     /// What has been set of each part.
     worked: Vec<f64>,
+    /// The remote controls, each with the number of its part.
+    remotes: Vec<(usize, Remote)>,
     verdict: Option<Verdict>,
     /// When the program reached the functions of interest.
     marks: Marks,
@@ -160,12 +173,16 @@ impl Mega {
     pub(crate) fn new(firmware: Arc<Firmware>, encoders: [bool; 4]) -> Self {
         let mut chip = Chip::new(firmware.image());
         chip.watch(&firmware.wires().felt());
+        let shield = firmware.wires().driver.shield;
+        let shield = shield.and_then(|shield| shield.address);
+        chip.watch_two_wire(!firmware.bus().is_empty() || shield.is_some());
         let Wires {
             driver, bridges, ..
         } = *firmware.wires();
         let mut mega = Self {
             chip,
             zero_cycle: 0,
+            register: Register::default(),
             bridges: bridges.map(|inputs| HalfBridge::new(driver, inputs)),
             driven: [(Bridge::Released, Modulation::default()); 2],
             servo: ServoInput::default(),
@@ -178,8 +195,10 @@ impl Mega {
             consoles: Default::default(),
             module: uart::Receiver::new(firmware.link_baud()),
             meters: Meters::at(firmware.metered()),
+            bus: Bus::new(firmware.bus(), shield),
             floor: Vec::new(),
             worked: Vec::new(),
+            remotes: Vec::new(),
             verdict: None,
             marks: Marks::default(),
             driven_ways: Driven::default(),
@@ -302,6 +321,7 @@ impl Mega {
     pub(crate) fn read_meters(&mut self) -> Vec<(String, f64)> {
         let mut shown = self.meters.read(self.chip.cycle());
         shown.extend(self.read_floor());
+        shown.extend(self.read_imus());
         shown
     }
 

@@ -2,13 +2,13 @@
 
 use super::console::Console;
 use super::firmware::Language;
-use super::{CONSOLES, CYCLES_PER_US, Mega, TRIGGER_CYCLES};
+use super::{CYCLES_PER_US, Mega, PARTS, TRIGGER_CYCLES};
+use crate::bus::DeviceKind;
 use rumbo_emulator::cpu::Standstill;
 use rumbo_emulator::devices::{Cause, Unmodelled};
 
 /// The USARTs as a sketch calls them, and the module on other pins.
-const NAMES: [&str; CONSOLES as usize] =
-    ["Serial (USB)", "Serial1", "Serial2", "Serial3", "its pins"];
+const NAMES: [&str; PARTS as usize] = ["Serial (USB)", "Serial1", "Serial2", "Serial3", "its pins"];
 
 /// What a program did that people wonder about.
 #[derive(Clone, Copy, Debug, Default)]
@@ -92,8 +92,11 @@ impl Mega {
         let notes = notes.chain(self.unsent());
         let notes = notes.chain(self.misframed());
         let notes = notes.chain(self.oddities.told(self.firmware.name()));
+        let bus = self.bus.notes().into_iter();
+        let bus = bus.map(|note| format!("firmware {}: {note}", self.firmware.name()));
         notes
             .chain(self.silence())
+            .chain(bus)
             .chain(self.data_sheet())
             .collect()
     }
@@ -107,8 +110,13 @@ impl Mega {
         let sensors = (!self.firmware.line_sensors().is_empty()).then(|| {
             "line sensors: TCRT5000 modules by their data sheet, not identified".to_owned()
         });
-        let both: Vec<String> = driver.into_iter().chain(sensors).collect();
-        (!both.is_empty()).then(|| both.join("; "))
+        let mut bus = self.firmware.bus().iter();
+        let imu = bus.any(|device| matches!(device.kind, DeviceKind::Mpu6050 { .. }));
+        let imu = imu.then(|| {
+            "accelerometer and gyroscope: MPU-6050 by its data sheet, not identified".to_owned()
+        });
+        let all: Vec<String> = driver.into_iter().chain(sensors).chain(imu).collect();
+        (!all.is_empty()).then(|| all.join("; "))
     }
 
     /// Why the program has halted for good, if it has.

@@ -1,7 +1,7 @@
 //! Outputs of the chip's pins and USARTs, as actions on the robot.
 
 use super::bridge::{self, HalfBridge};
-use super::pins::LinkOn;
+use super::pins::{DriverInput, LinkOn};
 use super::{ACT, Action, CYCLES_PER_US, FIRING_CYCLES, Mega, ON_PINS, USB, module};
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Event, Output, Pwm};
@@ -22,6 +22,7 @@ impl Mega {
                 }
                 Event::Duty { pin, pwm } => self.modulate(cycle, pin, pwm),
                 Event::Byte { usart, byte, baud } => self.byte_sent(cycle, usart, byte as u8, baud),
+                Event::TwoWire(transfer) => self.transfer(cycle, transfer),
                 // What it does to the pins comes as their own events.
                 Event::Reset(cause) => self.oddities.reset(cause),
             }
@@ -50,7 +51,8 @@ impl Mega {
 
     fn level(&mut self, cycle: u64, pin: Pin, high: bool) {
         self.meters.set(cycle, pin, high);
-        self.each_line(pin, |line| line.set(cycle, high));
+        self.each_line(DriverInput::Pin(pin), |line| line.set(cycle, high));
+        self.shift(cycle, pin, high);
         if self.heard() == Some(pin) {
             self.hear(cycle, Some(high));
         }
@@ -78,15 +80,30 @@ impl Mega {
 
     fn modulate(&mut self, cycle: u64, pin: Pin, pwm: Option<Pwm>) {
         self.meters.modulate(cycle, pin, pwm);
-        self.each_line(pin, |line| line.modulate(pwm));
+        self.each_line(DriverInput::Pin(pin), |line| line.modulate(pwm));
     }
 
-    /// Does something to the driver's inputs that are on this pin.
-    fn each_line(&mut self, pin: Pin, mut act: impl FnMut(&mut bridge::Line)) {
+    /// A pin of a shield's register, if it is one.
+    fn shift(&mut self, cycle: u64, pin: Pin, high: bool) {
+        let lines = self.wires().register;
+        let Some(line) = lines.and_then(|lines| lines.iter().position(|own| *own == pin)) else {
+            return;
+        };
+        let before = self.register.outputs();
+        self.register.set(line, high);
+        let outputs = self.register.outputs();
+        for bit in (0..8).filter(|bit| (before ^ outputs) >> bit & 1 != 0) {
+            let level = outputs >> bit & 1 != 0;
+            self.each_line(DriverInput::Register(bit), |line| line.set(cycle, level));
+        }
+    }
+
+    /// Does something to the driver's inputs that are connected so.
+    fn each_line(&mut self, on: DriverInput, mut act: impl FnMut(&mut bridge::Line)) {
         let wired = self.firmware.wires().bridges;
         for (half, inputs) in self.bridges.iter_mut().zip(wired) {
             for (line, input) in half.lines.iter_mut().zip(inputs) {
-                if input.pin() == Some(pin) {
+                if input == on {
                     act(line);
                 }
             }

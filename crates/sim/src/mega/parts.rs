@@ -1,9 +1,11 @@
-//! What a person works at the robot's pins: buttons, switches and potentiometers.
+//! What a person works at the robot's pins: buttons, switches, potentiometers and remote controls.
 //!
-//! Lines `name=value`, of [`PARTS`](super::PARTS) as of a console, set them: 1 is pressed, closed or fully turned up, 0 the
-//! opposite. So they take the way of typed text: over the page, into logs, and again from there.
+//! Lines `name=value`, of [`PARTS`](super::PARTS) as of a console, set them: 1 or `on` is pressed, closed or fully turned up, 0
+//! or `off` the opposite; of a remote control the value is the key that is pressed. So they take the way of typed text: over the page, into logs,
+//! and again from there.
 
-use super::Mega;
+use super::{CYCLES_PER_US, Mega};
+use crate::remote::Remote;
 use crate::wiring::{Part, PartKind};
 use rumbo_emulator::devices::Input;
 
@@ -24,6 +26,10 @@ impl Mega {
                 0.0
             };
             self.worked.push(value);
+            if kind == PartKind::Infrared {
+                self.remotes.push((index, Remote::default()));
+                self.receive_infrared(index, self.chip.cycle(), true);
+            }
             self.work(index, value);
         }
     }
@@ -46,10 +52,42 @@ impl Mega {
             let index = parts
                 .iter()
                 .position(|part| part.name == name && part.kind.is_worked());
-            if let (Some(index), Ok(value)) = (index, value.trim().parse::<f64>()) {
+            let Some(index) = index else { continue };
+            let value = value.trim();
+            let mut remotes = self.remotes.iter_mut();
+            if let Some((_, remote)) = remotes.find(|(of, _)| *of == index) {
+                let key = parts[index].keys.iter().find(|(key, _)| *key == value);
+                let now_us = (self.chip.cycle() - self.zero_cycle) / CYCLES_PER_US;
+                key.into_iter()
+                    .for_each(|(_, command)| remote.press(*command, now_us));
+                continue;
+            }
+            let value = match value {
+                "on" => Ok(1.0),
+                "off" => Ok(0.0),
+                value => value.parse::<f64>(),
+            };
+            if let Ok(value) = value {
                 self.work(index, value.clamp(0.0, 1.0));
             }
         }
+    }
+
+    /// What the remote controls send within this time [us].
+    pub(crate) fn send_infrared(&mut self, from_us: u64, to_us: u64) {
+        for number in 0..self.remotes.len() {
+            let (index, remote) = &mut self.remotes[number];
+            let index = *index;
+            for (cycle, level) in remote.send(from_us, to_us) {
+                self.receive_infrared(index, self.zero_cycle + cycle, level);
+            }
+        }
+    }
+
+    /// The output of an infrared receiver has this level from a cycle on.
+    fn receive_infrared(&mut self, index: usize, cycle: u64, level: bool) {
+        let pin = self.firmware.parts()[index].pin;
+        self.put(cycle, self.firmware.board().pin(pin), level);
     }
 
     fn work(&mut self, index: usize, value: f64) {

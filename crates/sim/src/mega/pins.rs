@@ -2,7 +2,7 @@
 
 use crate::drivers::Driver;
 use crate::error::SimError;
-use crate::wiring::{Divider, Wiring};
+use crate::wiring::{Divider, Motor, Wiring};
 use rumbo_emulator::devices::ports::Pin;
 
 /// The inputs of one half of the driver.
@@ -18,13 +18,17 @@ pub(super) enum DriverInput {
     High,
     /// On this pin.
     Pin(Pin),
+    /// On this output of a shield's register.
+    Register(u8),
+    /// On this output of a shield's chip on the two-wire bus.
+    Output(u8),
 }
 
 impl DriverInput {
     pub(super) fn pin(self) -> Option<Pin> {
         match self {
             Self::Pin(pin) => Some(pin),
-            Self::Low | Self::High => None,
+            Self::Low | Self::High | Self::Register(_) | Self::Output(_) => None,
         }
     }
 }
@@ -47,6 +51,8 @@ pub(super) enum LinkOn {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Wires {
     pub(super) driver: &'static Driver,
+    /// Latch, clock, data and enable of a shield's register.
+    pub(super) register: Option<[Pin; 4]>,
     /// The inputs of each half, as [`INPUTS`].
     pub(super) bridges: [[DriverInput; 4]; 2],
     /// Outputs A of both, then outputs B.
@@ -96,7 +102,27 @@ impl Wires {
             Some(false) => DriverInput::Low,
             None => pin(signal).map_or(otherwise, DriverInput::Pin),
         };
-        let bridge = |side: &str| {
+        let on_board = |number: u8| wiring.board.pin(number);
+        let on_shield = |motor: Motor| {
+            let (speed, [first, second]) = driver.shield?.inputs_of(motor.number);
+            let (forward, backward) = match motor.reversed {
+                true => (second, first),
+                false => (first, second),
+            };
+            if driver.shield?.address.is_some() {
+                let [speed, forward, backward] =
+                    [speed, forward, backward].map(DriverInput::Output);
+                return Some([speed, forward, backward, DriverInput::High]);
+            }
+            let [forward, backward] = [forward, backward].map(DriverInput::Register);
+            let speed = DriverInput::Pin(on_board(speed)?);
+            Some([speed, forward, backward, DriverInput::High])
+        };
+        let bridge = |index: usize, side: &str| {
+            if driver.shield.is_some() {
+                let motor = wiring.motors[index].and_then(on_shield);
+                return motor.unwrap_or_default();
+            }
             let enable = match driver.has_enable {
                 true => input(&format!("{side}_enable"), DriverInput::Low),
                 false => DriverInput::High,
@@ -110,7 +136,14 @@ impl Wires {
         let sonars = ["left", "right", "front"];
         Ok(Self {
             driver,
-            bridges: [bridge("left"), bridge("right")],
+            register: driver.shield.and_then(|shield| {
+                let lines = shield.lines?.map(on_board);
+                let [Some(latch), Some(clock), Some(data), Some(enable)] = lines else {
+                    return None;
+                };
+                Some([latch, clock, data, enable])
+            }),
+            bridges: [bridge(0, "left"), bridge(1, "right")],
             encoders: [
                 "left_encoder",
                 "right_encoder",
@@ -135,6 +168,11 @@ impl Wires {
             .chain([self.servo])
             .chain(self.triggers)
             .flatten()
+            .chain(
+                self.register
+                    .into_iter()
+                    .flat_map(|[latch, _, _, enable]| [latch, enable]),
+            )
             .collect()
     }
 }

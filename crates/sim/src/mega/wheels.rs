@@ -93,19 +93,22 @@ impl Mega {
                 3 => INPUTS[3].to_owned(),
                 _ => format!("{}_{}", SIDES[wheel], INPUTS[input]),
             };
-            match self.firmware.pin_of(&signal) {
-                Some(pin) => format!("{signal} (pin {pin})"),
-                None => signal,
+            match (self.firmware.pin_of(&signal), self.firmware.motors()[wheel]) {
+                (Some(pin), _) => format!("{signal} (pin {pin})"),
+                (None, Some(motor)) => format!("{signal} of M{}", motor.number),
+                (None, None) => signal,
             }
         };
         let low = |input: usize| !lines[input].been_high();
-        let two = self.wires().driver.direction == Direction::Two;
+        let two = self.wires().driver.direction != Direction::One;
         Some(if low(3) {
             format!("{} was never high, and the driver slept", called(3))
         } else if low(0) {
             let held = match inputs[0].pin() {
-                Some(_) => ", unless a jumper holds it: then write \"high\" in the wiring",
-                None => "",
+                Some(_) if self.wires().driver.shield.is_none() => {
+                    ", unless a jumper holds it: then write \"high\" in the wiring"
+                }
+                _ => "",
             };
             format!("{} was never high{held}", called(0))
         } else if two && low(1) && low(2) {

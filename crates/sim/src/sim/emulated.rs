@@ -6,9 +6,11 @@
 
 use super::Sim;
 use super::touches::Touches;
+use crate::bus::Motion;
 use crate::mega::{Action, Faults, Mega, Pause};
 use rumbo_control::{Duty, SonarId};
 use rumbo_plant::drivetrain::{Bridge, Side};
+use rumbo_plant::plant::Truth;
 
 /// How far the plant looks ahead, and the grid it keeps to [us].
 const AHEAD_US: u64 = 1_000;
@@ -25,6 +27,20 @@ impl Sim {
             if !mega.firmware().line_sensors().is_empty() {
                 mega.see_floor(&self.lines, &self.pose(), self.now_us(), &self.noise);
             }
+            if !mega.firmware().bus().is_empty() {
+                let Truth {
+                    forward_m_s,
+                    yaw_rad_s,
+                    ..
+                } = self.truth();
+                let motion = Motion {
+                    forward_m_s,
+                    yaw_rad_s,
+                };
+                mega.feel(motion, self.now_us(), &self.noise);
+                mega.look_at_displays(self.now_us());
+            }
+            mega.send_infrared(self.now_us(), end_us);
             if !self.wire_faults.is_empty() {
                 let now_us = self.now_us();
                 mega.disturb(

@@ -402,6 +402,13 @@ impl Sim {
         }
     }
 
+    /// Lifts the robot and puts it down elsewhere, if there is room: its program does not notice.
+    pub fn put(&mut self, at: Pose) {
+        if self.plant.has_room(&self.state, &at) {
+            self.state.place(at);
+        }
+    }
+
     /// Moves the robot in the world, as a hand would; our native robot's estimated pose is set to `estimate`, relative
     /// to its origin.
     pub fn place(&mut self, at: Pose, estimate: rumbo_control::Pose) {

@@ -87,6 +87,7 @@ pub(crate) fn from_robot() -> impl Strategy<Value = FromRobot> {
         mode().prop_map(EventKind::ModeChanged),
         Just(EventKind::Reached),
         Just(EventKind::Unreachable),
+        any::<u16>().prop_map(|after_s| EventKind::GaveUp { after_s }),
         prop::sample::select(Recalled::ALL.to_vec()).prop_map(EventKind::Recalled),
         Just(EventKind::Saved),
     ];

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 /// A folder with a robot on a Uno, wired so, in an open world, and a sketch. `None` where no compiler is installed.
-fn kit(name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
+pub(super) fn kit(name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
     driven_by("l298n", name, wiring, sketch)
 }
 
 /// The same with another driver.
-fn driven_by(driver: &str, name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
+pub(super) fn driven_by(driver: &str, name: &str, wiring: &str, sketch: &str) -> Option<PathBuf> {
     let bench = bench(name)?;
     let robot = format!(
         "title = \"A car\"\nboard = \"uno\"\ndriver = \"{driver}\"\n[rig.front_single.front]\nx_m = 0.13\n[wiring.car]\n{wiring}"
@@ -24,7 +24,7 @@ fn driven_by(driver: &str, name: &str, wiring: &str, sketch: &str) -> Option<Pat
     Some(bench)
 }
 
-fn drive(bench: &PathBuf, more: &[&str]) -> Output {
+pub(super) fn drive(bench: &PathBuf, more: &[&str]) -> Output {
     let run = [
         "run",
         "floor.toml",
@@ -38,7 +38,7 @@ fn drive(bench: &PathBuf, more: &[&str]) -> Output {
 }
 
 /// A column of the true signals.
-fn column(bench: &Path, name: &str) -> Vec<f64> {
+pub(super) fn column(bench: &Path, name: &str) -> Vec<f64> {
     let csv = std::fs::read_to_string(bench.join("out/floor-1.truth.csv")).unwrap();
     let mut lines = csv.lines().map(|line| line.split(','));
     let at = lines.next().unwrap().position(|each| each == name).unwrap();
@@ -48,7 +48,7 @@ fn column(bench: &Path, name: &str) -> Vec<f64> {
 }
 
 /// The last value of a column of the true signals.
-fn last(bench: &Path, name: &str) -> f64 {
+pub(super) fn last(bench: &Path, name: &str) -> f64 {
     *column(bench, name).last().unwrap()
 }
 
@@ -114,7 +114,7 @@ fn a_letter_without_a_line_ending_is_obeyed_until_the_next_one() {
 }
 
 /// Forward for a second and a half, then backward.
-fn to_and_fro(pins: &str, forward: &str, backward: &str) -> String {
+pub(super) fn to_and_fro(pins: &str, forward: &str, backward: &str) -> String {
     format!(
         "const byte pins[] = {{{pins}}};\nvoid setup() {{ for (byte pin : pins) pinMode(pin, OUTPUT); }}\n\
          void loop() {{ {forward} delay(1500); {backward} delay(100000); }}\n"
@@ -213,7 +213,7 @@ fn a_drv8833_drives_by_pwm_on_its_inputs_and_has_no_enable() {
 }
 
 /// It drives forward for half of the run and back in the other half.
-fn there_and_back(bench: Option<PathBuf>) {
+pub(super) fn there_and_back(bench: Option<PathBuf>) {
     let Some(bench) = bench else { return };
     let run = drive(&bench, &[]);
     let x_m = column(&bench, "x_m");
@@ -808,11 +808,21 @@ fn a_new_robot_has_line_sensors_buttons_and_lights_by_names_of_its_own() {
         return;
     };
     let pins = "left_enable=5,left_forward=7,left_backward=8,right_enable=6,right_forward=11,right_backward=9,\
-                line_left=2,line_middle=4,line_right=A0,line_dark=low,button_start=12,led_lamp=13";
+                line_left=2,line_middle=4,line_right=A0,line_dark=low";
     let made = rumbo(
         &bench,
         &[
-            "new", "robot", "car", "--board", "uno", "--driver", "l298n", "--pins", pins,
+            "new",
+            "robot",
+            "car",
+            "--board",
+            "uno",
+            "--driver",
+            "l298n",
+            "--pins",
+            pins,
+            "--parts",
+            "start=button:12,lamp=led:13",
         ],
     );
     assert!(made.status.success(), "{}", stderr(&made));
@@ -853,7 +863,7 @@ void loop() {
     );
     let unknown = rumbo(&bench, &["new", "robot", "other", "--pins", "lines=2"]);
     assert!(
-        stderr(&unknown).contains("with a name of yours line_NAME, button_NAME"),
+        stderr(&unknown).contains("with a name of yours line_NAME"),
         "{}",
         stderr(&unknown)
     );

@@ -61,6 +61,7 @@ impl Mission<'_> {
                 heading_ref_rad: state.heading_ref_rad,
                 reached: state.phase == Phase::Wait,
                 unreachable: state.phase == Phase::Unreachable,
+                out_of_time: self.is_out_of_time(state),
                 ..Action::default()
             });
         }
@@ -85,7 +86,7 @@ impl Mission<'_> {
         let (way, left_m) = way_to(&estimate.pose, goal_m);
         count(state, estimate, &way);
         let planned = perceive(state, estimate, &way);
-        if state.age_s > self.params.get(ParamId::MissionGiveUp) {
+        if self.is_out_of_time(state) {
             state.phase = Phase::Unreachable;
         }
         let proving = state.proof.is_some() || state.movement.waits();
@@ -112,9 +113,13 @@ impl Mission<'_> {
             state: state.shown(state.phase as u8),
             heading_ref_rad: state.heading_ref_rad,
             reached: arrived,
-            unreachable: false,
             new_origin: arrived && self.moves_origin(),
+            ..Action::default()
         })
+    }
+
+    fn is_out_of_time(&self, state: &State) -> bool {
+        state.age_s > self.params.get(ParamId::MissionGiveUp)
     }
 
     /// Each goal reached becomes the origin.

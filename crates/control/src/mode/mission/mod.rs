@@ -25,7 +25,9 @@ mod proof;
 mod still;
 mod watch;
 
-use super::description::{FEEDFORWARD, LINES, SPEED_LOOPS, TURNS, WHEEL_RAMPS, states};
+use super::description::{
+    FEEDFORWARD, LINES, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states,
+};
 use super::{Action, Description, Group, MetricGroup, Mode, Plot, Takes, waypoints};
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sqrt};
@@ -91,6 +93,7 @@ pub const DESCRIPTION: Description = Description {
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
+    laws: &[TWIST, SPEED],
     plots: &[Plot::Position, Plot::Heading, Plot::Distance, Plot::Wheels],
     metrics: &[MetricGroup::Journey, MetricGroup::Goals, MetricGroup::Lane],
 };

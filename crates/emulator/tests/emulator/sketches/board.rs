@@ -55,7 +55,7 @@ impl Board {
                 }
                 Event::Byte { usart, byte, .. } => self.bytes.push((cycle, usart, byte as u8)),
                 Event::Reset(cause) => self.resets.push((cycle, cause)),
-                Event::Pin(..) | Event::Duty { .. } => {}
+                Event::Pin(..) | Event::Duty { .. } | Event::TwoWire(_) => {}
             }
         }
     }

@@ -2,10 +2,11 @@
 
 use super::{Person, fault, seeds, setup, twenty, worst};
 use rumbo_control::mode::ModeId;
+use rumbo_control::params::ParamId;
 use rumbo_control::{Fault, SonarId};
 use rumbo_experiment::campaign::judge;
 use rumbo_experiment::files::Setup;
-use rumbo_experiment::run::RunResult;
+use rumbo_experiment::run::{RunResult, run};
 use rumbo_plant::world::Wall;
 use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
 use rumbo_wire::{Command, EventKind, FromRobot};
@@ -37,6 +38,32 @@ fn the_goal_behind_the_boxes_is_reached_in_41_5_s_and_3_75_m_without_a_touch() {
     assert!(worst(&runs, "total_time_s") <= 43.0);
     assert!(worst(&runs, "path_m") <= 3.75);
     assert_eq!(worst(&runs, "contacts"), 0.0);
+}
+
+#[test]
+fn a_robot_whose_time_is_over_says_after_how_long_and_has_failed_if_there_was_a_way() {
+    let mut setup = setup("mode8-random");
+    setup
+        .scenario
+        .parameters
+        .push((ParamId::MissionGiveUp, 5.0));
+    let run = run(&setup, 1).unwrap();
+    let said = EventKind::GaveUp { after_s: 5 };
+    assert!(
+        run.trace
+            .messages
+            .iter()
+            .any(|message| matches!(message.what, FromRobot::Event(event) if event.kind == said))
+    );
+    assert_eq!(
+        ["reachable", "gave_up", "unreachable_reported"].map(|name| run.metrics[name]),
+        [1.0, 1.0, 0.0]
+    );
+    assert!(
+        !run.pass && run.failures[0].starts_with("given_up_wrongly"),
+        "{:?}",
+        run.failures
+    );
 }
 
 /// How far the robot went to each side of the straight line, left and right [m].

@@ -1,0 +1,181 @@
+//! Infrared remote controls, and what their receiver does at its pin: the NEC protocol behind a demodulator (VS1838B, TSOP38).
+//!
+//! The receiver's output is high, and low while it sees the carrier. A key sends its frame once, and a short repeat every
+//! 108 ms while it is held. The address is 0, and the commands are those of the two remotes that come with Arduino kits, as the
+//! library IRremote lists the one with arrows (DemoIRCommandMapping.h, Keyes clone); the same chip in the other one sends the same
+//! command for the same place.
+
+use std::collections::VecDeque;
+
+/// Cycles of the board's crystal in a microsecond.
+const US: u64 = 16;
+/// The unit of the protocol, 21 periods of its 38 kHz \[us\].
+const UNIT_US: f64 = 562.5;
+/// From the beginning of a frame or repeat to the next one \[us\].
+const REPEAT_US: u64 = 108_000;
+/// How long a key stays down after it was pressed \[us\]: longer than a repeat takes to come.
+const DOWN_US: u64 = 200_000;
+
+/// A key: what stands on it, and its command.
+pub type Key = (&'static str, u8);
+
+/// The remote with arrows, 17 keys, row by row.
+pub const ARROWS: [Key; 17] = [
+    ("1", 0x45),
+    ("2", 0x46),
+    ("3", 0x47),
+    ("4", 0x44),
+    ("5", 0x40),
+    ("6", 0x43),
+    ("7", 0x07),
+    ("8", 0x15),
+    ("9", 0x09),
+    ("*", 0x16),
+    ("0", 0x19),
+    ("#", 0x0D),
+    ("up", 0x18),
+    ("left", 0x08),
+    ("ok", 0x1C),
+    ("right", 0x5A),
+    ("down", 0x52),
+];
+
+/// The remote of a car radio, 21 keys, row by row.
+pub const RADIO: [Key; 21] = [
+    ("ch-", 0x45),
+    ("ch", 0x46),
+    ("ch+", 0x47),
+    ("prev", 0x44),
+    ("next", 0x40),
+    ("play", 0x43),
+    ("vol-", 0x07),
+    ("vol+", 0x15),
+    ("eq", 0x09),
+    ("0", 0x16),
+    ("100+", 0x19),
+    ("200+", 0x0D),
+    ("1", 0x0C),
+    ("2", 0x18),
+    ("3", 0x5E),
+    ("4", 0x08),
+    ("5", 0x1C),
+    ("6", 0x5A),
+    ("7", 0x42),
+    ("8", 0x52),
+    ("9", 0x4A),
+];
+
+/// A remote in somebody's hand.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Remote {
+    /// The command that is down, and until when [us].
+    down: Option<(u8, u64)>,
+    /// When the next frame or repeat may begin [us].
+    free_us: u64,
+    /// The frame of the key that is down has been sent.
+    sent: bool,
+    /// Levels to come, each with its cycle.
+    levels: VecDeque<(u64, bool)>,
+}
+
+impl Remote {
+    /// A key is pressed, for a moment; pressed again meanwhile, it stays down for longer.
+    pub(crate) fn press(&mut self, command: u8, now_us: u64) {
+        let down = self.down.filter(|(_, until_us)| *until_us >= now_us);
+        self.sent &= down.is_some_and(|(down, _)| down == command);
+        self.down = Some((command, now_us + DOWN_US));
+    }
+
+    /// The levels of the receiver's output that begin in this time [us], each with its cycle.
+    pub(crate) fn send(&mut self, from_us: u64, to_us: u64) -> Vec<(u64, bool)> {
+        if let Some((command, until_us)) = self.down {
+            let begin_us = self.free_us.max(from_us);
+            if self.sent && begin_us > until_us {
+                (self.down, self.sent) = (None, false);
+            } else if begin_us < to_us {
+                let levels = if self.sent { repeat() } else { frame(command) };
+                let at = |(cycle, level): (u64, bool)| (begin_us * US + cycle, level);
+                self.levels.extend(levels.into_iter().map(at));
+                (self.sent, self.free_us) = (true, begin_us + REPEAT_US);
+            }
+        }
+        let due = self
+            .levels
+            .partition_point(|(cycle, _)| *cycle < to_us * US);
+        self.levels.drain(..due).collect()
+    }
+}
+
+/// Low and high times in units, one after the other, as levels.
+fn levels(times: impl IntoIterator<Item = f64>) -> Vec<(u64, bool)> {
+    let (mut at, mut high) = (0.0, false);
+    let mut levels = Vec::new();
+    for units in times {
+        levels.push(((at * US as f64) as u64, high));
+        at += units * UNIT_US;
+        high = !high;
+    }
+    levels.push(((at * US as f64) as u64, true));
+    levels
+}
+
+/// Leader, address 0 and its inverse, command and its inverse, the lowest bit first, and a last pulse.
+fn frame(command: u8) -> Vec<(u64, bool)> {
+    let bits = [0, 0xFF, command, !command].into_iter();
+    let bits = bits.flat_map(|byte: u8| (0..8).map(move |bit| byte >> bit & 1 != 0));
+    let bits = bits.flat_map(|bit| [1.0, if bit { 3.0 } else { 1.0 }]);
+    levels([16.0, 8.0].into_iter().chain(bits).chain([1.0]))
+}
+
+/// What a key that is held sends: a leader with a shorter gap, and a pulse.
+fn repeat() -> Vec<(u64, bool)> {
+    levels([16.0, 4.0, 1.0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a remote sends within some time, a millisecond at a time.
+    fn sent(remote: &mut Remote, ms: std::ops::Range<u64>) -> Vec<(u64, bool)> {
+        let sent = ms.flat_map(|ms| remote.send(ms * 1_000, (ms + 1) * 1_000));
+        sent.collect()
+    }
+
+    #[test]
+    fn a_key_sends_its_frame_and_short_repeats_while_it_is_held() {
+        let mut remote = Remote::default();
+        let (_, ok) = ARROWS.into_iter().find(|(name, _)| *name == "ok").unwrap();
+        remote.press(ok, 5_000);
+        let levels = sent(&mut remote, 5..300);
+        // Leader, 32 bits and the last pulse; then a repeat: each low and its end.
+        assert_eq!(levels.len(), 2 * 34 + 2 * 2);
+        let us: Vec<u64> = levels.iter().map(|(cycle, _)| cycle / US).collect();
+        assert_eq!(us[..3], [5_000, 14_000, 18_500]);
+        let bit = |index: usize| us[2 * index + 4] - us[2 * index + 2] > 1_700;
+        let byte = |from: usize| (0..8).fold(0, |all, at| all | u8::from(bit(8 * from + at)) << at);
+        assert_eq!([0, 1, 2, 3].map(byte), [0, 0xFF, ok, !ok]);
+        assert_eq!(us[68..71], [113_000, 122_000, 124_250]);
+        assert!(levels.iter().step_by(2).all(|(_, level)| !level));
+        assert!(levels.last().unwrap().1);
+        for ms in (300..600).step_by(100) {
+            remote.press(ok, ms * 1_000);
+            let levels = sent(&mut remote, ms..ms + 100);
+            assert_eq!(levels.len() > 20, ms == 300, "{ms} {}", levels.len());
+        }
+        assert!(sent(&mut remote, 800..1_000).is_empty());
+    }
+
+    #[test]
+    fn every_key_has_a_name_and_a_command_of_its_own() {
+        for keys in [&ARROWS[..], &RADIO[..]] {
+            let mut names: Vec<_> = keys.iter().map(|(name, _)| name).collect();
+            let mut commands: Vec<_> = keys.iter().map(|(_, command)| command).collect();
+            names.sort_unstable();
+            commands.sort_unstable();
+            names.dedup();
+            commands.dedup();
+            assert_eq!((names.len(), commands.len()), (keys.len(), keys.len()));
+        }
+    }
+}
