@@ -134,7 +134,7 @@ Examples:
   rumbo new sketch small --board uno
   rumbo run mode1 --robot uno --sketch small      the robot with an Arduino Uno
   rumbo new robot my_car --board uno --driver l298n-jumpers --pins left_forward=5,left_backward=6,right_forward=9,right_backward=10
-  rumbo new robot my_car --board nano --driver drv8833 --pins left_forward=3,...,line_left=A0,line_right=A1
+  rumbo new robot my_car --board nano --driver drv8833 --pins left_forward=3,left_backward=5,right_forward=6,right_backward=9,line_left=A0,line_right=A1
   rumbo new robot my_car --like kit_elegoo_v3
   rumbo run free --robot my_car.toml --sketch my_sketch")]
 pub(crate) struct NewArgs {

@@ -310,7 +310,7 @@ const FILES: [(&str, Make, &str); 20] = [
             let text = (0..300_000).map(|n| format!("#include <H{n}.h>\n"));
             sketch(at, &text.collect::<String>());
         },
-        "includes more than 1000 different headers",
+        "includes more than 10000 different headers",
     ),
     (
         "braces",

@@ -53,7 +53,7 @@ fn a_device_that_never_ends_is_no_file_of_ours() {
         (&["flash", "x", "--image", "/dev/zero"], "no file"),
         (
             &["import", "/dev/zero", "--out", "x.mcap"],
-            "longer than 64 MB",
+            "longer than 256 MB",
         ),
         (
             &["identify", "/dev/zero", "--check", "memoria"],
