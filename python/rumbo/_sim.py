@@ -437,8 +437,10 @@ class Sim:
         return Pin(self._batch._batch, name)
 
     def press(self, part: str, value: float | str | None = None) -> None:
-        """Presses a button of the robot's file for 0.2 s, puts a switch or a potentiometer to a value, 0 to 1, or presses
-        a key of a remote control (``press("remote", "ok")``), which it repeats if it is pressed again within 0.2 s.
+        """Presses a button of the robot's file for 0.2 s, or puts a switch or a potentiometer to a value, 0 to 1.
+
+        A key of a remote control is pressed by its name, ``press("remote", "ok")``, and repeats if it is pressed again
+        within 0.2 s.
 
         Raises:
             ValueError: There is no such part or key, with those that there are.

@@ -16,6 +16,8 @@ use crate::markdown::Markdown;
 use crate::project::Project;
 
 const FOLDER: &str = "docs/lessons";
+/// The program of a scenario for a sketch.
+const SKETCH: &str = "example:line";
 /// A metric without a value, in either language.
 const NEVER: [&str; 2] = ["never", "nunca"];
 /// A metric that the run does not have.
@@ -186,12 +188,16 @@ fn metrics(project: &Project, rumbo: &Path, run: &str) -> Result<Value, String> 
     result_of(project, rumbo, &arguments).map_err(|error| format!("{run}: {error}"))
 }
 
-/// Runs a scenario that a lesson lets its reader write.
+/// Runs a scenario that a lesson lets its reader write; one without a mode with the sketch that the lesson is about.
 fn try_scenario(project: &Project, rumbo: &Path, text: &str) -> Result<(), String> {
     let path = project.target.join("lesson.toml");
     let wrong = |error: std::io::Error| format!("{}: {error}", path.display());
     std::fs::write(&path, text).map_err(wrong)?;
-    result_of(project, rumbo, &[path.to_string_lossy().into_owned()]).map(|_| ())
+    let mut arguments = vec![path.to_string_lossy().into_owned()];
+    if !text.contains("mode =") {
+        arguments.extend(["--sketch", SKETCH].map(str::to_owned));
+    }
+    result_of(project, rumbo, &arguments).map(|_| ())
 }
 
 /// The metrics of one run; one that misses a limit has them too.
