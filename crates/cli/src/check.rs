@@ -9,6 +9,7 @@ use crate::place::{self, Guard};
 use crate::run::set_threads;
 use crate::sketch;
 use rayon::prelude::*;
+use rumbo_experiment::batch::Robot;
 use rumbo_experiment::claims::{Broken, Given, Suite, Test, Verdict};
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_lab::run_log::Source;
@@ -53,7 +54,8 @@ pub(crate) fn check(args: &CheckArgs) -> Result<(), Failure> {
         .collect::<Result<_, Failure>>()?;
     let mut cases = Vec::new();
     for (number, (test, verdict)) in (1..).zip(&tried) {
-        let failure = verdict.broken.as_ref().map(|broken| said(&suite, broken));
+        let broken = verdict.broken.as_ref();
+        let failure = broken.map(|(broken, _)| said(&suite, broken));
         match &failure {
             None => output::line(&format!("passed  {}  ({:.2} s)", test.name, verdict.took_s))?,
             Some(why) => {
@@ -61,9 +63,9 @@ pub(crate) fn check(args: &CheckArgs) -> Result<(), Failure> {
                 output::line(&format!("        {why}"))?;
             }
         }
-        if let (Some(folder), Some(_)) = (&args.out, &failure) {
+        if let (Some(folder), Some((_, robot))) = (&args.out, broken) {
             let stem = folder.join(format!("test{number}"));
-            leave(&stem, verdict, (&suite, &setup, &overrides), &guard, &stamp)?;
+            leave(&stem, robot, (&suite, &setup, &overrides), &guard, &stamp)?;
         }
         cases.push(junit::Case {
             class: suite.path.clone(),
@@ -119,12 +121,11 @@ fn said(suite: &Suite, broken: &Broken) -> String {
 /// Writes log and waveform of a failed test, and says where.
 fn leave(
     stem: &Path,
-    verdict: &Verdict,
+    robot: &Robot,
     (suite, setup, overrides): (&Suite, &Setup, &Overrides),
     guard: &Guard,
     stamp: &Stamp,
 ) -> Result<(), Failure> {
-    let robot = &verdict.robot;
     let [log, waves]: [PathBuf; 2] = ["mcap", "vcd"].map(|ending| stem.with_extension(ending));
     if let Some(parent) = stem.parent() {
         place::folder(parent)?;

@@ -20,7 +20,6 @@ use rumbo_control::rig::Rig;
 use rumbo_experiment::grade::{Assignment, Line, Mark, Test, Words};
 use rumbo_plot::{Curve, Ink, Panel, Plot, Points};
 use rumbo_wire::Command;
-use std::collections::BTreeSet;
 
 const POINTS_OF: Text = word("points-of");
 const SEEDS: Text = word("seeds-driven");
@@ -48,8 +47,6 @@ const MEAN_SHARE: Text = word("mean-share");
 const FULL: Text = word("full-marks");
 const NONE: Text = word("no-points");
 const SIMILAR: Text = word("similar-hand-ins");
-const SIMILAR_OF: Text = word("similar-of");
-const PROVES_NOTHING: Text = word("similar-proves-nothing");
 const AT_MOST: Text = word("at-most-value");
 const AT_LEAST: Text = word("at-least-value");
 const LEFT_SONAR: Text = word("left-sonar");
@@ -216,72 +213,6 @@ pub fn class(
         CLASS.of(language),
         &body,
     )
-}
-
-/// Two hand-ins that are alike.
-#[derive(Clone, Debug)]
-pub struct Alike<'a> {
-    /// Name, text, and the lines that the other has too, from 0, of each.
-    pub of: [(&'a str, &'a str, &'a BTreeSet<usize>); 2],
-    /// The share of the shorter text that the other has too, 0 to 1.
-    pub share: f64,
-}
-
-impl Alike<'_> {
-    /// Who and how much, in a line.
-    #[must_use]
-    pub fn in_words(&self, language: Language) -> String {
-        let [(one, ..), (other, ..)] = self.of;
-        let share = self.percent(language);
-        SIMILAR_OF.with(
-            language,
-            &[("one", one), ("other", other), ("share", &share)],
-        )
-    }
-
-    fn percent(&self, language: Language) -> String {
-        language.number(100.0 * self.share, 0)
-    }
-}
-
-/// The page of two hand-ins that are alike: both texts side by side, what they have in common marked.
-#[must_use]
-pub fn pair(assignment: &Assignment, alike: &Alike<'_>, language: Language) -> String {
-    let share = alike.percent(language);
-    let said = PROVES_NOTHING.with(language, &[("share", &share)]);
-    let mut body = format!(
-        "<p class=\"note\">{}</p>\n<div class=\"side\">\n",
-        escape(&said)
-    );
-    for (name, text, common) in alike.of {
-        let lines = text.lines().enumerate().map(|(number, line)| {
-            // What a terminal would obey is shown as what it is: no text.
-            let plain = |c: char| {
-                if c.is_control() && c != '\t' {
-                    '\u{fffd}'
-                } else {
-                    c
-                }
-            };
-            let line: String = line.chars().map(plain).collect();
-            let line = escape(&line);
-            match common.contains(&number) {
-                true => format!("<mark>{line}</mark>\n"),
-                false => line + "\n",
-            }
-        });
-        let lines: String = lines.collect();
-        put(
-            &mut body,
-            format_args!(
-                "<section><h3>{}</h3><pre>{lines}</pre></section>\n",
-                escape(name)
-            ),
-        );
-    }
-    body += "</div>\n";
-    let title = of(language, &assignment.title);
-    shell(language, title, &alike.in_words(language), &body)
 }
 
 fn list(language: Language, title: Text, lines: &[String]) -> String {

@@ -9,6 +9,8 @@
 //! draws values, `drawing` what depends on the robot; the other drawings are files. The same version, seed and files give
 //! the same bytes.
 
+#[cfg(feature = "host")]
+pub mod alike;
 mod channel;
 mod chapters;
 #[cfg(feature = "host")]

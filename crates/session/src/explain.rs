@@ -111,8 +111,8 @@ fn causes(
         loops: readings.iter().filter(is_loop).collect(),
         parameters,
     };
-    let told = events.iter().filter(|event| within(event.t_s));
-    let mut causes: Vec<Cause> = told.filter_map(told_by).collect();
+    let of_time = events.iter().filter(|event| within(event.t_s));
+    let mut causes: Vec<Cause> = of_time.filter_map(named_by).collect();
     causes.extend(seen.silences());
     causes.extend(seen.sensors());
     causes.extend(seen.motion());
@@ -124,7 +124,7 @@ fn causes(
 }
 
 /// What the session itself says of an event.
-fn told_by(event: &LoggedEvent) -> Option<Cause> {
+fn named_by(event: &LoggedEvent) -> Option<Cause> {
     let kind = if event.text.contains("program started again") {
         Kind::Restart
     } else if event.level == Level::Fault {

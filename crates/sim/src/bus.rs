@@ -1,4 +1,4 @@
-//! The devices on the two-wire bus (I2C) of a board: what answers at which address, and what it is told byte by byte.
+//! The devices on the two-wire bus (I2C) of a board: what answers at which address, byte by byte.
 //!
 //! The chip tells of each byte that it begins on the bus; the addressed device replies. Nothing is done between them.
 

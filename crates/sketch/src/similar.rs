@@ -114,7 +114,7 @@ struct Prints {
 
 impl Prints {
     fn of(text: &str) -> Self {
-        let text = text.get(..LONGEST).unwrap_or(text);
+        let text = &text[..text.floor_char_boundary(LONGEST)];
         let tokens = tokens(text);
         let rows = tokens.windows(GRAM).enumerate();
         Self {

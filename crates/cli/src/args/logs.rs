@@ -120,7 +120,7 @@ Examples:
   rumbo explain out/mode1-7.mcap
   rumbo explain out/mode1-7.mcap --from 2 --to 5 --json
 
-Each line says what the log shows; without ground truth, of a real robot, fewer causes can be told.")]
+Each line says what the log shows; without ground truth, of a real robot, fewer causes can be found.")]
 pub(crate) struct ExplainArgs {
     /// The log
     #[arg(value_name = "LOG")]

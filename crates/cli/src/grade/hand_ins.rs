@@ -40,7 +40,7 @@ impl Found {
     }
 
     pub(super) fn is_sketch(&self) -> bool {
-        self.text().is_some()
+        matches!(self.given, Ok(Given::Sketch(_)))
     }
 
     /// Its text, if it is a sketch.
@@ -144,12 +144,17 @@ pub(super) fn find(folder: &Path) -> Result<Class, Failure> {
     })
 }
 
-/// What is in a person's archive.
+/// What is in a person's archive. Of a sketch, which is read then, nothing stays unpacked.
 fn of_archive(archive: &Path, place: &Path) -> Result<Given, SketchError> {
-    unpack(archive, place, Bounds::SKETCH)?;
-    // macOS puts its own folder beside the other one.
-    let _ = fs::remove_dir_all(place.join("__MACOSX"));
-    given(&only_folder(place.to_owned()), false)
+    let found = unpack(archive, place, Bounds::SKETCH).and_then(|_| {
+        // macOS puts its own folder beside the other one.
+        let _ = fs::remove_dir_all(place.join("__MACOSX"));
+        given(&only_folder(place.to_owned()), false)
+    });
+    if !matches!(found, Ok(Given::Image(_))) {
+        let _ = fs::remove_dir_all(place);
+    }
+    found
 }
 
 /// The one folder in a folder, if nothing else is there, or the folder.

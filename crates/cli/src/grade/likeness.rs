@@ -3,7 +3,7 @@
 use super::hand_ins::Found;
 use crate::failure::Failure;
 use rumbo_experiment::grade::Assignment;
-use rumbo_report::grade::{Alike, pair};
+use rumbo_report::alike::{Alike, pair};
 use rumbo_report::text::Language;
 use rumbo_sketch::similar::{Pair, similar, text_of};
 use rumbo_sketch::{Given, given};

@@ -86,7 +86,7 @@ const RANGES: &[&str] = &[
 pub(crate) fn unit(column: &Series, of: &[(&'static str, f64)]) -> Option<(&'static str, f64)> {
     let words = words(&column.name);
     let last = |count: usize| words.get(words.len().checked_sub(count)?..);
-    let told = |unit: &str| {
+    let says = |unit: &str| {
         let parts: Vec<&str> = unit.split('_').collect();
         let long: &[&str] = match unit {
             "s" => &["seconds", "sec", "secs", "segundos"],
@@ -106,7 +106,7 @@ pub(crate) fn unit(column: &Series, of: &[(&'static str, f64)]) -> Option<(&'sta
             || words.iter().any(|word| long.contains(&word.as_str()))
     };
     of.iter()
-        .filter(|(unit, _)| told(unit))
+        .filter(|(unit, _)| says(unit))
         .max_by_key(|(unit, _)| unit.len())
         .copied()
 }
@@ -215,7 +215,7 @@ fn signal(column: &Series) -> Option<(&'static str, &'static str, Option<&'stati
         .fold(0.0_f64, |most, (_, value)| most.max(value.abs()));
     // REP 103.
     let is_ros = column.kind.contains('/');
-    let told = |units: &[&'static str]| {
+    let says = |units: &[&'static str]| {
         let units: Vec<_> = units.iter().map(|unit| (*unit, 1.0)).collect();
         unit(column, &units).map(|(unit, _)| unit)
     };
@@ -266,11 +266,11 @@ fn signal(column: &Series) -> Option<(&'static str, &'static str, Option<&'stati
             } else {
                 "y"
             };
-            let unit = told(&["m", "cm", "mm", "in"]);
+            let unit = says(&["m", "cm", "mm", "in"]);
             return Some((stem, unit.unwrap_or("m"), None, is_ros || unit.is_some()));
         }
         Some("yaw" | "heading" | "theta" | "rumbo") if side.is_none() => {
-            let unit = told(&["rad", "deg"]);
+            let unit = says(&["rad", "deg"]);
             let likely = if is_ros || largest < 7.0 {
                 "rad"
             } else {
@@ -291,7 +291,7 @@ fn signal(column: &Series) -> Option<(&'static str, &'static str, Option<&'stati
         false => has(RANGES) && !has(REFERENCES),
     };
     if is_range {
-        let unit = told(&["m", "cm", "mm", "in"]);
+        let unit = says(&["m", "cm", "mm", "in"]);
         let likely = if is_ros || largest <= 10.0 { "m" } else { "cm" };
         let side = side.or_else(|| match (in_frame(LEFT), in_frame(RIGHT)) {
             (true, false) => Some(true),
@@ -310,7 +310,7 @@ fn signal(column: &Series) -> Option<(&'static str, &'static str, Option<&'stati
     let is_left = side?;
     if has(REFERENCES) {
         let stem = if is_left { "left_ref" } else { "right_ref" };
-        let unit = told(&["rpm", "rad_s", "deg_s", "rps"]);
+        let unit = says(&["rpm", "rad_s", "deg_s", "rps"]);
         return (has(SPEEDS) || unit.is_some()).then_some((
             stem,
             unit.unwrap_or("rpm"),
@@ -320,17 +320,17 @@ fn signal(column: &Series) -> Option<(&'static str, &'static str, Option<&'stati
     }
     if has(PWMS) {
         let likely = if largest <= 1.0 { "duty" } else { "pwm" };
-        let unit = told(&["pwm", "percent"]).unwrap_or(likely);
+        let unit = says(&["pwm", "percent"]).unwrap_or(likely);
         return Some((wheel(is_left), unit, None, has(&["pwm"]) && largest > 1.0));
     }
     if has(COUNTS) {
         return Some((wheel(is_left), "turn", Some("COUNTS"), false));
     }
-    if has(SPEEDS) || told(&["rpm", "rad_s", "deg_s", "rps"]).is_some() {
-        if told(&["m_s", "mm_s", "cm_s"]).is_some() {
+    if has(SPEEDS) || says(&["rpm", "rad_s", "deg_s", "rps"]).is_some() {
+        if says(&["m_s", "mm_s", "cm_s"]).is_some() {
             return Some((wheel(is_left), "rad_s", Some("RADIUS"), false));
         }
-        let unit = told(&["rpm", "rad_s", "deg_s", "rps"]);
+        let unit = says(&["rpm", "rad_s", "deg_s", "rps"]);
         let likely = if is_ros { "rad_s" } else { "rpm" };
         // A speed of a joint is in rad/s, one of a plain number in anything.
         let is_sure = unit.is_some() || column.kind.ends_with("/JointState");

@@ -33,14 +33,14 @@ impl Cpu {
     /// A jump, call or return from `at` leads to the program's beginning.
     #[cold]
     #[inline(never)]
-    pub(super) fn note_anew(&mut self, at: u32) {
-        let times = self.anew.map_or(0, |(times, _)| times);
-        self.anew = Some((times + 1, at & self.last_word));
+    pub(super) fn note_restart(&mut self, at: u32) {
+        let times = self.restarts.map_or(0, |(times, _)| times);
+        self.restarts = Some((times + 1, at & self.last_word));
     }
 
-    /// How often the program has begun anew without a reset, and from where the last time \[words\].
-    pub fn begun_anew(&self) -> Option<(u32, u32)> {
-        self.anew
+    /// How often the program has restarted without a reset, and from where the last time \[words\].
+    pub fn restarts(&self) -> Option<(u32, u32)> {
+        self.restarts
     }
 
     /// Whether what stands here is the blank flash below a boot loader; found out where an application would begin.

@@ -142,11 +142,11 @@ impl Cpu {
                     pc = $target.wrapping_sub(1)
                 };
             }
-            /// A target at which the program begins anew.
-            macro_rules! anew {
+            /// A target at which the program restarts.
+            macro_rules! restart {
                 ($target:expr) => {
                     if $target == 0 {
-                        self.note_anew(pc);
+                        self.note_restart(pc);
                     }
                 };
             }
@@ -392,14 +392,14 @@ impl Cpu {
                     cycles = 2;
                 }
                 Code::Jmp => {
-                    anew!(op.address());
+                    restart!(op.address());
                     jump!(op.address());
                     cycles = 3;
                 }
                 Code::Ijmp | Code::Eijmp => {
                     let target = self.pointed(op.code == Code::Eijmp);
                     look_ahead!(target);
-                    anew!(target);
+                    restart!(target);
                     jump!(target);
                     cycles = 2;
                 }
@@ -432,7 +432,7 @@ impl Cpu {
                         }
                     }
                     check_stack!();
-                    anew!(target);
+                    restart!(target);
                     jump!(target);
                 }
                 Code::Ret | Code::Reti => {
@@ -452,7 +452,7 @@ impl Cpu {
                     // The program counter of a Mega has 17 bits, that of an Uno 14.
                     let target = u32::from_be_bytes(bytes) & self.last_word;
                     look_ahead!(target);
-                    anew!(target);
+                    restart!(target);
                     jump!(target);
                     if op.code == Code::Reti {
                         status.interrupts = true;

@@ -119,8 +119,8 @@ pub struct Cpu {
     verdict: Option<Verdict>,
     /// Where the last jump led behind which nothing can run, and what kind of jump it was.
     astray: Option<(u32, Arrival)>,
-    /// How often a jump led to the program's beginning, and the last one.
-    anew: Option<(u32, u32)>,
+    /// How often a jump led to address 0, and from where the last one.
+    restarts: Option<(u32, u32)>,
     /// Where a boot loader begins, if the program has one [words].
     boot: Option<u32>,
     /// Up to here all flash is erased, below a boot loader [words]; 0: it is not.
@@ -168,7 +168,7 @@ impl Cpu {
             shadow: false,
             verdict: None,
             astray: None,
-            anew: None,
+            restarts: None,
             boot: None,
             blank_to: 0,
         };

@@ -37,7 +37,7 @@ pub enum Input {
         /// Against ground [V], 0 to 5.
         volts: f64,
     },
-    /// What a device on the two-wire bus does with the byte that [`Event::TwoWire`] told of, until that byte is over.
+    /// What a device on the two-wire bus does with the byte that [`Event::TwoWire`] announced, until that byte is over.
     TwoWire(Reply),
     /// The chip is reset.
     Reset(Cause),
@@ -95,7 +95,7 @@ pub enum Event {
         /// What it does there.
         pwm: Option<Pwm>,
     },
-    /// A byte begins on the two-wire bus; told to whoever asked ([`crate::chip::Chip::watch_two_wire`]). The run pauses, for
+    /// A byte begins on the two-wire bus; announced where it was asked for ([`crate::chip::Chip::watch_two_wire`]). The run pauses, for
     /// [`Input::TwoWire`]: without one nobody answers.
     TwoWire(Transfer),
     /// The chip was reset, and starts over.

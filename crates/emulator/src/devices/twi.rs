@@ -2,7 +2,7 @@
 //!
 //! Both lines are pulled down or released; a released line is high through the pull-ups of the board. What another
 //! drives counts: an acknowledgement, bits read, a clock held low, arbitration lost. With nothing connected an address is
-//! not acknowledged. A device beyond the chip need not follow the edges: it is told of each byte that begins
+//! not acknowledged. A device beyond the chip need not follow the edges: it gets each byte as it begins
 //! ([`Event::TwoWire`]), and its [`Reply`] is put on SDA bit by bit.
 //!
 //! # Theory of operation

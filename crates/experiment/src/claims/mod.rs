@@ -1,6 +1,6 @@
 //! What a program is to do, as claims that a machine checks: `rumbo check tests.toml`.
 //!
-//! Each test puts the program on a board anew, in its robot and world, and does one step after the other; the first that
+//! Each test begins with the board just switched on, in its robot and world, and does one step after the other; the first that
 //! fails ends it. [`Suite::parse`] reads the file, [`Suite::drive`] does a test.
 //!
 //! ```toml

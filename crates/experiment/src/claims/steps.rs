@@ -19,10 +19,8 @@ const SHOWN: usize = 300;
 pub struct Verdict {
     /// How long it took, in simulated time [s].
     pub took_s: f64,
-    /// The step that failed, if one did.
-    pub broken: Option<Broken>,
-    /// The robot as it was then.
-    pub robot: Robot,
+    /// The step that failed, if one did, and the robot as it was then.
+    pub broken: Option<(Broken, Box<Robot>)>,
 }
 
 /// A step that failed.
@@ -105,8 +103,7 @@ impl Test {
         }
         Ok(Verdict {
             took_s: under.now_s(),
-            broken,
-            robot: under.robot,
+            broken: broken.map(|broken| (broken, Box::new(under.robot))),
         })
     }
 }

@@ -81,7 +81,7 @@ fn read_part(own: &Table<'_, '_>, name: &str, kind: PartKind, wiring: &mut Wirin
     });
 }
 
-/// The keys of a remote control, which are told by how many there are.
+/// The keys of a remote control, by how many it has.
 fn read_keys(own: &Table<'_, '_>, kind: PartKind) -> &'static [Key] {
     if kind != PartKind::Infrared {
         return &[];

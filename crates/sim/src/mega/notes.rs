@@ -21,7 +21,7 @@ pub(super) struct Oddities {
     link_baud: Option<[f64; 2]>,
 }
 
-/// Resets by one cause that are more than a program's own way to begin anew.
+/// Resets by one cause that are more than a program's own way to restart.
 const RESETS: u32 = 2;
 
 impl Oddities {
@@ -88,7 +88,7 @@ impl Mega {
             )
         };
         let strange = self.chip.unmodelled().iter().map(line);
-        let notes = strange.chain(self.standstill()).chain(self.anew());
+        let notes = strange.chain(self.standstill()).chain(self.restarted());
         let notes = notes.chain(self.unsent());
         let notes = notes.chain(self.misframed());
         let notes = notes.chain(self.oddities.told(self.firmware.name()));
@@ -138,10 +138,10 @@ impl Mega {
     }
 
     /// That the program begins again and again, though nothing resets the chip.
-    fn anew(&self) -> Option<String> {
+    fn restarted(&self) -> Option<String> {
         /// `jmp 0`, where the C library has all interrupts lead that no function handles.
         const BAD_INTERRUPT: [u8; 4] = [0x0C, 0x94, 0, 0];
-        let begun = self.chip.cpu().begun_anew();
+        let begun = self.chip.cpu().restarts();
         let (times, at) = begun.filter(|(times, _)| *times > RESETS)?;
         let (name, place) = (self.firmware.name(), self.firmware.image().place(at));
         let here = self.chip.cpu().flash().get(2 * at as usize..);
@@ -153,7 +153,7 @@ impl Mega {
             }
         };
         Some(format!(
-            "firmware {name}: it began anew {times} times without a reset, the last time from {place}: {why}"
+            "firmware {name}: it restarted {times} times without a reset, the last time from {place}: {why}"
         ))
     }
 

@@ -876,12 +876,12 @@ fn a_program_that_begins_again_and_again_is_told_why() {
     let by_interrupt = "void setup() { TCCR2B = 1; TIMSK2 = 1; }\nvoid loop() { }\n";
     for (name, sketch, why) in [
         (
-            "anew_new",
+            "restart_new",
             by_new,
             "in main: a function that is not there was called",
         ),
         (
-            "anew_interrupt",
+            "restart_interrupt",
             by_interrupt,
             ": an interrupt was on that no function handles",
         ),
@@ -891,7 +891,7 @@ fn a_program_that_begins_again_and_again_is_told_why() {
         };
         let said = stdout(&drive(&bench, &[]));
         assert!(
-            said.contains("it began anew") && said.contains(why),
+            said.contains("it restarted") && said.contains(why),
             "{said}"
         );
     }
