@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::logs;
 use crate::new_robot;
 use crate::output::{self, figure};
-use rumbo_control::mode::{ModeId, Reference, ReferenceKind};
+use rumbo_control::mode::{ModeId, ReferenceDescription, ReferenceKind};
 use rumbo_control::params::ParamId;
 use rumbo_control::rig::Rig;
 use rumbo_experiment::files::{FileError, Kind, Library, MOVEMENTS, parameters::exact};
@@ -225,7 +225,7 @@ fn mode_entry(mode: ModeId) -> Value {
     let rpm = |rad_s: f32| (f64::from(rad_s) * 30.0 / std::f64::consts::PI).round();
     let cm = |distance_m: f32| (f64::from(distance_m) * 1e3).round() / 10.0;
     let reference = about.reference.map(
-        |Reference {
+        |ReferenceDescription {
              kind,
              min,
              max,

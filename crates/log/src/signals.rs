@@ -6,8 +6,8 @@ pub(crate) use row::tidy;
 pub use row::{Cell, Row};
 
 use crate::scene::{MapPose, Truth};
-use rumbo_control::mode::ModeId;
-use rumbo_control::{Range, SonarId, Wheels};
+use rumbo_control::mode::{ModeId, Reference};
+use rumbo_control::{Range, SonarId};
 use rumbo_wire::Telemetry;
 use std::f64::consts::PI;
 
@@ -18,8 +18,8 @@ pub struct Sample {
     pub t_ms: i64,
     /// The active mode.
     pub mode: ModeId,
-    /// The mode's reference; units as in [`rumbo_wire::Status::reference`].
-    pub reference: Wheels<f32>,
+    /// The mode's reference.
+    pub reference: Reference,
     /// The heading setpoint \[rad\]; 0 where the mode has none.
     pub heading_ref_rad: f32,
     /// The robot's telemetry.
@@ -140,8 +140,8 @@ pub const SIGNALS: [Signal; 50] = [
     unplotted("state", |s| f32::from(s.telemetry.state)),
     unplotted("armed", |s| flag(s.telemetry.armed)),
     unplotted("faulted", |s| flag(s.telemetry.faulted)),
-    unplotted("reference_left", |s| s.reference.left),
-    unplotted("reference_right", |s| s.reference.right),
+    unplotted("reference_left", |s| s.reference.numbers()[0]),
+    unplotted("reference_right", |s| s.reference.numbers()[1]),
     signal("x_m", "x", "estimated position, x", METRES, |s| s.telemetry.pose.x_m),
     signal("y_m", "y", "estimated position, y", METRES, |s| s.telemetry.pose.y_m),
     signal("heading_rad", "heading", "estimated heading", DEGREES, |s| s.telemetry.pose.heading_rad),
@@ -208,7 +208,7 @@ impl Sample {
         Self {
             t_ms: 0,
             mode: ModeId::default(),
-            reference: Wheels::both(0.0),
+            reference: Reference::None,
             heading_ref_rad: 0.0,
             telemetry: Telemetry::default(),
             origin: MapPose::default(),
@@ -238,7 +238,7 @@ mod tests {
         let sample = Sample {
             t_ms: 1_040,
             mode: ModeId::FrontDistance,
-            reference: Wheels::both(0.3),
+            reference: Reference::Distance(0.3),
             heading_ref_rad: 0.0,
             telemetry,
             origin: MapPose::default(),

@@ -205,23 +205,15 @@ impl Outcome {
     /// The goal that the robot reports [m], x and y.
     pub(crate) fn goal_m(&self) -> [Points; 2] {
         let armed_s = self.armed_s();
-        let status = || {
-            self.trace()
-                .messages
-                .iter()
-                .filter_map(move |received| match &received.what {
-                    FromRobot::Status(status) => Some((received.t_s - armed_s, status.reference)),
-                    _ => None,
-                })
-        };
-        let mut goals = [
-            status()
-                .map(|(t_s, goal)| (t_s, f64::from(goal.left)))
-                .collect(),
-            status()
-                .map(|(t_s, goal)| (t_s, f64::from(goal.right)))
-                .collect(),
-        ];
+        let mut goals = [Points::new(), Points::new()];
+        for received in &self.trace().messages {
+            if let FromRobot::Status(status) = &received.what {
+                let goal = status.reference.numbers();
+                for (points, coordinate) in std::iter::zip(&mut goals, goal) {
+                    points.push((received.t_s - armed_s, f64::from(coordinate)));
+                }
+            }
+        }
         if self.has_text_rows() {
             goals = [
                 self.text(|row| Some(f64::from(text_rows::mission(row)?.goal_x_m))),

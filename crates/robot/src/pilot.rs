@@ -7,7 +7,7 @@
 use rumbo_control::drive::DriveLayer;
 use rumbo_control::estimate::{Estimate, Estimator};
 use rumbo_control::math::round;
-use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, SetpointError};
+use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, Reference, SetpointError};
 use rumbo_control::params::{ParamError, ParamId, Params};
 use rumbo_control::policy::{Known, Shape, observe};
 use rumbo_control::rig::Rig;
@@ -309,7 +309,7 @@ impl Pilot {
     }
 
     /// The setpoint in force, as in [`rumbo_wire::Status`].
-    pub(crate) fn reference(&self) -> Wheels<f32> {
+    pub(crate) fn reference(&self) -> Reference {
         self.mode.reference()
     }
 
@@ -373,7 +373,7 @@ impl Pilot {
         };
         done.map_err(refusal_of_setpoint)?;
         Ok(match *command {
-            Command::Reference(_) | Command::WheelReference(_) => mode.reference().left,
+            Command::Reference(_) | Command::WheelReference(_) => mode.reference().numbers()[0],
             Command::Move { level, .. } => {
                 let (Level::Duty(value) | Level::Speed(value)) = level;
                 value

@@ -309,6 +309,7 @@ fn is_news(status: &Status, before: &Status) -> bool {
 fn write_row(line: &mut Line, status: &Status, signals: &Signals) {
     let telemetry = &signals.telemetry;
     let [left, right, front] = &telemetry.ranges;
+    let [first, second] = status.reference.numbers();
     match status.mode {
         ModeId::FrontDistance | ModeId::FrontAlign | ModeId::WallHold | ModeId::WallFollow => {
             // One sonar in front the original sends twice.
@@ -318,7 +319,7 @@ fn write_row(line: &mut Line, status: &Status, signals: &Signals) {
             };
             line.range(left.range);
             line.range(right.range);
-            line.number(status.reference.left * CM_PER_M);
+            line.number(first * CM_PER_M);
         }
         ModeId::Waypoints => {
             line.speeds(&signals.wheel_rad_s());
@@ -330,8 +331,8 @@ fn write_row(line: &mut Line, status: &Status, signals: &Signals) {
         ModeId::Mission | ModeId::Policy => {
             line.speeds(&telemetry.wheel_ref_rad_s);
             line.angle(signals.heading_ref_rad);
-            line.number(status.reference.left);
-            line.number(status.reference.right);
+            line.number(first);
+            line.number(second);
             line.pose(&telemetry.pose);
             line.integer(i16::from(telemetry.state));
             line.range(right.range);
@@ -352,6 +353,7 @@ fn write_row(line: &mut Line, status: &Status, signals: &Signals) {
 mod tests {
     extern crate std;
     use super::*;
+    use rumbo_control::mode::Reference;
     use rumbo_control::{AgedRange, Duty, Pose, Range};
     use rumbo_wire::text::{RAD_PER_DEG, RAD_S_PER_RPM, Row};
     use rumbo_wire::{Decoder, PROTOCOL_VERSION, Received, ResetCause};
@@ -406,10 +408,7 @@ mod tests {
         let row = |mode| {
             let status = Status {
                 mode,
-                reference: Wheels {
-                    left: 5.0,
-                    right: 6.0,
-                },
+                reference: Reference::Goal { x_m: 5.0, y_m: 6.0 },
                 ..Status::default()
             };
             let mut line = Line::new(12);

@@ -1,8 +1,8 @@
 //! Commands of the original text protocol, in the units of the core.
 
-use rumbo_control::mode::{ModeId, ReferenceKind};
+use rumbo_control::mode::{ModeId, Reference, ReferenceKind};
 use rumbo_control::params::ParamId;
-use rumbo_control::{Duty, Side, Wheels};
+use rumbo_control::{Duty, Side};
 use rumbo_wire::text::{CM_PER_M, RAD_S_PER_RPM, TextCommand};
 use rumbo_wire::{Command, Refusal};
 
@@ -26,7 +26,7 @@ pub(crate) enum Translated {
 pub(crate) fn translate(
     command: TextCommand,
     mode: ModeId,
-    reference: Wheels<f32>,
+    reference: Reference,
 ) -> Result<Translated, Refusal> {
     let command = match command {
         TextCommand::On => Command::Arm,
@@ -41,7 +41,9 @@ pub(crate) fn translate(
             Some(ReferenceKind::Goal) | None => return Err(Refusal::NotInThisMode),
         },
         TextCommand::WheelReference(side, rpm) => {
-            let mut wheels = reference;
+            let Reference::Wheels(mut wheels) = reference else {
+                return Err(Refusal::NotInThisMode);
+            };
             wheels[side] = rpm * RAD_S_PER_RPM;
             Command::WheelReference(wheels)
         }

@@ -18,9 +18,9 @@ use crate::meter::Meter;
 use crate::robot_clock::RobotClock;
 use crate::terminal::Terminal;
 use handshake::Handshake;
-use rumbo_control::mode::ModeId;
+use rumbo_control::Velocity;
+use rumbo_control::mode::{ModeId, Reference};
 use rumbo_control::params::ParamId;
-use rumbo_control::{Velocity, Wheels};
 use rumbo_wire::text::RowKind;
 use rumbo_wire::{Command, Decoder, Hello, Message, PROTOCOL_VERSION, ToRobot};
 
@@ -75,7 +75,7 @@ pub struct RobotClient {
     last_sent_us: Option<u64>,
     last_received_us: u64,
     mode: ModeId,
-    reference: Wheels<f32>,
+    reference: Reference,
     heading_ref_rad: f32,
     malformed: u32,
     /// Errors before the first good frame, at most one: a receiver that joins within a frame cannot read its rest.
@@ -118,7 +118,7 @@ impl RobotClient {
             last_sent_us: None,
             last_received_us: 0,
             mode: ModeId::default(),
-            reference: Wheels::both(0.0),
+            reference: Reference::None,
             heading_ref_rad: 0.0,
             malformed: 0,
             cut_off: None,
@@ -305,15 +305,15 @@ impl RobotClient {
             // The acknowledgement arrives before the next status.
             if let Fate::Applied(value) = outcome.fate {
                 match outcome.command {
-                    Command::Reference(_) => self.reference = Wheels::both(value),
-                    Command::WheelReference(wheels) => self.reference = wheels,
+                    Command::Reference(_) => {
+                        let kind = self.mode.reference_kind();
+                        self.reference = Reference::new(kind, [value; 2]);
+                    }
+                    Command::WheelReference(wheels) => self.reference = Reference::Wheels(wheels),
                     Command::Goal { x_m, y_m }
                         if matches!(self.mode, ModeId::Mission | ModeId::Policy) =>
                     {
-                        self.reference = Wheels {
-                            left: x_m,
-                            right: y_m,
-                        };
+                        self.reference = Reference::Goal { x_m, y_m };
                     }
                     Command::Mode(mode) => self.enter(mode),
                     _ => {}
@@ -351,8 +351,8 @@ impl RobotClient {
         self.mode
     }
 
-    /// The mode's reference last reported; units as in [`Status::reference`].
-    pub fn reference(&self) -> Wheels<f32> {
+    /// The mode's reference last reported.
+    pub fn reference(&self) -> Reference {
         self.reference
     }
 

@@ -5,7 +5,7 @@
 //! beginning of a line, so a line that follows frames is sent after a line end.
 
 use rumbo_control::Wheels;
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::{ModeId, Reference};
 use rumbo_wire::text::{self, RAD_PER_DEG, RAD_S_PER_RPM, Row, RowKind, TextCommand};
 use rumbo_wire::{Command, Telemetry};
 
@@ -21,8 +21,8 @@ pub(crate) struct ParsedRow {
     pub(crate) t_ms: i64,
     pub(crate) telemetry: Telemetry,
     pub(crate) mode: Option<ModeId>,
-    /// The mode's reference, where the row has it; units as in [`rumbo_wire::Status::reference`].
-    pub(crate) reference: Option<Wheels<f32>>,
+    /// The mode's reference, where the row has it.
+    pub(crate) reference: Option<Reference>,
     /// The mode's heading setpoint, where the row has it \[rad\].
     pub(crate) heading_ref_rad: Option<f32>,
     pub(crate) kind: RowKind,
@@ -151,20 +151,21 @@ impl Terminal {
     }
 
     /// The mode's reference and heading setpoint in the row.
-    fn setpoints(&self, row: &Row) -> (Option<Wheels<f32>>, Option<f32>) {
-        match row {
-            Row::Distance(row) => (Some(Wheels::both(row.reference_cm / text::CM_PER_M)), None),
-            Row::Speed(_) if self.apart => (None, None),
-            Row::Speed(row) => (Some(Wheels::both(row.reference_rpm * RAD_S_PER_RPM)), None),
-            Row::Waypoints(_) => (None, None),
-            Row::Mission(row) => (
-                Some(Wheels {
-                    left: row.goal_x_m,
-                    right: row.goal_y_m,
-                }),
-                Some(row.heading_reference_deg * RAD_PER_DEG),
-            ),
-        }
+    fn setpoints(&self, row: &Row) -> (Option<Reference>, Option<f32>) {
+        let (reference, heading_rad) = match row {
+            Row::Distance(row) => (Reference::Distance(row.reference_cm / text::CM_PER_M), None),
+            Row::Speed(row) if !self.apart => {
+                let both = Wheels::both(row.reference_rpm * RAD_S_PER_RPM);
+                (Reference::Wheels(both), None)
+            }
+            Row::Mission(row) => {
+                let (x_m, y_m) = (row.goal_x_m, row.goal_y_m);
+                let heading_rad = row.heading_reference_deg * RAD_PER_DEG;
+                (Reference::Goal { x_m, y_m }, Some(heading_rad))
+            }
+            Row::Speed(_) | Row::Waypoints(_) => return (None, None),
+        };
+        (Some(reference), heading_rad)
     }
 }
 
@@ -226,17 +227,14 @@ mod tests {
             panic!("not one row")
         };
         assert_eq!(row.mode, Some(ModeId::FrontDistance));
-        assert_eq!(row.reference, Some(Wheels::both(0.3)));
+        assert_eq!(row.reference, Some(Reference::Distance(0.3)));
         assert_eq!(row.telemetry.duty.left.counts(), -20);
         let mission = b"90, 50, 50, -45, 1.5, 0.5, 0.2, 0, 3, 3, 88, 90, 106\n";
         let [row] = rows_in(&mut terminal, mission, 200)[..] else {
             panic!("not one row")
         };
         assert_eq!(row.mode, Some(ModeId::Mission));
-        let goal = Wheels {
-            left: 1.5,
-            right: 0.5,
-        };
+        let goal = Reference::Goal { x_m: 1.5, y_m: 0.5 };
         assert_eq!(row.reference, Some(goal));
     }
 

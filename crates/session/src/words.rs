@@ -5,7 +5,7 @@ use crate::client::NotTaken;
 use crate::commands::{Fate, Outcome};
 use rumbo_control::Velocity;
 use rumbo_control::mode::twist::{MAX_FORWARD_M_S, MAX_YAW_RAD_S};
-use rumbo_control::mode::{ModeId, Reference, ReferenceKind, SetpointError};
+use rumbo_control::mode::{ModeId, ReferenceDescription, ReferenceKind, SetpointError};
 use rumbo_log::parameter;
 
 use rumbo_control::mode::waypoints::{FARTHEST_M, MAX_WAYPOINTS};
@@ -103,7 +103,7 @@ pub(crate) fn refusal(why: Refusal, command: &Command, mode: ModeId) -> String {
 
 /// What the mode's reference may be.
 fn allowed(mode: ModeId) -> Option<String> {
-    let Reference { kind, min, max, .. } = mode.description().reference?;
+    let ReferenceDescription { kind, min, max, .. } = mode.description().reference?;
     Some(match kind {
         ReferenceKind::Distance => {
             format!("allowed is {:.1} to {:.1} cm", min * 100.0, max * 100.0)

@@ -4,7 +4,7 @@
 //! robot refuses it with a reason.
 
 use rumbo_control::math::{is_finite, round};
-use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::mode::{ModeId, Movement, Reference};
 use rumbo_control::rig::Rig;
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Velocity, Wheels};
 
@@ -290,8 +290,9 @@ fn put_status(to: &mut Writer, status: &Status) -> Kind {
         status.fault.map_or(0, |fault| fault as u8),
     ]);
     to.put(battery.to_le_bytes());
-    to.put(status.reference.left.to_le_bytes())
-        .put(status.reference.right.to_le_bytes());
+    for number in status.reference.numbers() {
+        to.put(number.to_le_bytes());
+    }
     to.put([
         status.crc_errors,
         status.dropped,
@@ -314,8 +315,9 @@ fn time(from: &mut Reader) -> RobotTime {
 }
 
 fn status(from: &mut Reader) -> Result<Status, Malformed> {
+    let mode = mode(from)?;
     Ok(Status {
-        mode: mode(from)?,
+        mode,
         armed: from.u8() & 1 != 0,
         fault: match from.u8() {
             0 => None,
@@ -325,10 +327,7 @@ fn status(from: &mut Reader) -> Result<Status, Malformed> {
             BATTERY_UNKNOWN => None,
             code => Some(f32::from(code) / BATTERY_PER_V),
         },
-        reference: Wheels {
-            left: from.f32(),
-            right: from.f32(),
-        },
+        reference: Reference::new(mode.reference_kind(), [from.f32(), from.f32()]),
         crc_errors: from.u8(),
         dropped: from.u8(),
         overruns: from.u8(),

@@ -2,7 +2,7 @@
 
 pub use rumbo_control::mode::Level;
 pub use rumbo_control::mode::waypoints::Waypoint;
-use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::mode::{ModeId, Movement, Reference};
 use rumbo_control::rig::Rig;
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Velocity, Wheels};
 
@@ -181,9 +181,8 @@ pub struct Status {
     pub fault: Option<Fault>,
     /// Battery [V], where a divider is wired.
     pub battery_v: Option<f32>,
-    /// The mode's reference: a distance [m] in modes 1, 2 and 4 (both the same), speeds of the left and right wheel
-    /// [rad/s] in modes 5 and 6, the goal's x and y [m] in mode 8, else 0.
-    pub reference: Wheels<f32>,
+    /// The mode's reference.
+    pub reference: Reference,
     /// Frames from the station that failed the CRC, wrapping.
     pub crc_errors: u8,
     /// Telemetry frames dropped because the link was full, wrapping.

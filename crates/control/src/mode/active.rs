@@ -1,6 +1,7 @@
 //! The list of the modes, and the one that runs: its setpoint, its state, and what it needs of the robot.
 
-use super::description::{Description, ReferenceKind};
+use super::description::Description;
+use super::reference::{Reference, ReferenceKind};
 use super::{
     Action, Mode, SetpointError, front_align, front_distance, manual, mission, policy,
     straight_line, twist, wall_follow, wall_hold, waypoints, wheel_speed,
@@ -11,7 +12,7 @@ use crate::params::ParamId;
 use crate::params::Params;
 use crate::policy::{Observation, Shape};
 use crate::rig::Rig;
-use crate::types::{Fault, Look, Wheels};
+use crate::types::{Fault, Look};
 
 /// Declares [`ModeId`] and [`ActiveMode`] by a list of modes and their modules.
 macro_rules! modes {
@@ -31,7 +32,12 @@ macro_rules! modes {
                 match self { $( ModeId::$mode => &$module::DESCRIPTION, )+ }
             }
 
-            /// What the reference is that a command sets, if there is one.
+            /// What the reference is, if there is one.
+            pub const fn reference_kind(self) -> Option<ReferenceKind> {
+                match self { $( ModeId::$mode => const { kind(&$module::DESCRIPTION) }, )+ }
+            }
+
+            /// The same if a command sets it.
             pub const fn takes_reference(self) -> Option<ReferenceKind> {
                 match self { $( ModeId::$mode => const { commanded(&$module::DESCRIPTION) }, )+ }
             }
@@ -80,9 +86,8 @@ macro_rules! modes {
                 match self { $( Self::$mode(setpoint, _) => $module::$mode::new(params, setpoint).is_ready(estimate), )+ }
             }
 
-            /// The reference in force: a distance [m], wheel speeds [rad/s], or the position to go to (x on the left, y on the right)
-            /// [m], by the kind of the mode's reference; 0 where there is none.
-            pub fn reference(&self) -> Wheels<f32> {
+            /// The reference in force.
+            pub fn reference(&self) -> Reference {
                 match self { $( Self::$mode(setpoint, state) => $module::$mode::reference(setpoint, state), )+ }
             }
 
@@ -182,6 +187,13 @@ impl Default for ActiveMode {
     }
 }
 
+const fn kind(description: &Description) -> Option<ReferenceKind> {
+    match description.reference {
+        Some(reference) => Some(reference.kind),
+        None => None,
+    }
+}
+
 const fn commanded(description: &Description) -> Option<ReferenceKind> {
     match description.reference {
         Some(reference) if reference.commanded => Some(reference.kind),
@@ -272,10 +284,10 @@ mod descriptions {
         for mode in ModeId::ALL {
             let about = mode.description();
             if let Some(reference) = about.reference {
-                let Wheels { left, .. } = ActiveMode::new(mode).reference();
+                let [first, _] = ActiveMode::new(mode).reference().numbers();
                 assert_eq!(reference.check(reference.offered), Ok(()), "{mode:?}");
                 assert_eq!(
-                    reference.check(left).is_ok(),
+                    reference.check(first).is_ok(),
                     reference.commanded,
                     "{mode:?}"
                 );

@@ -117,8 +117,8 @@ impl ActiveMode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mode::ModeId;
     use crate::mode::waypoints::FARTHEST_M;
+    use crate::mode::{ModeId, Reference};
 
     #[test]
     fn a_reference_out_of_range_is_refused_and_the_last_one_stays() {
@@ -127,7 +127,7 @@ mod tests {
         assert_eq!(mode.set_reference(-0.1), Err(SetpointError::OutOfRange));
         assert_eq!(mode.set_reference(2.2), Err(SetpointError::OutOfRange));
         assert_eq!(mode.set_reference(f32::NAN), Err(SetpointError::NotFinite));
-        assert_eq!(mode.reference(), Wheels::both(0.5));
+        assert_eq!(mode.reference().numbers(), [0.5; 2]);
         assert_eq!(
             mode.set_wheel_reference(Wheels::both(1.0)),
             Err(SetpointError::NotInThisMode)
@@ -144,7 +144,7 @@ mod tests {
             }),
             Err(SetpointError::OutOfRange)
         );
-        assert_eq!(mode.reference(), Wheels::both(0.0));
+        assert_eq!(mode.reference().numbers(), [0.0; 2]);
         assert_eq!(
             mode.set_movement(Movement::Forward, Level::Duty(0.5)),
             Err(SetpointError::NotInThisMode)
@@ -174,7 +174,7 @@ mod tests {
                     "{id:?}"
                 );
             }
-            assert_eq!(mode.reference(), Wheels::both(good), "{id:?}");
+            assert_eq!(mode.reference().numbers(), [good; 2], "{id:?}");
         }
     }
 
@@ -207,8 +207,11 @@ mod tests {
             mission.set_goal(0.0, f32::NAN),
             Err(SetpointError::NotFinite)
         );
-        let (left, right) = (1.0, -0.5);
-        assert_eq!(mission.reference(), Wheels { left, right });
+        let goal = Reference::Goal {
+            x_m: 1.0,
+            y_m: -0.5,
+        };
+        assert_eq!(mission.reference(), goal);
         let mut manual = ActiveMode::new(ModeId::Manual);
         assert_eq!(
             manual.set_movement(Movement::Forward, Level::Duty(0.5)),

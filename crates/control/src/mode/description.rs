@@ -3,7 +3,7 @@
 //! The firmware uses only the number, the rigs and the range of the reference, as constants. The whole description
 //! exists on hosts (`ModeId::description`, feature `names`): page, command line, docs and metrics derive from it.
 
-use super::{SetpointError, within};
+use super::reference::ReferenceDescription;
 use crate::params::ParamId;
 use crate::rig::Rigs;
 
@@ -20,8 +20,8 @@ pub struct Description {
     pub states: &'static [StateDescription],
     /// The state in which its reference is not in force yet: the value is stale.
     pub idle: Option<u8>,
-    /// Its reference, if that is one value.
-    pub reference: Option<Reference>,
+    /// What its reference is, if it has one.
+    pub reference: Option<ReferenceDescription>,
     /// It has a heading setpoint, which is sent to the station.
     pub heading: bool,
     /// Its other inputs.
@@ -56,69 +56,6 @@ pub struct Way {
     pub to: u8,
     /// When, in a few words.
     pub when: &'static str,
-}
-
-/// The reference of a mode.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reference {
-    /// Its kind.
-    pub kind: ReferenceKind,
-    /// Smallest allowed value.
-    pub min: f32,
-    /// Largest allowed value.
-    pub max: f32,
-    /// The value to offer first.
-    pub offered: f32,
-    /// A command sets it; otherwise the mode determines it.
-    pub commanded: bool,
-}
-
-impl Reference {
-    /// One that a command sets.
-    pub const fn commanded(kind: ReferenceKind, min: f32, max: f32, offered: f32) -> Self {
-        Self {
-            kind,
-            min,
-            max,
-            offered,
-            commanded: true,
-        }
-    }
-
-    /// Whether a value is allowed.
-    ///
-    /// # Errors
-    /// It is not finite or out of range.
-    #[inline]
-    pub fn check(&self, value: f32) -> Result<(), SetpointError> {
-        within(value, self.min, self.max)
-    }
-}
-
-/// What a reference is, in SI units.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReferenceKind {
-    /// A distance in metres.
-    Distance,
-    /// A speed of each wheel in rad/s.
-    WheelSpeed,
-    /// One speed of both wheels in rad/s.
-    Speed,
-    /// A position: each coordinate in metres.
-    Goal,
-}
-
-#[cfg(feature = "names")]
-impl ReferenceKind {
-    /// The name in messages to the dashboard.
-    pub const fn name(self) -> &'static str {
-        match self {
-            ReferenceKind::Distance => "distance",
-            ReferenceKind::WheelSpeed => "wheel_speed",
-            ReferenceKind::Speed => "speed",
-            ReferenceKind::Goal => "goal",
-        }
-    }
 }
 
 /// An input of a mode besides its reference.

@@ -20,14 +20,14 @@
 
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states};
 use super::front_distance::{self, FrontDistance};
-use super::{Action, Description, Group, MetricGroup, Mode, Plot, SetpointError};
+use super::{Action, Description, Group, MetricGroup, Mode, Plot, Reference, SetpointError};
 use crate::ahead::{Ahead, AheadState};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
 use crate::motion::{Turn, TurnState};
 use crate::params::{ParamId, Params};
 use crate::rig::{Rig, Rigs};
-use crate::types::{Drive, Fault, TICK_S, Wheels};
+use crate::types::{Drive, Fault, TICK_S};
 use crate::unrest::Unrest;
 use crate::wall::Wall;
 
@@ -191,8 +191,8 @@ impl<'a> Mode<'a> for FrontAlign<'a> {
         self.ahead.is_ready(estimate)
     }
 
-    fn reference(distance_m: &f32, _: &State) -> Wheels<f32> {
-        Wheels::both(*distance_m)
+    fn reference(distance_m: &f32, _: &State) -> Reference {
+        Reference::Distance(*distance_m)
     }
 
     fn set_reference(distance_m: &mut f32, value: f32) -> Result<(), SetpointError> {

@@ -21,14 +21,14 @@
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
 use super::{
     Action, Description, Group, Law, MAX_DISTANCE_M, MIN_DISTANCE_M, MetricGroup, Mode, Plot,
-    Reference, ReferenceKind, SetpointError,
+    Reference, ReferenceDescription, ReferenceKind, SetpointError,
 };
 use crate::ahead::drivable_m;
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, sqrt};
 use crate::params::{ParamId, Params};
 use crate::rig::{Rig, Rigs};
-use crate::types::{Drive, Fault, Look, SonarId, TICK_S, Wheels};
+use crate::types::{Drive, Fault, Look, SonarId, TICK_S};
 use crate::unrest::Unrest;
 
 /// Description of mode 1.
@@ -55,7 +55,7 @@ pub const DESCRIPTION: Description = Description {
 };
 
 /// Of the distance, in mode 2 too.
-pub(super) const REFERENCE: Reference = Reference::commanded(
+pub(super) const REFERENCE: ReferenceDescription = ReferenceDescription::commanded(
     ReferenceKind::Distance,
     MIN_DISTANCE_M,
     MAX_DISTANCE_M,
@@ -189,8 +189,8 @@ impl<'a> Mode<'a> for FrontDistance<'a> {
         self.range_m(estimate).is_ok()
     }
 
-    fn reference(distance_m: &f32, _: &State) -> Wheels<f32> {
-        Wheels::both(*distance_m)
+    fn reference(distance_m: &f32, _: &State) -> Reference {
+        Reference::Distance(*distance_m)
     }
 
     fn set_reference(distance_m: &mut f32, value: f32) -> Result<(), SetpointError> {

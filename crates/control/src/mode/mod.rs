@@ -21,19 +21,18 @@ pub mod wheel_speed;
 mod active;
 mod commands;
 mod movement;
+mod reference;
 
 pub use active::{ActiveMode, ModeId};
-pub use description::{
-    Description, Group, Law, MetricGroup, Plot, Reference, ReferenceKind, StateDescription, Takes,
-    Way,
-};
+pub use description::{Description, Group, Law, MetricGroup, Plot, StateDescription, Takes, Way};
 pub use movement::{Level, Movement};
+pub use reference::{Reference, ReferenceDescription, ReferenceKind};
 
 use crate::estimate::Estimate;
 use crate::math::is_finite;
 use crate::params::Params;
 use crate::range::{MIN_RANGE_M, REACH_M};
-use crate::types::{Drive, Fault, Look, Wheels};
+use crate::types::{Drive, Fault, Look};
 
 /// Fastest wheel reference that is accepted, either way [rad/s]: 191 rpm.
 pub const MAX_WHEEL_RAD_S: f32 = 20.0;
@@ -110,9 +109,9 @@ pub trait Mode<'a>: Sized {
         *state = Self::State::default();
     }
 
-    /// The reference in force, as in [`ActiveMode::reference`].
-    fn reference(_setpoint: &Self::Setpoint, _state: &Self::State) -> Wheels<f32> {
-        Wheels::both(0.0)
+    /// The reference in force.
+    fn reference(_setpoint: &Self::Setpoint, _state: &Self::State) -> Reference {
+        Reference::None
     }
 
     /// Sets the reference, where it is one number.

@@ -9,7 +9,7 @@
 
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::mission::Watch;
-use super::{Action, Description, MetricGroup, Mode, Plot, waypoints};
+use super::{Action, Description, MetricGroup, Mode, Plot, Reference, waypoints};
 use crate::estimate::Estimate;
 use crate::math::{clamp, sqrt};
 use crate::params::{ParamId, Params};
@@ -131,9 +131,9 @@ impl<'a> Mode<'a> for Policy<'a> {
         }
     }
 
-    fn reference(goal: &Goal, _: &State) -> Wheels<f32> {
-        let (left, right) = goal.0.unwrap_or_default();
-        Wheels { left, right }
+    fn reference(goal: &Goal, _: &State) -> Reference {
+        let (x_m, y_m) = goal.0.unwrap_or_default();
+        Reference::Goal { x_m, y_m }
     }
 
     fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {

@@ -17,8 +17,8 @@
 
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
 use super::{
-    Action, Description, Group, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference, ReferenceKind,
-    SetpointError,
+    Action, Description, Group, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference,
+    ReferenceDescription, ReferenceKind, SetpointError,
 };
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min};
@@ -54,7 +54,7 @@ pub const DESCRIPTION: Description = Description {
 };
 
 /// Of both wheels; 40 rpm by default.
-const REFERENCE: Reference = Reference::commanded(
+const REFERENCE: ReferenceDescription = ReferenceDescription::commanded(
     ReferenceKind::Speed,
     -MAX_WHEEL_RAD_S,
     MAX_WHEEL_RAD_S,
@@ -168,8 +168,8 @@ impl<'a> Mode<'a> for StraightLine<'a> {
         }
     }
 
-    fn reference(speed_rad_s: &f32, _: &State) -> Wheels<f32> {
-        Wheels::both(*speed_rad_s)
+    fn reference(speed_rad_s: &f32, _: &State) -> Reference {
+        Reference::Wheels(Wheels::both(*speed_rad_s))
     }
 
     fn set_reference(speed_rad_s: &mut f32, value: f32) -> Result<(), SetpointError> {

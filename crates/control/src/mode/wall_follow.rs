@@ -27,7 +27,7 @@ use super::WallTerms;
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
 use super::{
     Action, DEFAULT_WALL_M, Description, Group, Law, MAX_WALL_M, MIN_WALL_M, MetricGroup, Mode,
-    Plot, Reference, ReferenceKind, SetpointError,
+    Plot, Reference, ReferenceDescription, ReferenceKind, SetpointError,
 };
 use crate::beside::Beside;
 use crate::estimate::Estimate;
@@ -35,7 +35,7 @@ use crate::math::{abs, clamp, max, min, sqrt, wrap_angle};
 use crate::params::{ParamId, Params};
 use crate::range::{MIN_RANGE_M, REACH_M};
 use crate::rig::{Rig, Rigs};
-use crate::types::{Drive, Fault, Range, Side, SonarId, TICK_S, Wheels};
+use crate::types::{Drive, Fault, Range, Side, SonarId, TICK_S};
 use crate::unrest::Unrest;
 use crate::wall::{Wall, WallFilter};
 use core::f32::consts::FRAC_PI_2;
@@ -75,7 +75,7 @@ pub const DESCRIPTION: Description = Description {
 };
 
 /// Of the distance.
-pub(super) const REFERENCE: Reference = Reference::commanded(
+pub(super) const REFERENCE: ReferenceDescription = ReferenceDescription::commanded(
     ReferenceKind::Distance,
     MIN_WALL_M,
     MAX_WALL_M,
@@ -398,8 +398,8 @@ impl<'a> Mode<'a> for WallFollow<'a> {
         self.sonars.is_ready(estimate, self.stale_s, reach)
     }
 
-    fn reference(distance_m: &f32, _: &State) -> Wheels<f32> {
-        Wheels::both(*distance_m)
+    fn reference(distance_m: &f32, _: &State) -> Reference {
+        Reference::Distance(*distance_m)
     }
 
     fn set_reference(distance_m: &mut f32, value: f32) -> Result<(), SetpointError> {

@@ -8,18 +8,18 @@
 //! real one over 27 s: 0.16 cm rms instead of 1.2, 0.35 cm at most instead of 4.6 (`rumbo run mode3 --runs 20`).
 
 use super::wall_follow::{self, Phase, WallFollow};
-use super::{Action, Description, MAX_WALL_M, MIN_WALL_M, Mode, Reference};
+use super::{Action, Description, MAX_WALL_M, MIN_WALL_M, Mode, Reference, ReferenceDescription};
 use crate::estimate::Estimate;
 use crate::math::{clamp, max};
 use crate::params::Params;
-use crate::types::{Fault, Range, SonarId, TICK_S, Wheels};
+use crate::types::{Fault, Range, SonarId, TICK_S};
 
 /// Description of mode 3.
 pub const DESCRIPTION: Description = Description {
     number: 3,
     name: "wall_hold",
     about: "follow a wall at the distance at which the robot starts",
-    reference: Some(Reference {
+    reference: Some(ReferenceDescription {
         commanded: false,
         ..wall_follow::REFERENCE
     }),
@@ -135,8 +135,8 @@ impl<'a> Mode<'a> for WallHold<'a> {
         sonars.is_ready(estimate, *stale_s, (MIN_WALL_M, MAX_WALL_M))
     }
 
-    fn reference((): &(), state: &State) -> Wheels<f32> {
-        Wheels::both(state.reference_m())
+    fn reference((): &(), state: &State) -> Reference {
+        Reference::Distance(state.reference_m())
     }
 
     fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {

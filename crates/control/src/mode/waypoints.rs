@@ -20,14 +20,17 @@ mod route;
 use super::description::{
     FEEDFORWARD, LINES, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states,
 };
-use super::{Action, Description, Group, MetricGroup, Mode, Plot, Reference, ReferenceKind, Takes};
+use super::{
+    Action, Description, Group, MetricGroup, Mode, Plot, Reference, ReferenceDescription,
+    ReferenceKind, Takes,
+};
 use crate::estimate::Estimate;
 use crate::math::wrap_angle;
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
 use crate::pursuit::{Point, Pursuit, PursuitState};
 use crate::rig::Rigs;
-use crate::types::{Drive, Fault, Pose, Transform, Wheels};
+use crate::types::{Drive, Fault, Pose, Transform};
 
 pub use route::{FARTHEST_M, MAX_WAYPOINTS, Route, Waypoint};
 
@@ -65,8 +68,8 @@ pub const DESCRIPTION: Description = Description {
 };
 
 /// Each coordinate of a waypoint or a goal, in mode 8 too.
-pub(super) const REFERENCE: Reference =
-    Reference::commanded(ReferenceKind::Goal, -FARTHEST_M, FARTHEST_M, 0.0);
+pub(super) const REFERENCE: ReferenceDescription =
+    ReferenceDescription::commanded(ReferenceKind::Goal, -FARTHEST_M, FARTHEST_M, 0.0);
 
 states! {
     /// States of mode 7.
@@ -280,9 +283,9 @@ impl<'a> Mode<'a> for Waypoints<'a> {
         }
     }
 
-    fn reference(_: &Route, state: &State) -> Wheels<f32> {
-        let (left, right) = state.target();
-        Wheels { left, right }
+    fn reference(_: &Route, state: &State) -> Reference {
+        let (x_m, y_m) = state.target();
+        Reference::Goal { x_m, y_m }
     }
 
     fn step(&self, state: &mut State, estimate: &Estimate) -> Result<Action, Fault> {

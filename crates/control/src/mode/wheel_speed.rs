@@ -10,8 +10,8 @@
 
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
-    Action, Description, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference, ReferenceKind,
-    SetpointError,
+    Action, Description, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference, ReferenceDescription,
+    ReferenceKind, SetpointError,
 };
 use crate::estimate::Estimate;
 use crate::params::Params;
@@ -37,7 +37,7 @@ pub const DESCRIPTION: Description = Description {
 };
 
 /// Of each wheel; 60 rpm by default.
-const REFERENCE: Reference = Reference::commanded(
+const REFERENCE: ReferenceDescription = ReferenceDescription::commanded(
     ReferenceKind::WheelSpeed,
     -MAX_WHEEL_RAD_S,
     MAX_WHEEL_RAD_S,
@@ -83,8 +83,8 @@ impl<'a> Mode<'a> for WheelSpeed<'a> {
         Self { references }
     }
 
-    fn reference(references: &Wheels<f32>, (): &()) -> Wheels<f32> {
-        *references
+    fn reference(references: &Wheels<f32>, (): &()) -> Reference {
+        Reference::Wheels(*references)
     }
 
     fn set_reference(references: &mut Wheels<f32>, value: f32) -> Result<(), SetpointError> {

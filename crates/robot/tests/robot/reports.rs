@@ -56,7 +56,7 @@ fn a_change_is_reported_at_once() {
         "within the wait for the answer, 0.2 s"
     );
     bench.command(Command::Reference(2.5)).unwrap();
-    assert_eq!(bench.status().reference.left, 2.5);
+    assert_eq!(bench.status().reference.numbers(), [2.5; 2]);
 }
 
 #[test]

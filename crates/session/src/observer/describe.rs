@@ -26,7 +26,6 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
     // Ten bits to a byte.
     let load = |bytes_s: f64| rounded(bytes_s * 10.0 / f64::from(around.baud.max(1)), 1e3);
     let status = observer.status();
-    let reference = client.reference();
     State {
         t_s: around.t_us as f64 / 1e6,
         simulated: around.simulated,
@@ -55,7 +54,7 @@ pub(crate) fn describe(around: &Around, client: &mut RobotClient, observer: &Obs
             fault: status.fault.map(|fault| fault.explanation().into()),
             battery_v: status.battery_v.map(|volts| rounded(volts.into(), 1e2)),
             true_battery_v: around.true_battery_v.map(|volts| rounded(volts, 1e2)),
-            reference: [reference.left, reference.right],
+            reference: client.reference().numbers(),
             overruns: status.overruns,
             servo_rad: observer.servo_rad(),
             rig: observer.rig().map(|rig| Rig::name(rig).into()),

@@ -3,7 +3,7 @@
 //!
 //! It knows no physics and none of the real control; it answers, and it moves when armed.
 
-use rumbo_control::mode::ModeId;
+use rumbo_control::mode::{ModeId, Reference};
 use rumbo_control::params::{ParamError, ParamId, Params, SCHEMA};
 use rumbo_control::{AgedRange, Duty, Pose, Range, Velocity, Wheels};
 use rumbo_log::{Choice, Experiment, MapPose, Obstacle, Scene, SonarMount, Truth};
@@ -113,7 +113,9 @@ impl Toy {
     }
 
     fn status(&mut self) {
-        let (mode, armed, reference) = (self.mode, self.armed, self.reference);
+        let (mode, armed) = (self.mode, self.armed);
+        let Wheels { left, right } = self.reference;
+        let reference = Reference::new(mode.reference_kind(), [left, right]);
         let at = self.time();
         self.say(FromRobot::Status(Status {
             mode,

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses some of it")]
 
 use proptest::prelude::*;
-use rumbo_control::mode::{ModeId, Movement};
+use rumbo_control::mode::{ModeId, Movement, Reference};
 use rumbo_control::rig::Rig;
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Velocity, Wheels};
 use rumbo_wire::message::Waypoint;
@@ -56,11 +56,12 @@ prop_compose! {
     pub(crate) fn status()(
         (mode, armed, fault) in (mode(), any::<bool>(), prop::option::of(fault())),
         battery_v in prop::option::of(0.0f32..20.0),
-        reference in wheels(-200.0f32..200.0),
+        numbers in [-200.0f32..200.0, -200.0f32..200.0],
         (crc_errors, dropped, overruns) in any::<(u8, u8, u8)>(),
         rig in prop::sample::select(Rig::ALL.to_vec()),
         at in time(),
     ) -> Status {
+        let reference = Reference::new(mode.reference_kind(), numbers);
         Status { mode, armed, fault, battery_v, reference, crc_errors, dropped, overruns, rig, at }
     }
 }

@@ -28,15 +28,13 @@ mod watch;
 use super::description::{
     FEEDFORWARD, LINES, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states,
 };
-use super::{Action, Description, Group, MetricGroup, Mode, Plot, Takes, waypoints};
+use super::{Action, Description, Group, MetricGroup, Mode, Plot, Reference, Takes, waypoints};
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
 use crate::rig::{Rig, Rigs};
-use crate::types::{
-    Drive, Fault, Look, Pose, Range, Reading, ServoAngle, Side, SonarId, TICK_S, Wheels,
-};
+use crate::types::{Drive, Fault, Look, Pose, Range, Reading, ServoAngle, Side, SonarId, TICK_S};
 use echoes::{Beam, Echoes};
 use gaze::Gaze;
 use goal::CAREFUL_M;
@@ -416,13 +414,10 @@ impl<'a> Mode<'a> for Mission<'a> {
         state.renew();
     }
 
-    fn reference(task: &Task, _: &State) -> Wheels<f32> {
+    fn reference(task: &Task, _: &State) -> Reference {
         match *task {
-            Task::Goal { x_m, y_m } => Wheels {
-                left: x_m,
-                right: y_m,
-            },
-            Task::Wait | Task::Lane => Wheels::both(0.0),
+            Task::Goal { x_m, y_m } => Reference::Goal { x_m, y_m },
+            Task::Wait | Task::Lane => Reference::Goal { x_m: 0.0, y_m: 0.0 },
         }
     }
 
