@@ -5,6 +5,9 @@
 /// Words of flash: 256 KB.
 pub const FLASH_WORDS: usize = 0x2_0000;
 
+/// Instructions of a run at most: as many as the high bits of [`Op::a`] can count.
+pub const LONGEST_RUN: u32 = 8;
+
 /// Declares the operations once: the enumeration and what the assembler calls them.
 macro_rules! operations {
     ($( $code:ident = $name:literal, )+) => {
@@ -40,6 +43,14 @@ operations! {
     Ret = "ret", Reti = "reti", Brbs = "brbs", Brbc = "brbc", Breq = "breq", Brne = "brne", Brcs = "brcs", Brcc = "brcc",
     Sleep = "sleep", Break = "break", Wdr = "wdr",
     Erased = "erased flash", Illegal = "illegal", Breakpoint = "breakpoint",
+    // A loop that waits begins here.
+    Waits = "wait",
+    // The first of several of its kind ([`Op::before`]).
+    Pushes = "push", Pops = "pop", Ldses = "lds", Stses = "sts",
+    LddsY = "ldd Y+", LddsZ = "ldd Z+", StdsY = "std Y+", StdsZ = "std Z+",
+    Ldis = "ldi", Movs = "mov", Movws = "movw",
+    Adds = "add", Adcs = "adc", Subs = "sub", Sbcs = "sbc", Subis = "subi", Sbcis = "sbci",
+    Cps = "cp", Cpcs = "cpc", Cpis = "cpi",
 }
 
 /// An operation with its operands, ready to run.
@@ -66,6 +77,93 @@ impl Op {
             a: (target >> 16) as u8,
             b: target as u16,
         }
+    }
+
+    /// The words of its instruction.
+    pub const fn words(self) -> u32 {
+        match self.code {
+            Code::Lds | Code::Sts | Code::Jmp | Code::Call => 2,
+            _ => 1,
+        }
+    }
+
+    /// As the first of a run with what follows: instructions of one kind that need no look at the next event in
+    /// between. The high bits of `a` are how many follow in the run.
+    pub const fn before(self, next: Op) -> Op {
+        use Code::*;
+        let code = match (self.code, next.code) {
+            (Push, Push | Pushes) => Pushes,
+            (Pop, Pop | Pops) => Pops,
+            (Lds, Lds | Ldses) => Ldses,
+            (Sts, Sts | Stses) => Stses,
+            (LddY, LddY | LddsY) => LddsY,
+            (LddZ, LddZ | LddsZ) => LddsZ,
+            (StdY, StdY | StdsY) => StdsY,
+            (StdZ, StdZ | StdsZ) => StdsZ,
+            (Ldi, Ldi | Ldis | Mov | Movs | Movw | Movws) => Ldis,
+            (Mov, Ldi | Ldis | Mov | Movs | Movw | Movws) => Movs,
+            (Movw, Ldi | Ldis | Mov | Movs | Movw | Movws) => Movws,
+            (Add, Adc | Adcs) => Adds,
+            (Adc, Adc | Adcs) => Adcs,
+            (Sub, Sbc | Sbcs) => Subs,
+            (Sbc, Sbc | Sbcs) => Sbcs,
+            (Subi, Sbci | Sbcis) => Subis,
+            (Sbci, Sbci | Sbcis) => Sbcis,
+            (Cp, Cpc | Cpcs) => Cps,
+            (Cpc, Cpc | Cpcs) => Cpcs,
+            (Cpi, Cpc | Cpcs) => Cpis,
+            _ => return self,
+        };
+        let follow = next.follow() + 1;
+        let follow = if follow > LONGEST_RUN - 1 {
+            LONGEST_RUN - 1
+        } else {
+            follow
+        };
+        Op {
+            code,
+            a: self.a | (follow as u8) << 5,
+            b: self.b,
+        }
+    }
+
+    /// The same without those that follow.
+    pub const fn alone(self) -> Op {
+        use Code::*;
+        let code = match self.code {
+            Pushes => Push,
+            Pops => Pop,
+            Ldses => Lds,
+            Stses => Sts,
+            LddsY => LddY,
+            LddsZ => LddZ,
+            StdsY => StdY,
+            StdsZ => StdZ,
+            Ldis => Ldi,
+            Movs => Mov,
+            Movws => Movw,
+            Adds => Add,
+            Adcs => Adc,
+            Subs => Sub,
+            Sbcs => Sbc,
+            Subis => Subi,
+            Sbcis => Sbci,
+            Cps => Cp,
+            Cpcs => Cpc,
+            Cpis => Cpi,
+            _ => return self,
+        };
+        Op {
+            code,
+            a: self.a & 31,
+            b: self.b,
+        }
+    }
+
+    /// How many follow in its run.
+    #[inline(always)]
+    pub const fn follow(self) -> u32 {
+        self.a as u32 >> 5
     }
 
     /// Where a jump or a call leads [words].

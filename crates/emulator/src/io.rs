@@ -39,6 +39,12 @@ pub trait Io {
     /// Reads a register.
     fn read(&mut self, address: u16, at: Access) -> u8;
 
+    /// The cycle before which reads from `cycle` on all give the same and change nothing, unless an event comes first
+    /// ([`Io::deadline`]); 0: not even the next one.
+    fn steady_until(&self, _: u16, _: u64) -> u64 {
+        0
+    }
+
     /// Writes a register.
     fn write(&mut self, address: u16, value: u8, at: Access);
 

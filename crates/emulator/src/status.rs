@@ -108,6 +108,13 @@ impl Status {
         self.overflow = overflow;
     }
 
+    /// Before the lowest byte of a sum or difference that takes in the carry of the byte below.
+    #[inline(always)]
+    pub(crate) const fn begin(&mut self) {
+        self.carry = 0;
+        self.nonzero = 0;
+    }
+
     /// a + b + carry.
     #[inline(always)]
     pub(crate) fn add(&mut self, a: u8, b: u8, carry: u8) -> u8 {

@@ -15,8 +15,6 @@ impl Cpu {
     pub(super) fn step_until<I: Io>(&mut self, io: &mut I, mut limit: u64, until: u64) -> bool {
         let mut pc = self.program_counter;
         let mut cycle = self.cycle;
-        // Kept in host registers as long as possible; written back before anything else reads it.
-        let mut status = self.status;
         loop {
             let op = self.operations[pc as usize % FLASH_WORDS];
             let (a, b) = (usize::from(op.a), usize::from(op.b as u8));
@@ -37,19 +35,12 @@ impl Cpu {
                     limit = if self.shadow {
                         0
                     } else {
-                        io.deadline(status.interrupts).min(until)
+                        io.deadline(self.status.interrupts).min(until)
                     }
-                };
-            }
-            /// Writes it back for other readers.
-            macro_rules! save {
-                () => {
-                    self.status = status
                 };
             }
             macro_rules! load_elsewhere {
                 ($address:expr, $at:expr) => {{
-                    save!();
                     let value = self.load_elsewhere(io, $address, $at);
                     look_up!();
                     value
@@ -57,9 +48,7 @@ impl Cpu {
             }
             macro_rules! store_elsewhere {
                 ($address:expr, $value:expr, $at:expr) => {{
-                    save!();
                     self.store_elsewhere(io, $address, $value, $at);
-                    status = self.status;
                     look_up!();
                 }};
             }
@@ -167,7 +156,91 @@ impl Cpu {
                 };
             }
 
+            /// A run ends before the next event, or only its first instruction is done now.
+            macro_rules! count {
+                ($cycles:expr) => {
+                    if cycle + $cycles * u64::from(op.follow()) < limit {
+                        1 + op.follow()
+                    } else {
+                        1
+                    }
+                };
+            }
+            /// A run of instructions that look at registers only.
+            macro_rules! run {
+                ($run:ident $(, $argument:expr)*) => {{
+                    let count = count!(1);
+                    self.$run(pc, count $(, $argument)*);
+                    pc += count - 1;
+                    cycles = u64::from(count);
+                }};
+            }
+            /// A run of instructions of two cycles and so many words; else its first one.
+            macro_rules! run_or {
+                ($words:expr, $run:ident $(($argument:expr))?, $first:expr) => {{
+                    let done = self.$run(pc, count!(2) $(, $argument)?);
+                    if done > 0 {
+                        pc = pc + $words * done - 1;
+                        cycles = 2 * u64::from(done);
+                    } else {
+                        $first
+                    }
+                }};
+            }
+
             match op.code {
+                Code::Pushes => run_or!(1, pushes, {
+                    let value = self.registers[a & 31];
+                    push!(2, value);
+                    cycles = 2;
+                    check_stack!();
+                }),
+                Code::Pops => run_or!(1, pops, {
+                    self.registers[a & 31] = pop!(2);
+                    cycles = 2;
+                }),
+                Code::Ldses => run_or!(2, loads(None), {
+                    self.registers[a & 31] = load!(op.b);
+                    pc += 1;
+                }),
+                Code::Stses => run_or!(2, stores(None), {
+                    store!(op.b, self.registers[a & 31]);
+                    pc += 1;
+                }),
+                Code::LddsY => run_or!(1, loads(Some(Y)), {
+                    self.registers[a & 31] = load!(self.pair(Y).wrapping_add(op.b));
+                }),
+                Code::LddsZ => run_or!(1, loads(Some(Z)), {
+                    self.registers[a & 31] = load!(self.pair(Z).wrapping_add(op.b));
+                }),
+                Code::StdsY => run_or!(1, stores(Some(Y)), {
+                    store!(self.pair(Y).wrapping_add(op.b), self.registers[a & 31])
+                }),
+                Code::StdsZ => run_or!(1, stores(Some(Z)), {
+                    store!(self.pair(Z).wrapping_add(op.b), self.registers[a & 31])
+                }),
+                Code::Ldis | Code::Movs | Code::Movws => run!(moves),
+                Code::Adds => {
+                    self.status.begin();
+                    run!(sum);
+                }
+                Code::Adcs => run!(sum),
+                Code::Subs => {
+                    self.status.begin();
+                    run!(difference, false, true);
+                }
+                Code::Sbcs => run!(difference, false, true),
+                Code::Subis => {
+                    self.status.begin();
+                    run!(difference, true, true);
+                }
+                Code::Sbcis => run!(difference, true, true),
+                Code::Cps => {
+                    self.status.begin();
+                    run!(difference, false, false);
+                }
+                Code::Cpcs => run!(difference, false, false),
+                Code::Cpis => run!(comparison),
                 Code::Nop => {}
                 Code::Movw => {
                     self.registers[a] = self.registers[b];
@@ -176,66 +249,73 @@ impl Cpu {
                 Code::Muls | Code::Fmuls => {
                     let product = i16::from(self.registers[a].cast_signed())
                         * i16::from(self.registers[b].cast_signed());
-                    let result = status.product(product.cast_unsigned(), op.code == Code::Fmuls);
+                    let result = self
+                        .status
+                        .product(product.cast_unsigned(), op.code == Code::Fmuls);
                     self.set_pair(0, result);
                     cycles = 2;
                 }
                 Code::Mulsu | Code::Fmulsu => {
                     let product = i16::from(self.registers[a].cast_signed())
                         .wrapping_mul(i16::from(self.registers[b]));
-                    let result = status.product(product.cast_unsigned(), op.code == Code::Fmulsu);
+                    let result = self
+                        .status
+                        .product(product.cast_unsigned(), op.code == Code::Fmulsu);
                     self.set_pair(0, result);
                     cycles = 2;
                 }
                 Code::Mul | Code::Fmul => {
                     let product = u16::from(self.registers[a]) * u16::from(self.registers[b]);
-                    let result = status.product(product, op.code == Code::Fmul);
+                    let result = self.status.product(product, op.code == Code::Fmul);
                     self.set_pair(0, result);
                     cycles = 2;
                 }
                 Code::Add => {
-                    self.registers[a] = status.add(self.registers[a], self.registers[b], 0);
+                    self.registers[a] = self.status.add(self.registers[a], self.registers[b], 0);
                 }
                 Code::Adc => {
-                    self.registers[a] = status.add_on(self.registers[a], self.registers[b]);
+                    self.registers[a] = self.status.add_on(self.registers[a], self.registers[b]);
                 }
                 Code::Sub => {
-                    self.registers[a] = status.subtract(self.registers[a], self.registers[b]);
+                    self.registers[a] = self.status.subtract(self.registers[a], self.registers[b]);
                 }
                 Code::Sbc => {
-                    self.registers[a] = status.subtract_on(self.registers[a], self.registers[b]);
+                    self.registers[a] = self
+                        .status
+                        .subtract_on(self.registers[a], self.registers[b]);
                 }
                 Code::Cp => {
-                    status.subtract(self.registers[a], self.registers[b]);
+                    self.status.subtract(self.registers[a], self.registers[b]);
                 }
                 Code::Cpc => {
-                    status.subtract_on(self.registers[a], self.registers[b]);
+                    self.status
+                        .subtract_on(self.registers[a], self.registers[b]);
                 }
                 Code::Cpse => skip_if!(self.registers[a] == self.registers[b]),
                 Code::And => {
-                    self.registers[a] = status.logic(self.registers[a] & self.registers[b]);
+                    self.registers[a] = self.status.logic(self.registers[a] & self.registers[b]);
                 }
                 Code::Or => {
-                    self.registers[a] = status.logic(self.registers[a] | self.registers[b]);
+                    self.registers[a] = self.status.logic(self.registers[a] | self.registers[b]);
                 }
                 Code::Eor => {
-                    self.registers[a] = status.logic(self.registers[a] ^ self.registers[b]);
+                    self.registers[a] = self.status.logic(self.registers[a] ^ self.registers[b]);
                 }
                 Code::Mov => self.registers[a] = self.registers[b],
                 Code::Cpi => {
-                    status.subtract(self.registers[a], op.b as u8);
+                    self.status.subtract(self.registers[a], op.b as u8);
                 }
                 Code::Subi => {
-                    self.registers[a] = status.subtract(self.registers[a], op.b as u8);
+                    self.registers[a] = self.status.subtract(self.registers[a], op.b as u8);
                 }
                 Code::Sbci => {
-                    self.registers[a] = status.subtract_on(self.registers[a], op.b as u8);
+                    self.registers[a] = self.status.subtract_on(self.registers[a], op.b as u8);
                 }
                 Code::Ori => {
-                    self.registers[a] = status.logic(self.registers[a] | op.b as u8);
+                    self.registers[a] = self.status.logic(self.registers[a] | op.b as u8);
                 }
                 Code::Andi => {
-                    self.registers[a] = status.logic(self.registers[a] & op.b as u8);
+                    self.registers[a] = self.status.logic(self.registers[a] & op.b as u8);
                 }
                 Code::Ldi => self.registers[a] = op.b as u8,
 
@@ -313,29 +393,29 @@ impl Cpu {
                     cycles = 2;
                 }
 
-                Code::Com => self.registers[a] = status.complement(self.registers[a]),
-                Code::Neg => self.registers[a] = status.subtract(0, self.registers[a]),
+                Code::Com => self.registers[a] = self.status.complement(self.registers[a]),
+                Code::Neg => self.registers[a] = self.status.subtract(0, self.registers[a]),
                 Code::Swap => self.registers[a] = self.registers[a].rotate_left(4),
-                Code::Inc => self.registers[a] = status.increment(self.registers[a]),
-                Code::Dec => self.registers[a] = status.decrement(self.registers[a]),
+                Code::Inc => self.registers[a] = self.status.increment(self.registers[a]),
+                Code::Dec => self.registers[a] = self.status.decrement(self.registers[a]),
                 Code::Asr => {
                     let before = self.registers[a];
-                    self.registers[a] = status.shifted(before, before >> 1 | before & 0x80);
+                    self.registers[a] = self.status.shifted(before, before >> 1 | before & 0x80);
                 }
                 Code::Lsr => {
                     let before = self.registers[a];
-                    self.registers[a] = status.shifted(before, before >> 1);
+                    self.registers[a] = self.status.shifted(before, before >> 1);
                 }
                 Code::Ror => {
                     let before = self.registers[a];
-                    let carry = status.carry_on_top();
-                    self.registers[a] = status.shifted(before, before >> 1 | carry);
+                    let carry = self.status.carry_on_top();
+                    self.registers[a] = self.status.shifted(before, before >> 1 | carry);
                 }
                 Code::Bset | Code::Bclr => {
                     let mask = 1 << op.a;
-                    let bits = status.bits();
+                    let bits = self.status.bits();
                     let set = op.code == Code::Bset;
-                    status = Status::from_bits(if set { bits | mask } else { bits & !mask });
+                    self.status = Status::from_bits(if set { bits | mask } else { bits & !mask });
                     if op.a == 7 {
                         self.shadow = set && bits & 0x80 == 0;
                         look_up!();
@@ -344,13 +424,13 @@ impl Cpu {
                 Code::Bld => {
                     let mask = op.b as u8;
                     let register = self.registers[a];
-                    self.registers[a] = if status.copy() {
+                    self.registers[a] = if self.status.copy() {
                         register | mask
                     } else {
                         register & !mask
                     };
                 }
-                Code::Bst => status.set_copy(self.registers[a] & op.b as u8 != 0),
+                Code::Bst => self.status.set_copy(self.registers[a] & op.b as u8 != 0),
                 Code::Adiw | Code::Sbiw => {
                     let adding = op.code == Code::Adiw;
                     let before = self.pair(a);
@@ -360,7 +440,7 @@ impl Cpu {
                         before.wrapping_sub(op.b)
                     };
                     self.set_pair(a, result);
-                    status.word(before, result, adding);
+                    self.status.word(before, result, adding);
                     cycles = 2;
                 }
 
@@ -455,17 +535,17 @@ impl Cpu {
                     restart!(target);
                     jump!(target);
                     if op.code == Code::Reti {
-                        status.interrupts = true;
+                        self.status.interrupts = true;
                         self.shadow = true;
                         limit = 0;
                     }
                 }
-                Code::Breq => branch_if!(status.zero(), op.address()),
-                Code::Brne => branch_if!(!status.zero(), op.address()),
-                Code::Brcs => branch_if!(status.carry(), op.address()),
-                Code::Brcc => branch_if!(!status.carry(), op.address()),
-                Code::Brbs => branch_if!(status.bit(op.a), near(pc, op.b)),
-                Code::Brbc => branch_if!(!status.bit(op.a), near(pc, op.b)),
+                Code::Breq => branch_if!(self.status.zero(), op.address()),
+                Code::Brne => branch_if!(!self.status.zero(), op.address()),
+                Code::Brcs => branch_if!(self.status.carry(), op.address()),
+                Code::Brcc => branch_if!(!self.status.carry(), op.address()),
+                Code::Brbs => branch_if!(self.status.bit(op.a), near(pc, op.b)),
+                Code::Brbc => branch_if!(!self.status.bit(op.a), near(pc, op.b)),
 
                 Code::Sleep => {
                     if io.sleep(cycle) {
@@ -480,12 +560,19 @@ impl Cpu {
                 // Without a debugger on the chip it does nothing.
                 Code::Break => {}
                 Code::Breakpoint => {
-                    self.rest(pc, cycle, status);
+                    self.rest(pc, cycle);
                     return true;
+                }
+                Code::Waits => {
+                    if self.arrive(pc, cycle, limit) {
+                        self.rest(pc, cycle);
+                        return false;
+                    }
+                    continue;
                 }
                 Code::Erased if self.runs_through(pc) => {}
                 Code::Erased => {
-                    self.rest(pc, cycle, status);
+                    self.rest(pc, cycle);
                     self.end(Verdict::ErasedFlash {
                         program_counter: self.program_counter,
                         arrival: self.arrival(self.program_counter),
@@ -494,7 +581,7 @@ impl Cpu {
                     return false;
                 }
                 Code::Illegal => {
-                    self.rest(pc, cycle, status);
+                    self.rest(pc, cycle);
                     self.end(Verdict::IllegalInstruction {
                         program_counter: self.program_counter,
                         word: op.b,
@@ -507,17 +594,16 @@ impl Cpu {
             pc = pc.wrapping_add(1);
             cycle += cycles;
             if cycle >= limit {
-                self.rest(pc, cycle, status);
+                self.rest(pc, cycle);
                 return false;
             }
         }
     }
 
     /// Leaves everything where it is found again.
-    fn rest(&mut self, program_counter: u32, cycle: u64, status: Status) {
+    fn rest(&mut self, program_counter: u32, cycle: u64) {
         self.program_counter = program_counter & self.last_word;
         self.cycle = cycle;
-        self.status = status;
     }
 
     /// Where Z leads as a pointer to an instruction [words].
@@ -579,5 +665,6 @@ const fn pointer_of(code: Code) -> usize {
 /// The target of a branch, at a signed distance from its own address.
 #[inline(always)]
 const fn near(here: u32, distance: u16) -> u32 {
-    here.wrapping_add(distance.cast_signed() as i32 as u32) % FLASH_WORDS as u32
+    let flipped = (distance ^ 0x8000) as u32;
+    here.wrapping_add(flipped).wrapping_sub(0x8000) % FLASH_WORDS as u32
 }

@@ -14,8 +14,11 @@
 mod astray;
 mod bus;
 mod execute;
+mod runs;
+pub mod touch;
+mod wait;
 
-use crate::decode::{Code, FLASH_WORDS, Op, decode};
+use crate::decode::{Code, FLASH_WORDS, LONGEST_RUN, Op, decode};
 use crate::io::{Demand, Io};
 use crate::model::Model;
 use crate::status::Status;
@@ -125,6 +128,7 @@ pub struct Cpu {
     boot: Option<u32>,
     /// Up to here all flash is erased, below a boot loader [words]; 0: it is not.
     blank_to: u32,
+    search: wait::Search,
 }
 
 impl Cpu {
@@ -171,9 +175,11 @@ impl Cpu {
             restarts: None,
             boot: None,
             blank_to: 0,
+            search: wait::Search::default(),
         };
         cpu.status = Status::from_bits(0);
-        for word in 0..fits.div_ceil(2) as u32 {
+        // Backwards: runs are known by what follows.
+        for word in (0..fits.div_ceil(2) as u32).rev() {
             cpu.predecode(word);
         }
         cpu
@@ -306,14 +312,14 @@ impl Cpu {
         if !self.breakpoints.contains(&word) {
             self.breakpoints.push(word);
         }
-        self.predecode(word);
+        self.predecode_around(word);
     }
 
     /// Removes a breakpoint.
     pub fn clear_breakpoint(&mut self, word: u32) {
         let word = word & self.last_word;
         self.breakpoints.retain(|other| *other != word);
-        self.predecode(word);
+        self.predecode_around(word);
     }
 
     /// Writes a word of flash, as SPM does.
@@ -323,9 +329,15 @@ impl Cpu {
         let [low, high] = value.to_le_bytes();
         self.flash[at] = low;
         self.flash[at + 1] = high;
-        // The word before may be a skip that must know how long this one is, or the first half of it.
-        self.predecode(word.wrapping_sub(1) & self.last_word);
-        self.predecode(word);
+        self.predecode_around(word);
+    }
+
+    /// A word has changed. The word before may be a skip that must know how long this one is, or the first half of it; those before
+    /// may be in a run with it.
+    fn predecode_around(&mut self, word: u32) {
+        for back in 0..2 * LONGEST_RUN {
+            self.predecode(word.wrapping_sub(back) & self.last_word);
+        }
     }
 
     fn flash_word(&self, word: u32) -> u16 {
@@ -343,6 +355,11 @@ impl Cpu {
         let mut op = self.original(word);
         if self.breakpoints.contains(&word) {
             op.code = Code::Breakpoint;
+        }
+        let next = (word + op.words()) & self.last_word;
+        let apart = self.search.begins_at(word) || self.search.begins_at(next);
+        if !apart {
+            op = op.before(self.operations[next as usize]);
         }
         self.put(word, op);
     }
@@ -446,7 +463,13 @@ impl Cpu {
         let (limit, until) = match pace {
             Pace::One => (self.cycle, self.cycle + 1),
             Pace::ToEvent if self.shadow => (self.cycle, until),
-            Pace::ToEvent => (io.deadline(self.status.interrupts).min(until), until),
+            Pace::ToEvent => {
+                let limit = io.deadline(self.status.interrupts).min(until);
+                if limit > self.cycle + wait::SPAN && self.look_for_rounds(io, until) {
+                    return Turn::Ran;
+                }
+                (limit, until)
+            }
         };
         self.shadow = false;
         if self.step_until(io, limit, until) {

@@ -6,7 +6,7 @@ use super::ports::{self, Change};
 use super::system::Sleep;
 use super::{Core, Devices, Unmodelled, timer};
 use crate::io::{Access, Demand, Io, Stored};
-use crate::registers::{MCUCR, TWAR, XMCRA};
+use crate::registers::{ADCH, ADCL, EECR, MCUCR, TWAR, XMCRA};
 
 impl Devices {
     /// Whose register an address is.
@@ -106,6 +106,23 @@ impl Io for Devices {
                 0
             }
         }
+    }
+
+    fn steady_until(&self, address: u16, cycle: u64) -> u64 {
+        let steady = match self.owner(address) {
+            Owner::Ports => self.core.ports.is_steady(address, cycle),
+            Owner::Usart(index) => self.usarts[usize::from(index)].is_steady(address),
+            Owner::Analog => !matches!(address, ADCL | ADCH),
+            Owner::Spi => self.spi.is_steady(address),
+            Owner::Timer(index) => {
+                return self.timers[usize::from(index)].steady_until(&self.core, address);
+            }
+            Owner::External | Owner::TimerPrescalers | Owner::Twi | Owner::System => true,
+            Owner::Eeprom => address != EECR || self.eeprom.is_steady(cycle),
+            Owner::Watchdog | Owner::Programming | Owner::Power => false,
+            Owner::Nobody => self.strange.contains(&address),
+        };
+        if steady { u64::MAX } else { 0 }
     }
 
     fn write(&mut self, address: u16, value: u8, at: Access) {

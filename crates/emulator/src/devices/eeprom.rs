@@ -83,6 +83,11 @@ impl Eeprom {
         self.armed_until.is_some_and(|until| cycle <= until)
     }
 
+    /// EECR reads the same from `cycle` on until something happens.
+    pub(super) fn is_steady(&self, cycle: u64) -> bool {
+        !self.armed(cycle)
+    }
+
     pub(super) fn read(&self, address: u16, cycle: u64) -> u8 {
         let [low, high] = self.address.to_le_bytes();
         match address {

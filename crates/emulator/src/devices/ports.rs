@@ -204,6 +204,11 @@ impl Ports {
         }
     }
 
+    /// From `cycle` on a register reads the same until the port changes.
+    pub(crate) fn is_steady(&self, address: u16, cycle: u64) -> bool {
+        register(address).is_none_or(|(index, _)| cycle >= self.ports[index].changed + SYNCHRONISER)
+    }
+
     pub(crate) fn write(&mut self, address: u16, value: u8, cycle: u64) -> Option<Change> {
         let (index, register) = register(address)?;
         let value = value & self.model.ports[index];

@@ -77,6 +77,11 @@ impl Spi {
         }
     }
 
+    /// A register reads the same until something happens, and a read changes nothing.
+    pub(super) fn is_steady(&self, address: u16) -> bool {
+        address != SPDR && self.seen == self.flags
+    }
+
     pub(super) fn write(&mut self, core: &mut Core, address: u16, value: u8, cycle: u64) {
         match address {
             SPCR => {

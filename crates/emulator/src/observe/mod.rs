@@ -1,21 +1,21 @@
 //! Looking at a program while it runs: watchpoints, a trace of instructions, a profile, the stack's depth.
 //!
 //! While nothing is enabled, the CPU runs as if this module did not exist. Else it goes from one instruction to
-//! the next, and what each is about to do is worked out from its operands ([`touch`]): slower by an order of magnitude, and
+//! the next, and what each is about to do is worked out from its operands ([`crate::cpu::touch`]): slower by an order of magnitude, and
 //! the program cannot tell the difference.
 
 pub mod profile;
 mod report;
-pub mod touch;
+
 pub mod trace;
 pub mod waveform;
 
+use crate::cpu::touch::{Touch, touch};
 use crate::cpu::{Cpu, Pace, Stopped, Turn};
 use crate::decode::Op;
 use crate::devices::Devices;
 use profile::Profile;
 use std::ops::Range;
-use touch::{Touch, touch};
 use trace::{Trace, Traced};
 
 pub use crate::watchpoint::Watchpoint;

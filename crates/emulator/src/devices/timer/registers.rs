@@ -18,6 +18,19 @@ const EXCLK: u8 = 0x40;
 const UPDATES: u8 = 0x1F;
 
 impl Timer {
+    /// The cycle before which a register reads the same unless an event comes first, and a read changes nothing.
+    pub(crate) fn steady_until(&self, core: &Core, address: u16) -> u64 {
+        match (self.place.register(address), self.clock) {
+            (Some(Register::Flags), Clock::Divided(divisor)) => {
+                let prescaler = self.prescaler(core);
+                let tick = prescaler.ticks(divisor, self.computed_to) + self.wave.quiet_ticks(0xFF);
+                prescaler.reset + tick * divisor
+            }
+            (Some(Register::Count | Register::Capture), _) => 0,
+            _ => u64::MAX,
+        }
+    }
+
     pub(crate) fn read(&mut self, core: &mut Core, address: u16, at: Access) -> u8 {
         self.catch_up(core, at.cycle);
         let Some(register) = self.place.register(address) else {

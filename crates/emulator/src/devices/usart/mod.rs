@@ -308,6 +308,12 @@ impl Usart {
         }
     }
 
+    /// A register reads the same until something happens, and a read changes nothing.
+    pub(crate) fn is_steady(&self, address: u16) -> bool {
+        let data = matches!(self.place.register(address), Some(Register::Data));
+        !data && !self.is_clocked()
+    }
+
     pub(crate) fn read(&mut self, core: &mut Core, address: u16, at: Access) -> u8 {
         self.catch_up(core, at.cycle);
         let ninth = self

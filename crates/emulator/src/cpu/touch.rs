@@ -1,6 +1,6 @@
 //! What an instruction is about to touch in the data space.
 
-use crate::cpu::Cpu;
+use super::Cpu;
 use crate::decode::{Code, Op};
 use crate::model::Model;
 

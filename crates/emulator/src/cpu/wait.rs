@@ -1,0 +1,272 @@
+//! Programs that wait: a loop that comes round to the same state runs the same rounds until something happens, so all
+//! but the last of them are left out.
+//!
+//! Now and then the CPU runs on instruction by instruction and keeps what it changes. Where registers, status, stack
+//! pointer and memory are again what they were at the same instruction, and nothing was read that is going to be
+//! different by then ([`Io::steady_until`]), the next rounds are copies of this one up to the next event. What a caller
+//! can see is the same to the cycle. A search without success is tried again after a pause that grows.
+
+use super::Cpu;
+use super::touch::touch;
+use crate::decode::{Code, Op};
+use crate::io::Io;
+use crate::registers::{EIND, RAMPZ, SPH, SPL, SREG};
+
+/// Instructions of one search, and after which of them it begins again from where it then is.
+const SEARCH: usize = 320;
+const FRESH_STARTS: [usize; 2] = [64, 192];
+/// Bytes stored in a round at most.
+const STORES: usize = 64;
+/// Shorter spans to the next event are not worth a search [cycles].
+pub(super) const SPAN: u64 = 256;
+/// Pauses after searches without success [cycles].
+const PAUSE: u64 = 512;
+const LONGEST_PAUSE: u64 = 1 << 19;
+/// Loops that are known, and after how many searches in vain one is given up.
+const LOOPS: usize = 8;
+const FAILURES: u8 = 8;
+
+/// Where to search: now and then wherever the program is, and at once where a loop begins that has waited before.
+#[derive(Clone, Debug)]
+pub(super) struct Search {
+    not_before: u64,
+    pause: u64,
+    loops: Vec<Loop>,
+    /// All of them are marked.
+    marked: bool,
+    /// The program has come to one of them.
+    arrived: bool,
+}
+
+/// A loop that has waited.
+#[derive(Clone, Debug)]
+struct Loop {
+    word: u32,
+    failures: u8,
+}
+
+impl Default for Search {
+    fn default() -> Search {
+        Search {
+            not_before: 0,
+            pause: PAUSE,
+            loops: Vec::new(),
+            marked: true,
+            arrived: false,
+        }
+    }
+}
+
+impl Search {
+    /// A known loop has this as its lowest word.
+    pub(super) fn begins_at(&self, word: u32) -> bool {
+        self.loops.iter().any(|known| known.word == word)
+    }
+}
+
+/// The state at the beginning of a round, and what the round does with the rest of the world.
+struct Round {
+    program_counter: u32,
+    /// The lowest word in it, by which a loop is known.
+    lowest: u32,
+    cycle: u64,
+    registers: [u8; 32],
+    status: u8,
+    stack_pointer: u16,
+    extended: [u8; 2],
+    /// Addresses in SRAM that were stored to, and what was there before.
+    stores: [(u16, u8); STORES],
+    stored: usize,
+    /// What was read from peripherals stays as it is before this cycle.
+    steady_until: u64,
+}
+
+impl Round {
+    fn from(cpu: &Cpu) -> Round {
+        Round {
+            program_counter: cpu.program_counter,
+            lowest: cpu.program_counter,
+            cycle: cpu.cycle,
+            registers: *cpu.registers(),
+            status: cpu.status.bits(),
+            stack_pointer: cpu.stack_pointer(),
+            extended: [cpu.rampz, cpu.eind],
+            stores: [(0, 0); STORES],
+            stored: 0,
+            steady_until: u64::MAX,
+        }
+    }
+
+    /// Everything is as it was.
+    fn is_closed(&self, cpu: &Cpu) -> bool {
+        let stores = &self.stores[..self.stored];
+        let first =
+            |index: usize, address| stores[..index].iter().all(|(other, _)| *other != address);
+        self.registers == *cpu.registers()
+            && self.status == cpu.status.bits()
+            && self.stack_pointer == cpu.stack_pointer()
+            && self.extended == [cpu.rampz, cpu.eind]
+            && !cpu.shadow
+            && stores.iter().enumerate().all(|(index, (address, before))| {
+                !first(index, *address) || cpu.in_sram(*address) == Some(*before)
+            })
+    }
+
+    /// Takes note of what the instruction is about to do; `None` if rounds with it cannot be told from each other.
+    fn note<I: Io>(&mut self, cpu: &Cpu, io: &I, op: Op) -> Option<()> {
+        let unfit = match op.code {
+            Code::Sleep
+            | Code::Wdr
+            | Code::Spm
+            | Code::Breakpoint
+            | Code::Erased
+            | Code::Illegal => true,
+            Code::Lpm | Code::LpmInc | Code::Elpm | Code::ElpmInc => cpu.programming,
+            _ => false,
+        };
+        if unfit {
+            return None;
+        }
+        self.lowest = self.lowest.min(cpu.program_counter);
+        let Some(touch) = touch(cpu, op) else {
+            return Some(());
+        };
+        for address in (touch.address..).take(usize::from(touch.bytes)) {
+            match (cpu.in_sram(address), address) {
+                (Some(before), _) if touch.writes => {
+                    *self.stores.get_mut(self.stored)? = (address, before);
+                    self.stored += 1;
+                }
+                (Some(_), _) | (None, SREG) => {}
+                (None, _) if touch.writes => return None,
+                (None, 0..32 | SPL | SPH) => {}
+                (None, RAMPZ | EIND) if cpu.is_far => {}
+                (None, _) => {
+                    let until = io.steady_until(address, cpu.cycle);
+                    self.steady_until = self.steady_until.min(until);
+                }
+            }
+        }
+        (self.steady_until > 0).then_some(())
+    }
+}
+
+impl Cpu {
+    fn in_sram(&self, address: u16) -> Option<u8> {
+        let index = usize::from(address.wrapping_sub(self.sram_start));
+        self.sram.get(index).copied()
+    }
+
+    /// Nothing happens for a while: runs some instructions, where it may be worth it, and if they are a loop that waits,
+    /// leaves out its rounds up to the next event or `until`. Returns whether anything ran.
+    #[inline(always)]
+    pub(super) fn look_for_rounds<I: Io>(&mut self, io: &mut I, until: u64) -> bool {
+        let worth_it = self.search.arrived || self.cycle >= self.search.not_before;
+        if worth_it {
+            self.leave_out_rounds(io, until);
+        } else if !self.search.marked {
+            self.mark_loops();
+        }
+        worth_it
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn leave_out_rounds<I: Io>(&mut self, io: &mut I, until: u64) {
+        let known = std::mem::take(&mut self.search.arrived).then_some(self.program_counter);
+        let found = self.search_rounds(io, until);
+        let search = &mut self.search;
+        match (known, found) {
+            (None, Some(word)) if search.loops.len() < LOOPS && !search.begins_at(word) => {
+                search.pause = PAUSE;
+                search.marked = false;
+                search.loops.push(Loop { word, failures: 0 });
+                self.predecode_around(word);
+            }
+            (None, _) => {
+                search.not_before = self.cycle + search.pause;
+                search.pause = (2 * search.pause).min(LONGEST_PAUSE);
+            }
+            (Some(word), found) => {
+                let Some(at) = search.loops.iter().position(|known| known.word == word) else {
+                    return;
+                };
+                let failures = if found.is_some() {
+                    0
+                } else {
+                    search.loops[at].failures + 1
+                };
+                search.loops[at].failures = failures;
+                if failures > FAILURES {
+                    search.loops.remove(at);
+                    self.predecode_around(word);
+                }
+            }
+        }
+    }
+
+    /// The CPU stops where a known loop begins.
+    fn mark_loops(&mut self) {
+        self.search.marked = true;
+        for index in 0..self.search.loops.len() {
+            let word = self.search.loops[index].word;
+            let op = self.operations[word as usize];
+            if op.code != Code::Breakpoint {
+                self.put(
+                    word,
+                    Op {
+                        code: Code::Waits,
+                        ..op
+                    },
+                );
+            }
+        }
+    }
+
+    /// The program has come to a known loop, and nothing happens before `limit`; returns whether to search for rounds,
+    /// else it just goes on.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn arrive(&mut self, program_counter: u32, cycle: u64, limit: u64) -> bool {
+        self.predecode(program_counter & self.last_word);
+        self.search.marked = false;
+        self.search.arrived = limit > cycle + SPAN;
+        self.search.arrived
+    }
+
+    /// Runs some instructions; if they are rounds of a loop that waits, leaves out the next ones. Returns the loop's
+    /// lowest word.
+    fn search_rounds<I: Io>(&mut self, io: &mut I, until: u64) -> Option<u32> {
+        let restarts = self.restarts;
+        let mut round = Round::from(self);
+        for count in 0..SEARCH {
+            let limit = io.deadline(self.status.interrupts).min(until);
+            let held = self.shadow;
+            if self.cycle >= limit && !held {
+                return None;
+            }
+            if self.operations[self.program_counter as usize].code == Code::Waits {
+                self.arrive(self.program_counter, self.cycle, 0);
+            }
+            let op = self.operations[self.program_counter as usize].alone();
+            round.note(self, io, op)?;
+            self.shadow = false;
+            self.step_until(io, self.cycle, self.cycle + 1);
+            if self.cycle >= limit || self.verdict.is_some() || self.restarts != restarts {
+                return None;
+            }
+            if self.program_counter == round.program_counter {
+                if round.is_closed(self) {
+                    let period = self.cycle - round.cycle;
+                    let limit = limit.min(round.steady_until);
+                    self.cycle += limit.saturating_sub(self.cycle) / period * period;
+                    return Some(round.lowest);
+                }
+                round = Round::from(self);
+            } else if FRESH_STARTS.contains(&count) {
+                round = Round::from(self);
+            }
+        }
+        None
+    }
+}
