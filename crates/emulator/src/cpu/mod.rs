@@ -7,6 +7,10 @@
 //! enters an interrupt, or sleeps. An access to a peripheral may move the next event, so it recomputes the limit. Cost
 //! thus grows with what happens, not with what exists.
 //!
+//! Instructions of one kind in a row are a run, done at once if its last one starts before the limit ([`runs`]); rounds of
+//! a loop that waits are left out ([`wait`]). Under observation, and instruction by instruction, neither is done: that
+//! is the plain interpreter, the reference of both.
+//!
 //! Instruction timing: 2549Q (ATmega640/1280/1281/2560/2561), section 34; interrupts take 5 cycles to enter, 5 more
 //! out of sleep, and the instruction after SEI or RETI always runs first (sections 7.7 and 7.8). With a program counter
 //! of 16 bits interrupts, calls and returns take a cycle less (DS40002061B, sections 7.7 and 37).
@@ -335,6 +339,7 @@ impl Cpu {
     /// A word has changed. The word before may be a skip that must know how long this one is, or the first half of it; those before
     /// may be in a run with it.
     fn predecode_around(&mut self, word: u32) {
+        self.search.unmark();
         for back in 0..2 * LONGEST_RUN {
             self.predecode(word.wrapping_sub(back) & self.last_word);
         }

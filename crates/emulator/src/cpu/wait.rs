@@ -58,6 +58,11 @@ impl Default for Search {
 }
 
 impl Search {
+    /// Operations were decoded again, maybe a marked one.
+    pub(super) fn unmark(&mut self) {
+        self.marked = false;
+    }
+
     /// A known loop has this as its lowest word.
     pub(super) fn begins_at(&self, word: u32) -> bool {
         self.loops.iter().any(|known| known.word == word)
@@ -179,7 +184,6 @@ impl Cpu {
         match (known, found) {
             (None, Some(word)) if search.loops.len() < LOOPS && !search.begins_at(word) => {
                 search.pause = PAUSE;
-                search.marked = false;
                 search.loops.push(Loop { word, failures: 0 });
                 self.predecode_around(word);
             }

@@ -4,6 +4,7 @@
 mod assembler;
 mod bench;
 mod compiled;
+mod plain;
 mod program;
 mod simavr;
 

@@ -63,7 +63,7 @@ impl Random {
         self.below(256) as u8
     }
 
-    fn pick<T: Copy>(&mut self, from: &[T]) -> T {
+    pub(crate) fn pick<T: Copy>(&mut self, from: &[T]) -> T {
         from[usize::from(self.below(from.len() as u16))]
     }
 }
