@@ -222,8 +222,8 @@ fn a_loop_that_waits_ends_in_the_cycle_in_which_it_would() {
     }
     words.push(SEI);
     let start = words.len();
-    // SBIS TIFR1, OCF1A; back. SBI: the flag is cleared. SBI PINB, 7: toggled.
-    words.extend([0x9BB1, 0xCFFE, 0x9AB1, sbi(0x03, 7)]);
+    // SBI: the flag is cleared. SBIS TIFR1, OCF1A; back. SBI PINB, 7: toggled.
+    words.extend([0x9AB1, 0x9BB1, 0xCFFE, sbi(0x03, 7)]);
     // SBIC PINB, 0 and SBIS PINB, 0.
     words.extend([0x9918, 0xCFFE, sbi(0x03, 7), 0x9B18, 0xCFFE, sbi(0x03, 7)]);
     // LDS r17, UCSR0A; SBRS r17, 7; back; LDS r17, UDR0.
