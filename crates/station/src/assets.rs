@@ -96,6 +96,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/spanish/guide.js": SCRIPT,
     "src/spanish/page.js": SCRIPT,
     "src/spanish/parameters.js": SCRIPT,
+    "src/spanish/program.js": SCRIPT,
     "src/spanish/robot.js": SCRIPT,
     "src/spanish/scenarios.js": SCRIPT,
     "src/stateline.js": SCRIPT,
