@@ -32,6 +32,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/checkup.js": SCRIPT,
     "src/checkup_dialog.js": SCRIPT,
     "src/comparison.js": SCRIPT,
+    "src/computed.js": SCRIPT,
     "src/consoles.js": SCRIPT,
     "src/curves.js": SCRIPT,
     "src/decimal.js": SCRIPT,
