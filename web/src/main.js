@@ -236,7 +236,7 @@ addEventListener('keydown', (event) => {
     event.preventDefault();
     help();
   }
-  const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
+  const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement || event.target instanceof HTMLTextAreaElement;
   if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === 'p') plots.follow(!plots.following);
   if (event.key === 'l') plots.follow(true);
@@ -283,7 +283,6 @@ function receive(message) {
       break;
     case 'scene':
       store.setRun(message.run);
-      lessons.setRun(message.run);
       store.start = message.scene?.start ?? IDENTITY;
       if (message.run !== consoleRun) consoles.clear();
       simulated = message.scene?.of_ghost ? null : message.scene;
@@ -304,6 +303,8 @@ function receive(message) {
       break;
     case 'state':
       state = message.state;
+      // The same scenario again has no new scene.
+      lessons.setRun(message.run);
       store.playhead_s = state.replay ? state.t_s : timeline.at_s;
       plots.whole_s = state.replay?.duration_s ?? null;
       setBody();

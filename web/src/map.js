@@ -113,8 +113,11 @@ export class WorldMap {
 
   /** @param {Scene | null} scene */
   setScene(scene) {
+    // Another of several robots in the same world, or the same world again, is seen as before.
+    const same = JSON.stringify(scene?.obstacles) === JSON.stringify(this.#sketch.scene?.obstacles);
     this.#sketch.scene = scene;
-    this.fit(null);
+    if (!same) this.fit(null);
+    this.#redraw();
   }
 
   /** The body by the robot's parameters. @param {import('./mounts.js').Body | null} body */

@@ -46,6 +46,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/gamepad.js": SCRIPT,
     "src/geometry.js": SCRIPT,
     "src/hand.js": SCRIPT,
+    "src/hand_in.js": SCRIPT,
     "src/header.js": SCRIPT,
     "src/help.js": SCRIPT,
     "src/joystick.js": SCRIPT,

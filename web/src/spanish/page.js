@@ -171,6 +171,11 @@ export const PAGE = {
   // Signals computed from others.
   'computed': 'calculada', 'of names of signals, which the pointer shows above: + - * / min max abs sqrt clamp, derivative(x), filter(x, seconds)': 'con nombres de señales, que el puntero muestra arriba: + - * / min max abs sqrt clamp, derivative(x), filter(x, segundos)',
   'the expression {} has no signal': 'la expresión {} no tiene ninguna señal', 'there is no signal {}': 'no hay ninguna señal {}', '{} and {} do not add up': '{} y {} no se pueden sumar', 'one plot has two units at most': 'una gráfica tiene como mucho dos unidades',
+  // Handing in a lesson.
+  'Hand in': 'Entregar', 'run': 'ensayo', 'hypotheses and answers': 'hipótesis y respuestas', 'Check the figures': 'Comprobar las cifras', 'Save to hand in': 'Guardar para entregar',
+  'Compare the figures in the tables with those that the lesson gives for the same runs': 'Compara las cifras de las tablas con las que da la lección para los mismos ensayos',
+  'Save name, tables with their runs, and answers as a Markdown file': 'Guarda el nombre, las tablas con sus ensayos y las respuestas como archivo Markdown',
+  'the lesson gives {}': 'la lección da {}', '{} agree, {} do not, {} are empty': '{} coinciden, {} no, {} están vacías',
   // Video of a replay.
   'Video': 'Vídeo', 'Stop the video': 'Terminar el vídeo', 'Save the map as a video, WebM, while the replay goes through the time that the plots show': 'Guarda el mapa como vídeo, WebM, mientras la reproducción recorre el tiempo que muestran las gráficas',
   // Map and state line.

@@ -52,6 +52,8 @@ test('a goal is carried to another place', async () => {
     await page.waitForSelector('#connection.good');
     const goal = () => page.evaluate(() => /** @type {any} */ (window).rumbo.state().robot.task.goal);
     await eventually(async () => assert.ok(await goal()));
+    await page.locator('#goal').waitFor();
+    await eventually(async () => assert.ok(await page.evaluate(() => /** @type {any} */ (window).rumbo.shown())));
     const [x_m, y_m] = await goal();
     await drag(page, [x_m, y_m], [x_m - 0.3, y_m + 0.2]);
     await eventually(async () => assert.ok(Math.hypot((await goal())[0] - x_m + 0.3, (await goal())[1] - y_m - 0.2) < 0.03, String(await goal())));
