@@ -3,6 +3,7 @@
  * The control law of the mode, with the numbers of the instant that is shown: of several terms the one that decides is lit, and a
  * click on a gain gives a slider. The equations come from the control core; names and units are those of its parameters and signals.
  */
+import { Diagram } from './diagram.js';
 import { create, element, setText } from './dom.js';
 import { wrapped } from './geometry.js';
 import { parse, work } from './law.js';
@@ -32,6 +33,7 @@ export class LawPanel {
   #slider = create('div', { className: 'row', id: 'gain', hidden: true });
   #send;
   #store;
+  #diagram;
   #mode = -1;
   /** @type {Line[]} */
   #laws = [];
@@ -50,7 +52,8 @@ export class LawPanel {
   constructor(send, store) {
     this.#send = send;
     this.#store = store;
-    this.#body.append(this.#slider, this.#lines);
+    this.#diagram = new Diagram(store);
+    this.#body.append(this.#slider, this.#diagram.body, this.#lines);
   }
 
   /** @param {Parameter[]} parameters */
@@ -70,7 +73,10 @@ export class LawPanel {
   }
 
   #layOut() {
-    const laws = this.modes.find(({ id }) => id === this.#mode)?.laws ?? [];
+    const entry = this.modes.find(({ id }) => id === this.#mode);
+    const laws = entry?.laws ?? [];
+    this.#diagram.body.hidden = laws.length === 0;
+    this.#diagram.setMode(entry?.name ?? '');
     this.#slider.hidden = true;
     this.#chosen = '';
     this.#laws = laws.map(([gives, is, , states]) => ({ part: parse(is), gives, states, body: create('p', { className: 'law' }), shown: new Map(), result: create('output'), other: create('span', { className: 'chip warning', hidden: true }) }));
@@ -130,6 +136,7 @@ export class LawPanel {
   /** The numbers of the instant that is shown. */
   draw() {
     if (this.#body.hidden || this.#body.clientWidth === 0) return;
+    this.#diagram.draw();
     const armed = this.#store.latest?.armed === true;
     const laws = this.#laws.filter(({ states, body }) => {
       body.hidden = armed && states.length > 0 && !states.includes(this.#store.latest?.state ?? -1);

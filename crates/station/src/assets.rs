@@ -36,6 +36,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/consoles.js": SCRIPT,
     "src/curves.js": SCRIPT,
     "src/decimal.js": SCRIPT,
+    "src/diagram.js": SCRIPT,
     "src/dialog.js": SCRIPT,
     "src/displays.js": SCRIPT,
     "src/dom.js": SCRIPT,

@@ -171,6 +171,9 @@ export const PAGE = {
   // Signals computed from others.
   'computed': 'calculada', 'of names of signals, which the pointer shows above: + - * / min max abs sqrt clamp, derivative(x), filter(x, seconds)': 'con nombres de señales, que el puntero muestra arriba: + - * / min max abs sqrt clamp, derivative(x), filter(x, segundos)',
   'the expression {} has no signal': 'la expresión {} no tiene ninguna señal', 'there is no signal {}': 'no hay ninguna señal {}', '{} and {} do not add up': '{} y {} no se pueden sumar', 'one plot has two units at most': 'una gráfica tiene como mucho dos unidades',
+  // The control loop as blocks.
+  'encoders': 'encoders', 'left wheel, right wheel': 'rueda izquierda, rueda derecha',
+  'certainly worse than before: {}': 'sin duda peor que antes: {}',
   // Handing in a lesson.
   'Hand in': 'Entregar', 'run': 'ensayo', 'hypotheses and answers': 'hipótesis y respuestas', 'Check the figures': 'Comprobar las cifras', 'Save to hand in': 'Guardar para entregar',
   'Compare the figures in the tables with those that the lesson gives for the same runs': 'Compara las cifras de las tablas con las que da la lección para los mismos ensayos',
