@@ -26,9 +26,19 @@ import { isAt } from './world_shapes.js';
 /** @param {number[]} numbers */
 const written = (...numbers) => numbers.map((each) => each.toFixed(4)).join(' ');
 
-/** What the hand takes at a place; null: nothing is there. @param {Store} store @param {Scene} scene @param {Point} at @param {number} reach_m @returns {Held | null} */
-export function take(store, scene, at, reach_m) {
-  return takeRobot(store, scene, at) ?? takeThing(store, scene, at, reach_m);
+/**
+ * What the hand takes at a place; null: nothing is there.
+ * @param {Store} store
+ * @param {Scene | null} scene Null: it can do nothing in the world.
+ * @param {Point | null} goal That of the robot, which may be carried in any world.
+ * @param {Point} at
+ * @param {number} reach_m
+ * @returns {Held | null}
+ */
+export function take(store, scene, goal, at, reach_m) {
+  // With several robots things stay: each has a log of its own.
+  const alone = scene && (scene.others ?? []).length === 0;
+  return (scene && takeRobot(store, scene, at)) ?? (goal && takeGoal(goal, at, reach_m)) ?? (alone ? takeThing(store, scene, at, reach_m) : null);
 }
 
 /** @param {Store} store @param {Scene} scene @param {Point} at @returns {Held | null} */
@@ -68,8 +78,8 @@ function takeThing({ latest, readings }, scene, at, reach_m) {
   };
 }
 
-/** The goal, if it is there. @param {Point} goal @param {Point} at @param {number} reach_m @returns {Held | null} */
-export function takeGoal(goal, at, reach_m) {
+/** @param {Point} goal @param {Point} at @param {number} reach_m @returns {Held | null} */
+function takeGoal(goal, at, reach_m) {
   if (Math.hypot(goal[0] - at[0], goal[1] - at[1]) > reach_m) return null;
   return {
     goal,

@@ -9,7 +9,7 @@
  */
 import { element } from './dom.js';
 import { IDENTITY, compose, inverse, nextTo, place } from './geometry.js';
-import { take, takeGoal } from './hand.js';
+import { take } from './hand.js';
 import { on_s } from './kept.js';
 import { inWorld } from './movers.js';
 import { Sketch } from './sketch.js';
@@ -463,7 +463,7 @@ export class WorldMap {
     if (this.#tool || this.#store.playhead_s !== Infinity) return null;
     const [at, reach_m] = [this.#toWorld(pixel), reach_px / (this.#view ?? this.#fitted()).px_per_m];
     const goal = this.#pick && !this.#planning && this.#task?.goal;
-    return (goal ? takeGoal(place(this.#drivenFrame(), goal), at, reach_m) : null) ?? (this.hand && scene ? take(this.#store, scene, at, reach_m) : null);
+    return take(this.#store, this.hand && scene, goal ? place(this.#drivenFrame(), goal) : null, at, reach_m);
   }
 
   /** @param {Point} at @param {boolean} turns */

@@ -17,7 +17,7 @@ export class Video {
   #map = element('map', HTMLCanvasElement);
   #replay;
   #range;
-  /** @type {{recorder: MediaRecorder, from_s: number, to_s: number} | null} */
+  /** `runs`: the replay goes through it. @type {{recorder: MediaRecorder, to_s: number, runs: boolean} | null} */
   #made = null;
   #t_s = 0;
 
@@ -33,9 +33,9 @@ export class Video {
   show({ t_s, replay, speed }) {
     this.#t_s = t_s;
     if (!this.#made) return;
-    const { from_s, to_s } = this.#made;
+    this.#made.runs ||= speed > 0;
     // Closed, over, or paused by a hand.
-    if (!replay || t_s >= to_s || (speed === 0 && t_s > from_s)) this.#end();
+    if (!replay || (this.#made.runs && (t_s >= this.#made.to_s || speed === 0))) this.#end();
   }
 
   #begin() {
@@ -60,7 +60,7 @@ export class Video {
       context.fillText(`${format(this.#t_s, 2)} s`, 8 * devicePixelRatio, 20 * devicePixelRatio);
       requestAnimationFrame(draw);
     };
-    this.#made = { recorder, from_s, to_s };
+    this.#made = { recorder, to_s, runs: false };
     setText(this.#button, t('Stop the video'));
     this.#replay.seek(from_s);
     this.#replay.play(true);
