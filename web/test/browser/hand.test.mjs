@@ -21,42 +21,45 @@ async function drag(page, from, to) {
   await page.mouse.up();
 }
 
-test('the robot keeps its distance to a wall that is moved, and a rerun repeats it to the bit', async () => {
+test('the robot and a wall are carried while it drives, a rerun repeats that to the bit, and a goal is carried too', async () => {
   const out = folder();
-  const dashboard = await open(['lab', '--scenario', 'mode1', '--out', out, '--speed', '4']);
+  const dashboard = await open(['lab', '--scenario', 'mode1', '--out', out]);
   const { page } = dashboard;
+  const shown = () => page.evaluate(() => {
+    const { truth, estimated } = /** @type {any} */ (window).rumbo.shown();
+    return { x_m: truth.x_m, y_m: truth.y_m, believed_m: estimated.x_m };
+  });
+  const wall_m = () => page.evaluate(() => Math.max(.../** @type {any} */ (window).rumbo.world().map((/** @type {any} */ each) => each.corners_m[0][0])));
+  const goal = () => page.evaluate(() => /** @type {any} */ (window).rumbo.state().robot.task.goal);
   try {
     await page.waitForSelector('#connection.good');
+    await page.waitForFunction(() => /** @type {any} */ (window).rumbo.shown()?.truth);
+    // From then on nothing is laid out anew.
+    await page.locator('#reference input').waitFor();
     await page.locator('#parameters input').first().waitFor();
+    const before = await shown();
+    await drag(page, [before.x_m, before.y_m], [before.x_m + 0.2, before.y_m + 0.1]);
+    await eventually(async () => {
+      const after = await shown();
+      assert.ok(Math.abs(after.x_m - before.x_m - 0.2) < 0.03 && Math.abs(after.y_m - before.y_m - 0.1) < 0.03, JSON.stringify(after));
+      assert.ok(Math.abs(after.believed_m - before.believed_m) < 0.001, 'its odometry has not moved');
+    });
     await page.locator('#on').click();
-    await page.locator('#end.good').waitFor();
-    const x_m = () => page.evaluate(() => /** @type {any} */ (window).rumbo.shown().truth.x_m);
-    const was_m = await x_m();
-    const wall_m = await page.evaluate(() => Math.max(.../** @type {any} */ (window).rumbo.world().map((/** @type {any} */ each) => each.corners_m[0][0])));
-    await drag(page, [wall_m, 0.25], [wall_m - 0.2, 0.25]);
-    await eventually(async () => assert.ok(Math.abs(await x_m() - was_m + 0.2) < 0.02, String(await x_m())));
-    const moved_m = await page.evaluate(() => Math.max(.../** @type {any} */ (window).rumbo.world().map((/** @type {any} */ each) => each.corners_m[0][0])));
-    assert.ok(Math.abs(moved_m - wall_m + 0.2) < 0.02, `${wall_m} ${moved_m}`);
-    assert.deepEqual(dashboard.complaints, []);
-  } finally {
-    await dashboard.close();
-  }
-  const [log = ''] = readdirSync(out).filter((name) => name.endsWith('.mcap'));
-  await eventually(async () => assert.match(execFileSync(program(), ['rerun', join(out, log)], { encoding: 'utf8' }), /: equal/));
-});
-
-test('a goal is carried to another place', async () => {
-  const dashboard = await open(['lab', '--scenario', 'mode8-goals', '--out', folder()]);
-  const { page } = dashboard;
-  try {
-    await page.waitForSelector('#connection.good');
-    const goal = () => page.evaluate(() => /** @type {any} */ (window).rumbo.state().robot.task.goal);
-    await eventually(async () => assert.ok(await goal()));
+    await page.locator('#end', { hasText: 'reached' }).waitFor();
+    const [stood_m, stands_m] = [(await shown()).x_m, await wall_m()];
+    await drag(page, [stands_m, 0.25], [stands_m - 0.2, 0.25]);
+    await eventually(async () => assert.ok(Math.abs((await shown()).x_m - stood_m + 0.2) < 0.02, JSON.stringify(await shown())));
+    assert.ok(Math.abs(await wall_m() - stands_m + 0.2) < 0.02);
+    await page.locator('#scenario').selectOption('mode8-goals');
+    await page.locator('#events li', { hasText: 'reset: mode8-goals' }).waitFor();
+    const [carried = ''] = readdirSync(out).filter((name) => name.endsWith('.mcap')).sort();
+    assert.match(execFileSync(program(), ['rerun', join(out, carried)], { encoding: 'utf8' }), /: equal, \d{3,} bytes/);
     await page.locator('#goal').waitFor();
-    await eventually(async () => assert.ok(await page.evaluate(() => /** @type {any} */ (window).rumbo.shown())));
+    await eventually(async () => assert.ok(await goal()));
     const [x_m, y_m] = await goal();
     await drag(page, [x_m, y_m], [x_m - 0.3, y_m + 0.2]);
     await eventually(async () => assert.ok(Math.hypot((await goal())[0] - x_m + 0.3, (await goal())[1] - y_m - 0.2) < 0.03, String(await goal())));
+    assert.deepEqual(dashboard.complaints, []);
   } finally {
     await dashboard.close();
   }
