@@ -211,7 +211,7 @@ pub(super) const WHEEL_RAMPS: Group = Group::new(
     "ramps of the wheels",
     &[ParamId::WheelAccel, ParamId::WheelDecel],
 );
-/// Way to the goal, and speed by the wheels: names for the equations of [`line`].
+/// Way to the goal, and speed by the wheels: names for the equation of [`crate::motion::Line`].
 pub(super) const fn way(states: &'static [u8]) -> [Law; 2] {
     [
         Law::new(
