@@ -7,11 +7,11 @@
  */
 /** A part with its value, and which of its parts decides it: of `min`, `max` and `clamp`. @typedef {{value: number, decides: number}} Worked */
 
-const FUNCTIONS = ['min', 'max', 'abs', 'sqrt', 'sign', 'clamp'];
+const FUNCTIONS = ['min', 'max', 'abs', 'sqrt', 'sign', 'clamp', 'derivative', 'filter'];
 
 /** @param {string} text @returns {Part} */
 export function parse(text) {
-  const tokens = text.match(/[\w.]+|[-+*/(),]/g) ?? [];
+  const tokens = text.match(/[\w.:]+|[^\s]/g) ?? [];
   let at = 0;
   const expect = (/** @type {string} */ token) => {
     if (tokens[at++] !== token) throw new Error(`${text}: ${token} is missing`);
@@ -19,6 +19,7 @@ export function parse(text) {
   /** @returns {Part} */
   const value = () => {
     const token = tokens[at++] ?? '';
+    if (!/^[\w(-]/.test(token)) throw new Error(`${text}: a value is missing`);
     if (token === '-') return { of: 'negative', parts: [value()] };
     if (token === '(') {
       const inner = sum();
@@ -43,25 +44,31 @@ export function parse(text) {
   };
   /** @returns {Part} */
   const sum = () => chain(['+', '-'], () => chain(['*', '/'], value));
-  return sum();
+  const whole = sum();
+  if (at < tokens.length) throw new Error(`${text}: ${tokens[at]} is too much`);
+  return whole;
 }
+
+/** The names in an equation. @param {Part} part @returns {string[]} */
+export const namesIn = ({ of, parts }) => (parts.length > 0 ? parts.flatMap(namesIn) : /^[\d.]+$/.test(of) ? [] : [of]);
 
 /**
  * Works out an equation; not a number where a name has no value.
  * @param {Part} part
  * @param {(name: string) => number} valueOf
  * @param {Map<Part, Worked>} [all] where the values of its parts go
+ * @param {(part: Part, values: number[]) => number} [remember] works out functions that need earlier values
  * @returns {number}
  */
-export function work(part, valueOf, all = new Map()) {
+export function work(part, valueOf, all = new Map(), remember = () => NaN) {
   const { of, parts } = part;
-  const values = parts.map((each) => work(each, valueOf, all));
+  const values = parts.map((each) => work(each, valueOf, all, remember));
   const [a = NaN, b = NaN, c = NaN] = values;
   /** @type {Record<string, () => number>} */
   const does = {
     '(': () => a, negative: () => -a, '+': () => a + b, '-': () => a - b, '*': () => a * b, '/': () => a / b,
     min: () => Math.min(...values), max: () => Math.max(...values), abs: () => Math.abs(a), sqrt: () => Math.sqrt(a), sign: () => Math.sign(a),
-    clamp: () => Math.min(c, Math.max(b, a)),
+    clamp: () => Math.min(c, Math.max(b, a)), derivative: () => remember(part, values), filter: () => remember(part, values),
   };
   const value = does[of]?.() ?? (/^[\d.]+$/.test(of) ? Number(of) : valueOf(of));
   const decides = of === 'clamp' ? (a > c ? 2 : a < b ? 1 : 0) : of === 'min' || of === 'max' ? values.indexOf(value) : -1;

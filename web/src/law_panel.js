@@ -3,7 +3,9 @@
  * The control law of the mode, with the numbers of the instant that is shown: of several terms the one that decides is lit, and a
  * click on a gain gives a slider. The equations come from the control core; names and units are those of its parameters and signals.
  */
+import { Diagram } from './diagram.js';
 import { create, element, setText } from './dom.js';
+import { wrapped } from './geometry.js';
 import { parse, work } from './law.js';
 import { unitWords } from './parameters.js';
 import { said, t } from './text.js';
@@ -11,12 +13,14 @@ import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S, formatShort } from './units.js';
 
 /** @typedef {import('./law.js').Part} Part */
 /** @typedef {import('./types.js').Parameter} Parameter */
-/** @typedef {{part: Part, gives: string, shown: Map<Part, {box: HTMLElement, value: HTMLElement | null}>, result: HTMLElement, other: HTMLElement}} Line */
+/** @typedef {{part: Part, gives: string, shown: Map<Part, {box: HTMLElement, value: HTMLElement | null}>, result: HTMLElement, other: HTMLElement, body: HTMLElement, states: number[]}} Line */
 
 /** By the unit at the end of a name: that in which the store has it, and the factor. @type {[string, string, number][]} */
 const UNITS = [['_rad_s', '_rpm', RPM_PER_RAD_S], ['_rad_s', '_deg_s', DEG_PER_RAD], ['_rad', '_deg', DEG_PER_RAD], ['_m', '_cm', CM_PER_M]];
 /** What the robot gives may be so much else than the sum: telemetry and loops are not of the same instant. */
 const [NEAR, NEAR_SHARE] = [0.02, 0.25];
+/** And of yaw rates so much: what the heading changes by between two frames. */
+const NEAR_RAD_S = 0.06;
 /** A slider goes this far from the value, both ways. */
 const REACH = 4;
 /** Minimum time between two values of a slider that moves [ms]. */
@@ -29,6 +33,7 @@ export class LawPanel {
   #slider = create('div', { className: 'row', id: 'gain', hidden: true });
   #send;
   #store;
+  #diagram;
   #mode = -1;
   /** @type {Line[]} */
   #laws = [];
@@ -40,12 +45,15 @@ export class LawPanel {
   #showChosen = () => {};
   /** @type {import('./types.js').ModeEntry[]} */
   modes = [];
+  /** The estimated heading when the robot was armed [rad]. */
+  on_rad = NaN;
 
   /** @param {import('./panel.js').Send} send @param {import('./store.js').Store} store */
   constructor(send, store) {
     this.#send = send;
     this.#store = store;
-    this.#body.append(this.#slider, this.#lines);
+    this.#diagram = new Diagram(store);
+    this.#body.append(this.#slider, this.#diagram.body, this.#lines);
   }
 
   /** @param {Parameter[]} parameters */
@@ -65,15 +73,19 @@ export class LawPanel {
   }
 
   #layOut() {
-    const laws = this.modes.find(({ id }) => id === this.#mode)?.laws ?? [];
+    const entry = this.modes.find(({ id }) => id === this.#mode);
+    const laws = entry?.laws ?? [];
+    this.#diagram.body.hidden = laws.length === 0;
+    this.#diagram.setMode(entry?.name ?? '');
     this.#slider.hidden = true;
     this.#chosen = '';
-    this.#laws = laws.map(([gives, is]) => ({ part: parse(is), gives, shown: new Map(), result: create('output'), other: create('span', { className: 'chip warning', hidden: true }) }));
+    this.#laws = laws.map(([gives, is, , states]) => ({ part: parse(is), gives, states, body: create('p', { className: 'law' }), shown: new Map(), result: create('output'), other: create('span', { className: 'chip warning', hidden: true }) }));
     this.#lines.replaceChildren(...this.#laws.map((law, index) => {
       const ids = laws[index]?.[2] ?? [];
       const within = [...this.#parameters.values()].filter(({ id }) => ids.includes(id));
-      return create('p', { className: 'law' }, create('b', { textContent: law.gives }), ' ', law.result, ' = ', this.#write(law.part, law), ' ', law.other,
+      law.body.append(create('b', { textContent: law.gives }), ' ', law.result, ' = ', this.#write(law.part, law), ' ', law.other,
         ...(within.length > 0 ? [create('span', { className: 'hint' }, ` ${t('with|gains')} `, ...within.flatMap(({ name }) => [this.#gain(name), ' '])) ] : []));
+      return law.body;
     }));
     if (laws.length === 0) setText(this.#lines, t('The program of this robot has no law that is known.'));
     this.draw();
@@ -111,6 +123,7 @@ export class LawPanel {
     const store = this.#store;
     // Plots have it in the frame of the world.
     if (name === 'heading_ref_rad') return store.latest?.heading_ref_rad ?? NaN;
+    if (name === 'heading_since_on_rad') return wrapped((store.latest?.estimated?.heading_rad ?? NaN) - this.on_rad);
     const at_s = Math.min(store.playhead_s, store.slow.t.at(-1) ?? 0);
     for (const [suffix, shown, factor] of [['', '', 1], ...UNITS]) {
       const own = name.endsWith(String(suffix)) ? name.slice(0, name.length - String(suffix).length) + shown : '';
@@ -123,10 +136,15 @@ export class LawPanel {
   /** The numbers of the instant that is shown. */
   draw() {
     if (this.#body.hidden || this.#body.clientWidth === 0) return;
+    this.#diagram.draw();
     const armed = this.#store.latest?.armed === true;
+    const laws = this.#laws.filter(({ states, body }) => {
+      body.hidden = armed && states.length > 0 && !states.includes(this.#store.latest?.state ?? -1);
+      return !body.hidden;
+    });
     /** What one equation gives to the others. @type {Map<string, number>} */
     const given_by = new Map();
-    for (const { part, gives, shown, result, other } of this.#laws) {
+    for (const { part, gives, shown, result, other } of laws) {
       /** @type {Map<Part, import('./law.js').Worked>} */
       const all = new Map();
       const sum = armed ? work(part, (name) => given_by.get(name) ?? this.#valueOf(name), all) : NaN;
@@ -139,7 +157,7 @@ export class LawPanel {
       }
       setText(result, digits(sum));
       // A limit that the equation does not spell out, or a program at rest.
-      const off = Number.isFinite(given) && Math.abs(given - sum) > Math.max(NEAR * (Math.abs(given) > 5 ? 50 : 1), NEAR_SHARE * Math.abs(given));
+      const off = Number.isFinite(given) && Math.abs(given - sum) > Math.max((gives === 'yaw_ref_rad_s' ? NEAR_RAD_S : NEAR) * (Math.abs(given) > 5 ? 50 : 1), NEAR_SHARE * Math.abs(given));
       other.hidden = !off;
       if (off) setText(other, t('the robot gives {}', digits(given)));
     }

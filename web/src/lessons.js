@@ -1,9 +1,10 @@
 // @ts-check
 /**
  * The lessons, in a pane beside the lab: a link of a lesson starts its run here, and the empty cells of the row that it stands
- * in take the figures of the first step.
+ * in take the figures of the first step. What is written there is handed in by `hand_in.js`.
  */
 import { create, element } from './dom.js';
+import { HandIn } from './hand_in.js';
 import { Lesson } from './markdown.js';
 import { readLink } from './run_link.js';
 import { language, t } from './text.js';
@@ -18,6 +19,7 @@ export class Lessons {
   #send;
   #pane = element('lesson', HTMLElement);
   #body = element('lesson-body', HTMLDivElement);
+  #handIn = new HandIn(this.#body);
   /** What the robot is still to be told, once its run has begun. @type {{run: number, parameters: Map<string, number>} | null} */
   #due = null;
   #run = 0;
@@ -49,7 +51,9 @@ export class Lessons {
     const answer = await fetch(`lessons/${language}/${name}`).catch(() => null);
     if (!answer?.ok) return this.#body.replaceChildren(create('p', { className: 'complaint', textContent: t('the station does not answer') }));
     this.#shown = name;
-    this.#body.replaceChildren(...new Lesson((href, title) => this.#link(href, title)).read(await answer.text()));
+    const lesson = new Lesson((href, title) => this.#link(href, title));
+    this.#body.replaceChildren(...lesson.read(await answer.text()));
+    this.#handIn.add(lesson.title);
     this.#body.scrollTop = 0;
   }
 
@@ -59,6 +63,7 @@ export class Lessons {
     const [, lesson] = /^([\w-]+\.md)$/.exec(href) ?? [];
     if (run === undefined && lesson === undefined) return create('span', { title });
     const button = create('button', { type: 'button', className: 'link', title: run === undefined ? '' : t('Start this run: the robot waits for ON') });
+    if (run !== undefined) button.dataset['run'] = run;
     button.addEventListener('click', () => (run === undefined ? this.open(lesson) : this.#start(run, button)));
     return button;
   }
@@ -95,7 +100,8 @@ export class Lessons {
     const heads = [...this.#row?.closest('table')?.querySelectorAll('th') ?? []].map(({ textContent }) => textContent ?? '');
     for (const [key, word] of COLUMNS()) {
       const cell = this.#row?.cells[heads.findIndex((head) => head.startsWith(word))];
-      if (cell?.classList.contains('own')) cell.textContent = figures[key]?.replace(/ (s|cm|rpm)$/, '') ?? '';
+      const input = cell?.querySelector('input');
+      if (input) input.value = figures[key]?.replace(/ (s|cm|rpm)$/, '') ?? '';
     }
   }
 }

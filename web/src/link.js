@@ -32,6 +32,8 @@ export class Link {
     this.#onMessage = onMessage;
     this.#onChange = onChange;
     this.#open();
+    // Another robot in the world, by the address: its session begins as a connection that comes back does.
+    addEventListener('hashchange', () => this.#socket?.close());
   }
 
   async #open() {
@@ -50,9 +52,11 @@ export class Link {
       if (message.type === 'error') this.#lastError = message.text;
       else this.#onMessage(message);
     });
+    const asked = location.hash;
     socket.addEventListener('close', () => {
       this.#socket = null;
-      this.#again('closed');
+      if (location.hash === asked) this.#again('closed');
+      else this.#open();
     });
   }
 

@@ -49,6 +49,7 @@ import { LANGUAGES, language, said, speak, t, translatePage, untranslated } from
 import { Timeline } from './timeline.js';
 import { Tour } from './tour.js';
 import { TuneDialog } from './tune_dialog.js';
+import { Video } from './video.js';
 import { Why } from './why.js';
 import { WorkerLink, isSite } from './worker_link.js';
 import { WorldEditor } from './world_editor.js';
@@ -110,10 +111,8 @@ function send(order) {
 /** In place of a USART: a hand. */
 const HAND = 6;
 
-/** Puts the simulated robot down elsewhere. @param {import('./types.js').Pose} at */
-function lift({ x_m, y_m, heading_rad }) {
-  send({ type: 'type', usart: HAND, text: `robot=${[x_m, y_m, heading_rad].map((each) => each.toFixed(4)).join(' ')}`, ending: 'none' });
-}
+/** What a hand does in the simulated world. @param {string} text */
+const hand = (text) => send({ type: 'type', usart: HAND, text, ending: 'none' });
 
 /** @param {string} text */
 function complain(text) {
@@ -188,6 +187,7 @@ const plots = new Plots(element('plots', HTMLDivElement), store, redraw, (follow
   live.classList.toggle('good', following);
 });
 plots.follow(true);
+const video = new Video(replay, () => [Math.max(0, plots.range_s[0]), Math.min(state?.replay?.duration_s ?? 0, plots.range_s[1])]);
 plots.onPoint = onFrame(() => map.hover(plots.pointed_s));
 const timeline = new Timeline(store, redraw);
 live.addEventListener('click', () => timeline.follow());
@@ -236,7 +236,7 @@ addEventListener('keydown', (event) => {
     event.preventDefault();
     help();
   }
-  const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
+  const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement || event.target instanceof HTMLTextAreaElement;
   if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === 'p') plots.follow(!plots.following);
   if (event.key === 'l') plots.follow(true);
@@ -283,7 +283,6 @@ function receive(message) {
       break;
     case 'scene':
       store.setRun(message.run);
-      lessons.setRun(message.run);
       store.start = message.scene?.start ?? IDENTITY;
       if (message.run !== consoleRun) consoles.clear();
       simulated = message.scene?.of_ghost ? null : message.scene;
@@ -304,11 +303,14 @@ function receive(message) {
       break;
     case 'state':
       state = message.state;
+      // The same scenario again has no new scene.
+      lessons.setRun(message.run);
       store.playhead_s = state.replay ? state.t_s : timeline.at_s;
       plots.whole_s = state.replay?.duration_s ?? null;
       setBody();
       header.show(state);
       replay.show(state);
+      video.show(state);
       if (state.replay) editor.close();
       store.limits = state.experiment?.limits ?? null;
       store.experiment_end_s = state.experiment?.duration_s ?? Infinity;
@@ -330,6 +332,7 @@ function receive(message) {
       law.setMode(isOwn(state) || state.robot.foreign ? -1 : state.robot.mode);
       if (table.length > 0 && state.robot.rig !== null) checkup.meet(sonars, servo);
       calibration.show(state);
+      law.on_rad = state.robot.task.from?.[2] ?? NaN;
       meter.update(state);
       map.target = state.robot.armed && state.robot.task.route && state.robot.task.end === null ? state.robot.reference : null;
       map.setTask(state.robot.task);
@@ -337,7 +340,7 @@ function receive(message) {
       // Check and calibration use commands that such a robot does not have.
       document.body.classList.toggle('foreign', state.robot.foreign || Boolean(state.robot.text));
       map.servo_rad = state.robot.servo_rad;
-      map.lift = simulated && !state.replay && state.experiment?.phase !== 'running' && !document.body.classList.contains('viewer') ? lift : null;
+      map.hand = simulated && !state.replay && state.experiment?.phase !== 'running' && !document.body.classList.contains('viewer') ? hand : null;
       break;
     case 'parameters':
       parameters.show(message.parameters);
@@ -419,6 +422,8 @@ Object.assign(window, {
     onMap: (at) => map.toCanvas(at),
     /** Where a place of the world is on the map [px]. @param {[number, number]} at */
     worldOnMap: (at) => map.worldToCanvas(at),
+    /** What stands and moves in the world. */
+    world: () => map.world(),
     /** The other robots in the world. */
     others: () => map.others().map(({ other: { name }, at }) => ({ name, ...at })),
     /** The plots and what is seen of them. */

@@ -9,7 +9,9 @@
  */
 import { element } from './dom.js';
 import { IDENTITY, compose, inverse, nextTo, place } from './geometry.js';
+import { take } from './hand.js';
 import { on_s } from './kept.js';
+import { inWorld } from './movers.js';
 import { Sketch } from './sketch.js';
 import { colours, onThemeChange } from './theme.js';
 import { watchFingers } from './touch.js';
@@ -19,6 +21,7 @@ import { watchFingers } from './touch.js';
 /** @typedef {import('./types.js').Pose} Pose */
 /** @typedef {import('./types.js').Route} Route */
 /** @typedef {import('./store.js').Store} Store */
+/** @typedef {import('./hand.js').Held} Held */
 /** @typedef {[number, number]} Point */
 /** @typedef {{x_m: number, y_m: number, px_per_m: number}} View Middle [m] and scale. */
 /**
@@ -48,8 +51,8 @@ const KEY_PAN_PX = 40;
 const CLICK_PX = 4;
 /** A tool holds what is so near [px]; a finger is thicker. */
 const REACH_PX = { mouse: 8, touch: 18 };
-/** Minimum time between two places of a robot that is carried [ms]. */
-const LIFT_MS = 100;
+/** Minimum time between two places of what is carried [ms]. */
+const HAND_MS = 100;
 /** The goal in the robot's frame is drawn separately from this distance on [px]. */
 const APART_PX = 3;
 
@@ -82,10 +85,10 @@ export class WorldMap {
   #hover_s = null;
   /** The same run with other seeds. @type {Store[]} */
   #seeds = [];
-  /** Puts the robot down elsewhere; null: it cannot be lifted. @type {((at: Pose) => void) | null} */
-  lift = null;
-  /** Where it is held, how from its middle it was taken, and the view before, which stands still meanwhile. @type {{at: Pose, by: Point, sent_ms: number, view: View | null} | null} */
-  #lifted = null;
+  /** Sends what a hand does in the simulated world; null: it can do nothing there. @type {((line: string) => void) | null} */
+  hand = null;
+  /** What is held, when that was sent last, and the view before, which stands still meanwhile. @type {{held: Held, sent_ms: number, view: View | null} | null} */
+  #hand = null;
   servo_rad = 0;
   /** The place of the route that the robot goes to now, from its origin. @type {Point | null} */
   target = null;
@@ -110,8 +113,11 @@ export class WorldMap {
 
   /** @param {Scene | null} scene */
   setScene(scene) {
+    // Another of several robots in the same world, or the same world again, is seen as before.
+    const same = JSON.stringify(scene?.obstacles) === JSON.stringify(this.#sketch.scene?.obstacles);
     this.#sketch.scene = scene;
-    this.fit(null);
+    if (!same) this.fit(null);
+    this.#redraw();
   }
 
   /** The body by the robot's parameters. @param {import('./mounts.js').Body | null} body */
@@ -225,7 +231,7 @@ export class WorldMap {
     const px = ratio / scale;
     sketch.drawGrid(view, px);
     if (this.#tool) return this.#tool.draw(sketch, px);
-    sketch.drawWorld(px, this.#store.latest?.t_s ?? 0);
+    sketch.drawWorld(px, this.world());
     this.others().forEach(({ other, at }, number) => sketch.drawOther(other, at, number, px));
     sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
     sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
@@ -250,8 +256,13 @@ export class WorldMap {
     if (estimated) sketch.drawRobot(estimated, px, latest.truth ? 'estimated' : 'real', false);
     if (latest.truth) sketch.drawRobot(latest.truth, px, 'real', latest.contact);
     if (estimated && latest.spread) sketch.drawSpread(estimated, latest.origin, latest.spread, px);
-    if (this.#lifted) sketch.drawRobot(this.#lifted.at, px, 'ghost', false);
+    this.#hand?.held.draw(sketch, px);
     if (this.#pick && canvas.matches(':focus-visible')) sketch.drawAim();
+  }
+
+  /** Outlines of what stands and moves, where they are. */
+  world() {
+    return inWorld(this.#sketch.scene, this.#store.readings, this.#store.latest?.t_s ?? 0);
   }
 
   /** The other robots, where they are known to be. */
@@ -446,28 +457,30 @@ export class WorldMap {
     return [this.#canvas.clientWidth / 2, this.#canvas.clientHeight / 2];
   }
 
-  /** A press on the robot holds it. @param {Point} at */
-  #take([x_m, y_m]) {
-    const truth = this.#store.latest?.truth;
-    if (!this.lift || this.#tool || !truth || this.#store.playhead_s !== Infinity) return;
-    const by = place(inverse(truth), [x_m, y_m]);
-    const reach_m = Math.max(...(this.#sketch.scene?.footprint_m ?? []).map(([x, y]) => Math.hypot(x, y)), 0);
-    if (Math.hypot(...by) >= reach_m) return;
-    this.#lifted = { at: truth, by, sent_ms: -Infinity, view: this.#view };
-    this.#view ??= this.#fitted();
+  /** What a press there would hold. @param {Point} pixel @param {number} reach_px @returns {Held | null} */
+  #under(pixel, reach_px) {
+    const scene = this.#sketch.scene;
+    if (this.#tool || this.#store.playhead_s !== Infinity) return null;
+    const [at, reach_m] = [this.#toWorld(pixel), reach_px / (this.#view ?? this.#fitted()).px_per_m];
+    const goal = this.#pick && !this.#planning && this.#task?.goal;
+    return take(this.#store, this.hand && scene, goal ? place(this.#drivenFrame(), goal) : null, at, reach_m);
   }
 
-  /** It follows the hand, or turns to it. @param {Point} at @param {boolean} turns */
-  #carry([x_m, y_m], turns) {
-    const held = this.#lifted;
-    if (!held) return;
-    const { at, by } = held;
-    const { cos, sin } = { cos: Math.cos(at.heading_rad), sin: Math.sin(at.heading_rad) };
-    held.at = turns ? { ...at, heading_rad: Math.atan2(y_m - at.y_m, x_m - at.x_m) } : { ...at, x_m: x_m - cos * by[0] + sin * by[1], y_m: y_m - sin * by[0] - cos * by[1] };
+  /** @param {Point} at @param {boolean} turns */
+  #carry(at, turns) {
+    const hand = this.#hand;
+    if (!hand) return;
+    hand.held.carry(at, turns);
     this.#redraw();
-    if (performance.now() - held.sent_ms < LIFT_MS) return;
-    held.sent_ms = performance.now();
-    this.lift?.(held.at);
+    if (performance.now() - hand.sent_ms < HAND_MS) return;
+    hand.sent_ms = performance.now();
+    this.#put(hand.held);
+  }
+
+  /** @param {Held} held */
+  #put(held) {
+    const line = held.line();
+    if (line !== null) this.hand?.(line);
   }
 
   #makePickable() {
@@ -477,9 +490,12 @@ export class WorldMap {
     /** The tool holds something. */
     let held = false;
     const release = () => {
-      if (this.#lifted && !pressed) this.lift?.(this.#lifted.at);
-      if (this.#lifted) this.#view = this.#lifted.view;
-      this.#lifted = null;
+      if (this.#hand && !pressed) {
+        this.#put(this.#hand.held);
+        if (this.#hand.held.goal) this.#pick?.(this.#fromOrigin(this.#hand.held.goal));
+      }
+      if (this.#hand) this.#view = this.#hand.view;
+      this.#hand = null;
       if (held) this.#tool?.release();
       held = false;
       pressed = null;
@@ -488,18 +504,23 @@ export class WorldMap {
       canvas.setPointerCapture(event.pointerId);
       // A second finger zooms.
       if (!event.isPrimary) return release();
-      if (event.button === 0) this.#take(this.#toWorld([event.offsetX, event.offsetY]));
       pressed = event.button === 0 ? [event.offsetX, event.offsetY] : null;
       const reach_px = event.pointerType === 'touch' ? REACH_PX.touch : REACH_PX.mouse;
+      const under = pressed && this.#under(pressed, reach_px);
+      if (under) {
+        this.#hand = { held: under, sent_ms: -Infinity, view: this.#view };
+        this.#view ??= this.#fitted();
+      }
       held = pressed !== null && (this.#tool?.press(this.#toWorld(pressed), reach_px / (this.#view ?? this.#fitted()).px_per_m) ?? false);
     });
     canvas.addEventListener('pointermove', (event) => {
       this.#pointer = [event.offsetX, event.offsetY];
       this.#redraw();
+      if (!canvas.hasPointerCapture(event.pointerId)) canvas.classList.toggle('holdable', this.#under(this.#pointer, REACH_PX.mouse) !== null);
       if (!canvas.hasPointerCapture(event.pointerId) || !event.isPrimary) return;
       if (pressed && Math.hypot(event.offsetX - pressed[0], event.offsetY - pressed[1]) <= CLICK_PX) return;
       pressed = null;
-      if (this.#lifted) return this.#carry(this.#toWorld([event.offsetX, event.offsetY]), event.shiftKey);
+      if (this.#hand) return this.#carry(this.#toWorld([event.offsetX, event.offsetY]), event.shiftKey);
       if (held) return this.#tool?.drag(this.#toWorld([event.offsetX, event.offsetY]));
       this.#pan(event.movementX, event.movementY);
     });

@@ -55,7 +55,7 @@ export class Lesson {
       } else if (line.startsWith('|')) {
         made.push(this.#table(take((each) => each.startsWith('|'))));
       } else if (/^ {4}/.test(line)) {
-        made.push(create('pre', {}, create('code', { textContent: take((each) => /^ {4}/.test(each)).map((each) => each.slice(4)).join('\n') })));
+        made.push(create('pre', { tabIndex: 0 }, create('code', { textContent: take((each) => /^ {4}/.test(each)).map((each) => each.slice(4)).join('\n') })));
       } else if (/^(- |\d+\. )/.test(line)) {
         const items = take((each) => /^(- |\d+\. | {2,}\S)/.test(each)).join('\n').split(/\n(?=- |\d+\. )/);
         made.push(create(/^\d/.test(line) ? 'ol' : 'ul', {}, ...items.map((item) => create('li', {}, ...this.#words(item.replace(/^(- |\d+\. )/, '').replace(/\n\s*/g, ' '))))));

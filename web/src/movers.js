@@ -1,5 +1,6 @@
 // @ts-check
-/** What moves in the world, whatever the robot does: where it is at an instant. `Route` of the plant says the same in Rust. */
+/** What stands in the world, and what moves whatever the robot does: where it is at an instant. `Route` of the plant says the same in Rust. */
+import { place } from './geometry.js';
 
 /** @typedef {import('./types.js').Mover} Mover */
 /** @typedef {import('./types.js').Pose} Pose */
@@ -31,4 +32,22 @@ function alongRoute(since_s, length_s, repeat) {
   if (repeat === 'loop') return since_s % length_s;
   const there_s = since_s % (2 * length_s);
   return there_s < length_s ? there_s : 2 * length_s - there_s;
+}
+
+/**
+ * Outlines of all that stands, then of all that moves, by their numbers in the world; some were put elsewhere by a hand.
+ * @param {import('./types.js').Scene | null} scene
+ * @param {{placeOf: (thing: string, t_s: number) => Pose | null}} readings
+ * @param {number} t_s Simulated time.
+ * @returns {import('./types.js').Obstacle[]}
+ */
+export function inWorld(scene, readings, t_s) {
+  const moving = (scene?.movers ?? []).map((mover) => {
+    const at = poseOf(mover, t_s);
+    return { corners_m: mover.corners_m.map((corner) => place(at, corner)), closed: true };
+  });
+  return [...scene?.obstacles ?? [], ...moving].map((each, number) => {
+    const by = readings.placeOf(`thing${number}`, t_s);
+    return by ? { ...each, corners_m: each.corners_m.map(([x, y]) => [x + by.x_m, y + by.y_m]) } : each;
+  });
 }

@@ -114,7 +114,7 @@ export function toCsv(panel, { store }, { from_s, to_s }) {
   const curves = shown(panel);
   const tables = [...new Set(curves.map(({ name }) => store.tableOf(name)))];
   const times = [...new Set(tables.flatMap((table) => table.t.slice(table.indexAt(from_s), table.indexAt(to_s))))].sort((a, b) => a - b);
-  const head = ['t [s]', ...curves.map(({ name, unit }) => `${name} [${unit}]`)];
+  const head = ['t [s]', ...curves.map(({ name, unit }) => cell(`${name.replace(/^=/, '')} [${unit}]`))];
   const lines = times.map((t_s) => [t_s.toFixed(3), ...curves.map(({ name }) => {
     const table = store.tableOf(name);
     const at = table.indexAt(t_s);
@@ -123,6 +123,9 @@ export function toCsv(panel, { store }, { from_s, to_s }) {
   })].join(','));
   return new Blob([`${head.join(',')}\n${lines.join('\n')}\n`], { type: 'text/csv' });
 }
+
+/** A cell of a CSV: the commas of an expression part no columns. @param {string} text */
+const cell = (text) => (text.includes(',') ? `"${text}"` : text);
 
 /**
  * @param {import('./table.js').Table} table

@@ -1,11 +1,12 @@
 // @ts-check
 /** The dialog of one plot: its title, its signals, the limits of its axis, and its export as a picture. */
+import { BadExpression, MARK } from './computed.js';
 import { check, decimal, number, read, write } from './decimal.js';
 import { complaint, dialog, saveFile } from './dialog.js';
 import { create } from './dom.js';
 import { MOST_UNITS, unitsOf } from './layout.js';
 import { printPdf, toCsv, toPng, toSvg } from './picture.js';
-import { SIGNALS, UNITS, signal } from './signals.js';
+import { SIGNALS, UNITS, computed, signal } from './signals.js';
 import { numberAs, t } from './text.js';
 
 /** @typedef {import('./plot.js').PlotPanel} PlotPanel */
@@ -31,6 +32,7 @@ export class PlotDialog {
   /** @type {{box: HTMLInputElement, label: HTMLLabelElement}[]} */
   #boxes = [];
   #choice = create('div', { className: 'signal-choice' });
+  #expression = create('input', { type: 'text', id: 'plot-expression', maxLength: 120, size: 32, placeholder: 'left_rpm - right_rpm', autocomplete: 'off', spellcheck: false });
   #complaint = complaint();
   #remove = create('button', { type: 'button', textContent: t('Remove plot') });
   #from = decimal('figure-from');
@@ -47,7 +49,10 @@ export class PlotDialog {
       create('div', { className: 'row' }, create('label', {}, `${t('title')} `, this.#title),
         create('label', {}, `${t('y min')} `, this.#min), create('label', {}, `${t('y max')} `, this.#max), create('span', { className: 'hint', textContent: t('empty = auto') })),
       this.#right,
-      this.#choice, this.#complaint,
+      this.#choice,
+      create('div', { className: 'row' }, create('label', {}, `${t('computed')} `, this.#expression),
+        create('span', { className: 'hint', textContent: t('of names of signals, which the pointer shows above: + - * / min max abs sqrt clamp, derivative(x), filter(x, seconds)') })),
+      this.#complaint,
       create('div', { className: 'row' }, create('button', { type: 'submit', className: 'go', textContent: t('Apply') }), this.#remove), this.#pictures);
     form.addEventListener('submit', (event) => {
       event.preventDefault();
@@ -92,7 +97,7 @@ export class PlotDialog {
       const box = create('input', { type: 'checkbox', value: name });
       const { store } = this.#plots;
       const known = store.tableOf(name).columns.get(name)?.some((value) => typeof value === 'number') ?? false;
-      const label = create('label', { className: known ? '' : 'absent', title: known ? '' : t('nothing to plot here') }, box, ` ${about}`);
+      const label = create('label', { className: known ? '' : 'absent', title: known ? name : `${name}: ${t('nothing to plot here')}` }, box, ` ${about}`);
       this.#boxes.push({ box, label });
       return label;
     }));
@@ -120,7 +125,7 @@ export class PlotDialog {
     const [from_s, to_s] = this.#plots.range_s;
     write(this.#from, Math.round(from_s * 100) / 100);
     write(this.#to, Math.round(to_s * 100) / 100);
-    this.#complaint.textContent = '';
+    this.#complaint.textContent = this.#expression.value = '';
     this.#limitUnits();
     this.#dialog.open();
   }
@@ -141,6 +146,16 @@ export class PlotDialog {
 
   #apply() {
     const signals = this.#chosen();
+    const text = this.#expression.value.trim();
+    if (text !== '') {
+      try {
+        signals.push(computed(MARK + text).name);
+      } catch (error) {
+        if (error instanceof BadExpression) return this.#complain(t(error.message, ...error.values));
+        throw error;
+      }
+    }
+    if (unitsOf(signals).length > MOST_UNITS) return this.#complain(t('one plot has two units at most'));
     const left = limits(this.#min, this.#max);
     const right = this.#right.hidden ? null : limits(this.#rightMin, this.#rightMax);
     if (signals.length === 0) return this.#complain(t('choose a signal at least'));

@@ -25,6 +25,9 @@ function seen(name) {
   return unit && !/^true_[xy]_m$/.test(name) ? [name.slice(0, -unit[0].length) + unit[1], unit[2]] : [name, 1];
 }
 
+/** Time between two readings, at most [s]. */
+const READ_S = 0.04;
+
 /**
  * What is true now, for the map and the numbers.
  * @typedef {object} Truth
@@ -70,6 +73,7 @@ export class Readings {
   /** Where another robot was at an instant, as far as it is known. @param {string} robot @param {number} t_s @returns {Pose | null} */
   placeOf(robot, t_s) {
     const { t, columns } = this.others;
+    if (t_s < (t[0] ?? Infinity) - READ_S) return null;
     const at = Math.min(this.others.indexAt(t_s), t.length - 1);
     const [x_m, y_m, heading_deg] = ['x_m', 'y_m', 'heading_deg'].map((part) => columns.get(`${robot}_${part}`)?.[at]);
     return typeof x_m === 'number' && typeof y_m === 'number' && typeof heading_deg === 'number' ? { x_m, y_m, heading_rad: heading_deg / DEG_PER_RAD } : null;

@@ -57,7 +57,12 @@ export class ReplayBar {
 
   /** Plays or pauses. */
   toggle() {
-    this.#send({ type: 'speed', factor: this.#playing ? 0 : Number(this.#speed.value) });
+    this.play(!this.#playing);
+  }
+
+  /** @param {boolean} on */
+  play(on) {
+    this.#send({ type: 'speed', factor: on ? Number(this.#speed.value) : 0 });
   }
 
   /** @param {number} frames */

@@ -66,11 +66,3 @@ export async function openScenario(files, ask, complain) {
   if (start.file) ask({ open: { ...start, ...robotOf() } });
   else complain(`${files.map(({ name }) => name).join(', ')}: no scenario is among these files`);
 }
-
-/** The robot that the page was loaded for. */
-const shown = robotOf().robot;
-
-// Another robot's session begins as a page that is loaded does.
-addEventListener('hashchange', () => {
-  if (!isSite && robotOf().robot !== shown) location.reload();
-});

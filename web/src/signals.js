@@ -1,6 +1,7 @@
 // @ts-check
 /** The signals that can be plotted, each with its label, its unit and its colour. */
 
+import { BadExpression, MARK, unitOfExpression } from './computed.js';
 import { ROW } from './row.js';
 import { named, t } from './text.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
@@ -82,8 +83,28 @@ const COLOURS = ['left', 'right', 'front', 'goal', 'reference'];
 /** Signals by their names, in the reader's language. @type {Map<string, Signal>} */
 const met = new Map([...SIGNALS, ...LOOPS].map((each) => [each.name, { ...each, label: t(each.label), about: t(each.about) }]));
 
-/** The signal with this name: one of those above, a pin's, an inertial sensor's, or a printed one. @param {string} name @returns {Signal | null} */
+/** The signal of an expression. @param {string} name with its mark @returns {Signal} */
+export function computed(name) {
+  const unit = unitOfExpression(name, (each) => signal(each)?.unit ?? null);
+  const label = name.slice(MARK.length).trim();
+  return { name, label, about: label, unit, colour: COLOURS[met.size % COLOURS.length] ?? 'left', kind: 'measured' };
+}
+
+/** The same; null if it is none. @param {string} name */
+function ifComputed(name) {
+  try {
+    const made = met.get(name) ?? computed(name);
+    met.set(name, made);
+    return made;
+  } catch (error) {
+    if (error instanceof BadExpression) return null;
+    throw error;
+  }
+}
+
+/** The signal with this name: one of those above, a pin's, an inertial sensor's, a printed one, or an expression's. @param {string} name @returns {Signal | null} */
 export function signal(name) {
+  if (name.startsWith(MARK)) return ifComputed(name);
   const known = met.get(name) ?? null;
   const [, pin = null, port = null, printed = null, felt = null, turn = null] = name.match(/^(?:pin_(\w+)|serial(\d+):(.+)|(\w+)_m_s2|(\w+_yaw)_deg_s)$/) ?? [];
   const inertial = felt ?? turn;

@@ -1,7 +1,6 @@
 // @ts-check
 /** What the map shows, drawn on a canvas in metres: world, trails, robot, the sonars' cones with their readings, goal and route. */
 import { compose, likelyArea, place } from './geometry.js';
-import { poseOf } from './movers.js';
 import { colours, stateColour } from './theme.js';
 import { formatShort } from './units.js';
 
@@ -108,7 +107,7 @@ export class Sketch {
     const bottom = this.canvas.clientHeight - 10;
     const right = this.canvas.clientWidth - 12;
     // Legible on a wall too.
-    context.globalAlpha = 0.75;
+    context.globalAlpha = 0.95;
     context.fillStyle = colours.panel;
     context.fillRect(right - length_m * px_per_m - 4, bottom - 22, length_m * px_per_m + 8, 26);
     context.globalAlpha = 1;
@@ -141,11 +140,10 @@ export class Sketch {
     context.setLineDash([]);
   }
 
-  /** @param {number} px @param {number} t_s Simulated time. */
-  drawWorld(px, t_s) {
+  /** @param {number} px @param {import('./types.js').Obstacle[]} outlines of what stands and moves */
+  drawWorld(px, outlines) {
     this.drawLines();
-    this.drawOutlines(px, this.scene?.obstacles ?? []);
-    this.drawMovers(px, t_s);
+    this.drawOutlines(px, outlines);
   }
 
   /** Dark lines on the floor. */
@@ -158,15 +156,6 @@ export class Sketch {
       tracePath(context, points_m, false);
       context.stroke();
     }
-  }
-
-  /** What moves, at this simulated time. @param {number} px @param {number} t_s */
-  drawMovers(px, t_s) {
-    const movers = (this.scene?.movers ?? []).map((mover) => {
-      const at = poseOf(mover, t_s);
-      return { corners_m: mover.corners_m.map((corner) => place(at, corner)), closed: true };
-    });
-    this.drawOutlines(px, movers);
   }
 
   /** @param {number} px @param {import('./types.js').Obstacle[]} obstacles @param {string} [colour] */

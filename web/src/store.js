@@ -8,6 +8,7 @@
  * Positions are in metres in the frame of the world, as on the map, also after the robot has moved its origin; headings
  * continue through 180 degrees up to 315.
  */
+import { Computed, MARK } from './computed.js';
 import { IDENTITY, compose, near, place, wrapped } from './geometry.js';
 import { Readings } from './readings.js';
 import { ROW } from './row.js';
@@ -101,6 +102,7 @@ export class Store {
   slow = new Table(SLOW, KEPT_S);
   fast = new Table(FAST, KEPT_S);
   readings = new Readings(KEPT_S);
+  #computed = new Computed((name) => this.tableOf(name), KEPT_S);
   /** Where the robot began, in the world. @type {Pose} */
   start = IDENTITY;
   /** @type {Stretch[]} */
@@ -145,6 +147,7 @@ export class Store {
     this.slow.clear();
     this.fast.clear();
     this.readings.clear();
+    this.#computed.clear();
     this.stretches = [];
     this.steps = [];
     this.haunted = false;
@@ -384,8 +387,9 @@ export class Store {
     return Math.max(this.slow.t.at(-1) ?? 0, this.readings.newest_s);
   }
 
-  /** The table that a signal is in. @param {string} name */
+  /** The table that a signal is in. @param {string} name @returns {Table} */
   tableOf(name) {
+    if (name.startsWith(MARK)) return this.#computed.tableOf(name);
     return this.readings.tableOf(name) ?? (this.fast.columns.has(name) ? this.fast : this.slow);
   }
 

@@ -9,11 +9,12 @@ import { FILES } from './spanish/files.js';
 import { GUIDE } from './spanish/guide.js';
 import { PAGE } from './spanish/page.js';
 import { PARAMETERS } from './spanish/parameters.js';
+import { PROGRAM } from './spanish/program.js';
 import { ROBOT, UNDERSCORED } from './spanish/robot.js';
 import { SCENARIOS } from './spanish/scenarios.js';
 
 /** Every text with its Spanish. @type {Record<string, string>} */
-export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...SCENARIOS, ...GUIDE, ...FILES };
+export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...PROGRAM, ...SCENARIOS, ...GUIDE, ...FILES };
 
 /** The languages, by the code that browsers have for them. */
 export const LANGUAGES = /** @type {const} */ ({ en: 'English', es: 'Español' });

@@ -11,7 +11,7 @@ import { unitWords } from './parameters.js';
 import { said, t } from './text.js';
 import { format, formatFloat } from './units.js';
 import { Search } from './tune_search.js';
-import { resultTables } from './tune_tables.js';
+import { certainlyWorse, resultTables } from './tune_tables.js';
 import { isSite } from './worker_link.js';
 
 /** @typedef {import('./panel.js').Send} Send */
@@ -256,8 +256,10 @@ export class TuneDialog {
     save.addEventListener('click', () => saveFile(`${this.#scene?.robot ?? 'robot'}-tuned.toml`, new Blob([robot_file ?? ''], { type: 'application/toml' })));
     const none = create('span', { className: 'hint', textContent: t('no robot file: more of the unseen robots fail than before') });
     this.#allow();
+    const worse = certainlyWorse(found);
     this.#result.replaceChildren(
-      create('p', { className: passed_tuned === seeds.length ? 'passed' : 'failed', textContent: t('on {} robots that the search has not seen: {} passed, {} pass', seeds.length, passed_now, passed_tuned) }),
+      create('p', { className: passed_tuned < seeds.length ? 'failed' : worse.length > 0 ? '' : 'passed', textContent: t('on {} robots that the search has not seen: {} passed, {} pass', seeds.length, passed_now, passed_tuned) }),
+      ...(worse.length > 0 ? [create('p', { className: 'complaint', textContent: t('certainly worse than before: {}', worse.join(', ')) })] : []),
       ...resultTables(found, (name) => unitWords(this.#table.get(name)?.unit ?? '')),
       create('div', { className: 'row' }, this.#set, robot_file === null ? none : save),
       create('p', { className: 'hint', textContent: t('{} runs of the search. Lines whose interval excludes zero are certain; the others may be chance.', found.runs) }));

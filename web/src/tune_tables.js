@@ -27,6 +27,9 @@ export function resultTables({ parameters, differences }, unitOf) {
   ];
 }
 
+/** The metrics that chance does not explain, and that are worse in most runs. @param {Found} found */
+export const certainlyWorse = ({ differences }) => differences.filter(({ interval: [low, high], better, worse }) => low !== null && high !== null && low * high > 0 && worse > better).map(({ metric }) => metric);
+
 /** @param {Difference} difference */
 function line({ metric, medians, mean, interval: [low, high], effect, better, never: [one, other] }) {
   const range = low === null || high === null ? '–' : t('{} to {}|interval', signed(low), signed(high));

@@ -17,7 +17,7 @@
  * @property {boolean} lane Follows a lane on command.
  * @property {string[]} rigs The rigs it can drive with.
  * @property {[string, number[]][]} parameters Title and numbers of each group, the most important first.
- * @property {[string, string, number[]][]} laws Its equations: the signal that each gives, what it is, and the parameters within its terms.
+ * @property {[string, string, number[], number[]][]} laws Its equations: the signal that each gives, what it is, the parameters within its terms, and the states in which it holds; none: in all.
  * @property {string[]} plots Titles of the default plots.
  * @property {string[]} states
  * @property {[number, number, string][]} ways Between the states: from, to, when.

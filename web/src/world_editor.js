@@ -3,6 +3,7 @@
  * The editor of the world on the map: its panel takes the place of the commands, its shapes are drawn and dragged on the map.
  * The session checks each change as it checks a file, writes the file, and starts the robot again in the edited world.
  */
+import { inWorld } from './movers.js';
 import { check, decimal, read, setLimits, write } from './decimal.js';
 import { complaint, fileButton, saveFile } from './dialog.js';
 import { create, element, setText } from './dom.js';
@@ -291,7 +292,7 @@ export class WorldEditor {
     const { context } = sketch;
     sketch.drawArena(...arenaOf(world), px);
     sketch.drawOutlines(px, outlines(world));
-    sketch.drawMovers(px, 0);
+    sketch.drawOutlines(px, inWorld(sketch.scene && { ...sketch.scene, obstacles: [] }, { placeOf: () => null }, 0));
     const start = poseOf(world.start);
     sketch.drawRobot(start, px, 'real', false);
     if (world.goal_m) sketch.drawGoal(world.goal_m, [start.x_m, start.y_m], px);

@@ -127,8 +127,8 @@ export function met(world, chosen, at, reach_m) {
   return shape ? { item: shape.item, grip: 'all' } : null;
 }
 
-/** @param {Point[]} corners @param {boolean} closed @param {Point} at @param {number} reach_m */
-function isAt(corners, closed, at, reach_m) {
+/** Whether an outline is at a place. @param {Point[]} corners @param {boolean} closed @param {Point} at @param {number} reach_m */
+export function isAt(corners, closed, at, reach_m) {
   const sides = corners.map((corner, index) => /** @type {[Point, Point]} */ ([corner, corners[(index + 1) % corners.length]]));
   if ((closed ? sides : sides.slice(0, -1)).some(([from, to]) => distance(from, to, at) <= reach_m)) return true;
   // Inside: on the same side of every edge.

@@ -7,10 +7,11 @@ import { FILES } from '../src/spanish/files.js';
 import { GUIDE } from '../src/spanish/guide.js';
 import { PAGE } from '../src/spanish/page.js';
 import { PARAMETERS } from '../src/spanish/parameters.js';
+import { PROGRAM } from '../src/spanish/program.js';
 import { ROBOT } from '../src/spanish/robot.js';
 import { SCENARIOS } from '../src/spanish/scenarios.js';
 
-const TABLES = [PAGE, ROBOT, PARAMETERS, SCENARIOS, GUIDE, FILES];
+const TABLES = [PAGE, ROBOT, PROGRAM, PARAMETERS, SCENARIOS, GUIDE, FILES];
 /** @type {Record<string, string>} */
 const SPANISH = Object.assign({}, ...TABLES);
 
@@ -31,7 +32,7 @@ test('the texts of the page that scripts put there', () => {
   const files = readdirSync(new URL('../src', import.meta.url)).filter((name) => name.endsWith('.js'));
   const sources = files.map((name) => read(`../src/${name}`)).join('\n');
   // What stands in a call, and what is put into one later.
-  const calls = [...sources.matchAll(/\b(?:t|said|named)\((?:[^()'`]|'(?:[^'\\]|\\.)*')*/g)].map(([call]) => call);
+  const calls = [...sources.matchAll(/\b(?:t|said|named|BadExpression)\((?:[^()'`]|'(?:[^'\\]|\\.)*')*/g)].map(([call]) => call);
   const later = [...sources.matchAll(/\b(?:title|label|unit|name): '(?:[^'\\]|\\.)*'/g)].map(([property]) => property).filter((each) => !/'\w+_\w+'/.test(each));
   const frames = sources.match(/const KINDS = {.*/)?.[0] ?? '';
   const texts = [...calls, ...later, frames].flatMap((part) => [...part.matchAll(/'((?:[^'\\]|\\.)*)'/g)].map((found) => unescaped(found[1] ?? ''))).filter(hasWords);
@@ -88,6 +89,18 @@ test('why nothing is tuned', () => {
   const texts = [...displays, read('../../crates/experiment/src/tune/over.rs').match(/"[^"]+ sets it itself[^"]*"/)?.[0] ?? ''].flatMap((part) => [...part.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped(found[1] ?? '').replace(/\{[^}]*\}/g, '{}')));
   assert.ok(texts.length > 9, String(texts.length));
   allSpanish(texts);
+});
+
+/** Names that are the same in Spanish, and a sentence that goes with a place or without. */
+const SAME = ['Serial (USB)', 'compiler: {}{}'];
+
+test('what is said of a program at the pins, its end, the debugger and the speed of the link', () => {
+  const texts = ['emulator/src/verdict', 'sim/src/mega/notes', 'sim/src/mega/wheels', 'sim/src/debugging', 'sim/src/drivers', 'session/src/watch', 'lab/src/robot/programs'].flatMap((name) => {
+    const source = (read(`../../crates/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '').replace(/\\\n\s*/g, '').replace(/(?:unreachable!|unwrap_or_else\(\|\| panic!)\([^)]*\)/g, '');
+    return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped((found[1] ?? '').replace(/\{[^}]*\}/g, '{}')));
+  });
+  assert.ok(texts.length > 80, String(texts.length));
+  allSpanish(texts.filter((text) => / /.test(text) && hasWords(text) && !SAME.includes(text)));
 });
 
 /** Parts of such messages, which have their Spanish with the rest of the sentence, or need none. */

@@ -2,6 +2,7 @@
 //!
 //! They share the simulation. The first one's session has the time, and starts all of them again; the others go with it.
 
+use crate::hand::HAND;
 use crate::prepare::{Prepared, chosen, prepare_fleet};
 use crate::robot::type_to;
 use crate::sight;
@@ -258,6 +259,10 @@ impl Target for FleetRobot {
     }
 
     fn type_in(&mut self, usart: u8, text: &str) -> Result<(), TargetError> {
+        // The other robots would not see what was moved, nor would their logs.
+        if usart == HAND && !text.starts_with("robot=") {
+            return Ok(());
+        }
         match self.sim(|sim| type_to(sim, usart, text.as_bytes())) {
             true => Ok(()),
             false => Err(TargetError::NoChip),

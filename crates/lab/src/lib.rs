@@ -6,6 +6,7 @@
 
 mod calibration;
 mod fleet;
+mod hand;
 mod hash;
 pub mod manifest;
 mod play;
@@ -19,8 +20,9 @@ mod world;
 
 pub use calibration::calibration;
 pub use fleet::{FleetRobot, fleet};
+pub use hand::HAND;
 pub use hash::{recorded_hash, run_hash};
 pub use program::{Made, Make, OwnProgram, Workshop, problem};
-pub use robot::{Cable, HAND, SimulatedRobot, type_to};
+pub use robot::{Cable, SimulatedRobot, type_to};
 pub use scene::{others, scene};
 pub use world::{EDITED, edited_world};

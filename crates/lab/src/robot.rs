@@ -3,6 +3,7 @@
 mod playing;
 mod programs;
 
+use crate::hand::{self, HAND};
 use crate::play::Experiment;
 use crate::prepare::{Prepared, prepare};
 use crate::program::{Held, Make, OwnProgram};
@@ -19,7 +20,6 @@ use rumbo_sim::debugging::Debugging;
 use rumbo_sim::mega::{Mega, USB};
 use rumbo_wire::Command;
 use std::collections::VecDeque;
-use std::f64::consts::PI;
 
 /// Another program at the USB port of an emulated Mega.
 pub trait Cable: Send {
@@ -135,37 +135,11 @@ impl SimulatedRobot {
     }
 }
 
-/// In place of a USART: a hand that lifts the robot and puts it down, by lines `robot=X Y HEADING` in the world \[m\],
-/// \[rad\]. So it takes the way of typed text: over the page, into logs, and again from there.
-pub const HAND: u8 = 6;
-/// Farthest that a hand reaches \[m\].
-const REACH_M: f64 = 100.0;
-
-/// Puts the robot where a line says; one that is wrong, or where there is no room, does nothing.
-fn put(sim: &mut Sim, line: &[u8]) {
-    let line = std::str::from_utf8(line).unwrap_or_default();
-    let numbers = line.trim().strip_prefix("robot=").unwrap_or_default();
-    let numbers: Vec<f64> = numbers
-        .split(' ')
-        .filter_map(|each| each.parse().ok())
-        .collect();
-    if let [x_m, y_m, heading_rad] = numbers[..]
-        && x_m.abs().max(y_m.abs()) <= REACH_M
-        && heading_rad.is_finite()
-    {
-        sim.put(rumbo_plant::contact::Pose {
-            x_m,
-            y_m,
-            heading_rad: heading_rad.clamp(-PI, PI),
-        });
-    }
-}
-
 /// Sends bytes to a USART of the emulated chip, over the link if it is the link's; whether there is a chip. To [`HAND`] what
 /// a hand does.
 pub fn type_to(sim: &mut Sim, usart: u8, bytes: &[u8]) -> bool {
     if usart == HAND {
-        put(sim, bytes);
+        hand::act(sim, bytes);
         return true;
     }
     let Some(mega) = sim.mega_mut() else {
@@ -295,7 +269,10 @@ impl Target for SimulatedRobot {
 
     fn shown(&mut self) -> Vec<Shown> {
         match sight::reading_due(&self.sim, &mut self.reading_due_us) {
-            true => sight::shown(&mut self.sim).into_iter().collect(),
+            true => {
+                let shown = sight::shown(&mut self.sim);
+                shown.into_iter().chain(hand::moved(&self.sim)).collect()
+            }
             false => Vec::new(),
         }
     }

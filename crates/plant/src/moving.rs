@@ -141,6 +141,12 @@ impl Route {
         self.start_us
     }
 
+    fn shift(&mut self, by_m: Point) {
+        for waypoint in &mut self.waypoints {
+            waypoint.pose.shift(by_m);
+        }
+    }
+
     fn at(&self, now_us: u64) -> Motion {
         let since_us = now_us.saturating_sub(self.start_us);
         let last_us = self.waypoints[self.waypoints.len() - 1].at_us;
@@ -287,6 +293,14 @@ impl Body {
         let was = self.at(now_us).pose;
         self.follow(course);
         way_m(&was, &self.at(now_us).pose, self.radius_m)
+    }
+
+    /// Shifts its whole course.
+    pub(crate) fn shift(&mut self, by_m: Point) {
+        match &mut self.course {
+            Course::Route(route) => route.shift(by_m),
+            Course::Straight { from, .. } => from.pose.shift(by_m),
+        }
     }
 
     /// Takes the course of another one with the same outline.

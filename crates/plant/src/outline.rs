@@ -139,6 +139,13 @@ impl Obstacle {
         obstacle
     }
 
+    pub(crate) fn shift(&mut self, by_m: Point) {
+        for face in &mut self.faces {
+            face.start = add(face.start, by_m);
+        }
+        self.center = add(self.center, by_m);
+    }
+
     /// Becomes the outline with these corners, counter-clockwise; it keeps its memory.
     pub(crate) fn take_corners(&mut self, corners: impl Iterator<Item = Point>) {
         let faces = &mut self.faces;
@@ -218,6 +225,12 @@ pub struct Pose {
     pub y_m: f64,
     /// Counter-clockwise from the world's x axis.
     pub heading_rad: f64,
+}
+
+impl Pose {
+    pub(crate) fn shift(&mut self, by_m: Point) {
+        [self.x_m, self.y_m] = add([self.x_m, self.y_m], by_m);
+    }
 }
 
 /// Corners, counter-clockwise, of a rectangle with the given half sides; its middle is at `offset` in the frame of

@@ -19,7 +19,7 @@ use crate::noise::Noise;
 use crate::params::{self, Params};
 use crate::servo;
 use crate::sonar::{self, InAir, Ping, Sonar, SonarId, View};
-use crate::world::{ShapeError, World};
+use crate::world::{Point, ShapeError, World};
 
 /// Longest physical step, and the grid it keeps to.
 pub(crate) const STEP_US: u64 = 1000;
@@ -165,6 +165,22 @@ impl Plant {
     #[must_use]
     pub fn has_room(&self, state: &State, at: &Pose) -> bool {
         self.footprint.clearance_m(&self.world, state.now_us, at) > 0.0
+    }
+
+    /// Shifts what has this number in the world, obstacles first, then bodies with their whole course, unless the robot
+    /// is there; whether it was shifted.
+    pub fn shift(&mut self, state: &mut State, thing: usize, by_m: Point) -> bool {
+        let mut world = World::clone(&self.world);
+        let clearance_m = |world| self.footprint.clearance_m(world, state.now_us, &state.pose);
+        let was_m = clearance_m(&self.world);
+        let is_there = world.shift(thing, by_m);
+        // What already leans on the robot may leave it.
+        let fits = is_there && clearance_m(&world) >= was_m.min(0.0);
+        if fits {
+            state.contact.clearance_m = 0.0;
+            self.world = Arc::new(world);
+        }
+        fits
     }
 
     /// The world.

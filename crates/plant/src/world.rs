@@ -154,6 +154,19 @@ impl World {
             .fold(0.0, f64::max);
     }
 
+    /// Shifts what has this number, obstacles first, then bodies with their whole course; whether there is such a thing.
+    pub(crate) fn shift(&mut self, thing: usize, by_m: Point) -> bool {
+        let standing = self.obstacles.len();
+        if let Some(obstacle) = self.obstacles.get_mut(thing) {
+            obstacle.shift(by_m);
+        } else if let Some(body) = self.bodies.get_mut(thing - standing) {
+            body.shift(by_m);
+        } else {
+            return false;
+        }
+        true
+    }
+
     /// No point of a body is faster.
     pub(crate) const fn fastest_m_s(&self) -> f64 {
         self.fastest_m_s

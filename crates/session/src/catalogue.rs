@@ -31,8 +31,9 @@ pub struct ModeEntry {
     rigs: Vec<&'static str>,
     /// Its parameters by number, those that matter most first: title and numbers.
     parameters: Vec<(&'static str, Vec<u8>)>,
-    /// Its equations: the signal that each gives, what it is, and the parameters within its terms.
-    laws: Vec<(&'static str, &'static str, Vec<u8>)>,
+    /// Its equations: the signal that each gives, what it is, the parameters within its terms, and the states in which it
+    /// holds; none: in all.
+    laws: Vec<(&'static str, &'static str, Vec<u8>, &'static [u8])>,
     /// Names of the plots to begin with.
     plots: Vec<&'static str>,
 }
@@ -95,7 +96,7 @@ fn mode_entry(mode: ModeId) -> ModeEntry {
             .flat_map(|laws| laws.iter())
             .map(|law| {
                 let gains = law.gains.iter().map(|id| *id as u8);
-                (law.gives, law.is, gains.collect())
+                (law.gives, law.is, gains.collect(), law.states)
             })
             .collect(),
         plots: about.plots.iter().map(|plot| plot.name()).collect(),
@@ -109,7 +110,7 @@ mod tests {
     use rumbo_log::SIGNALS;
 
     /// Signals that the simulated loops add ([`rumbo_log::Source::Loops`]), and the distance setpoint as the page has it.
-    const LOOPS: [&str; 15] = [
+    const LOOPS: [&str; 19] = [
         "left_p_pwm",
         "left_i_pwm",
         "left_d_pwm",
@@ -125,6 +126,11 @@ mod tests {
         "heading_p_rad_s",
         "heading_d_rad_s",
         "reference_m",
+        // The page's: of the setpoint, and since ON.
+        "heading_error_rad",
+        "heading_since_on_rad",
+        "goal_x_m",
+        "goal_y_m",
     ];
 
     #[test]
@@ -137,19 +143,16 @@ mod tests {
                 || functions.contains(&name)
         };
         for mode in modes() {
-            for (gives, is, _) in &mode.laws {
+            for (gives, is, ..) in &mode.laws {
                 let names = is.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
                 let names =
                     names.filter(|name| name.starts_with(|c: char| c.is_ascii_alphabetic()));
                 for name in names {
-                    let is_given = mode.laws.iter().any(|(given, _, _)| *given == name);
+                    let is_given = mode.laws.iter().any(|(given, ..)| *given == name);
                     assert!(is_given || is_known(name), "{}: {name}", mode.name);
                 }
-                assert!(
-                    is_known(gives) || *gives == "error_m",
-                    "{}: {gives}",
-                    mode.name
-                );
+                let is_own = ["error_m", "most_rad_s", "left_m", "speed_m_s"].contains(gives);
+                assert!(is_known(gives) || is_own, "{}: {gives}", mode.name);
             }
         }
     }

@@ -45,6 +45,10 @@ const SECURITY_HEADERS: [(HeaderName, HeaderValue); 7] = [
     (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
 ];
 
+/// Of the page's own files, which hold nothing of anybody's: one that loads again, since some did not come, asks for those
+/// only.
+const SOON_AGAIN: &str = "private, max-age=10";
+
 /// The WebSocket's protocol, as the page asks for it: this name, and its key as if it were another one.
 const PROTOCOL: &str = "rumbo";
 /// What a page without control may not do.
@@ -93,7 +97,11 @@ async fn admit(State(guard): State<Arc<Guard>>, request: Request, next: Next) ->
         Ok(()) => next.run(request).await,
         Err(denied) => denied.into_response(),
     };
+    let kept = response.headers_mut().remove(header::CACHE_CONTROL);
     response.headers_mut().extend(SECURITY_HEADERS);
+    if let Some(kept) = kept {
+        response.headers_mut().insert(header::CACHE_CONTROL, kept);
+    }
     response
 }
 
@@ -190,8 +198,16 @@ async fn file(request: Request) -> Response {
         return StatusCode::METHOD_NOT_ALLOWED.into_response();
     }
     match assets::find(request.uri().path()) {
-        Some(asset) => (
+        Some(asset) if asset.path == "/index.html" => (
             [(header::CONTENT_TYPE, asset.mime)],
+            Body::from(asset.bytes),
+        )
+            .into_response(),
+        Some(asset) => (
+            [
+                (header::CONTENT_TYPE, asset.mime),
+                (header::CACHE_CONTROL, SOON_AGAIN),
+            ],
             Body::from(asset.bytes),
         )
             .into_response(),

@@ -3,7 +3,7 @@
 
 /** @type {Record<string, string>} */
 export const GUIDE = {
-  'Check the robot': 'Comprobar el robot', 'Check a new robot step by step: motors, encoders, sonars, servo': 'Comprueba paso a paso un robot nuevo: motores, encoders, sonares, servo',
+  'Check the robot': 'Comprobar', 'Check a new robot step by step: motors, encoders, sonars, servo': 'Comprueba paso a paso un robot nuevo: motores, encoders, sonares, servo',
   'left|wheel': 'izquierda', 'right|wheel': 'derecha', 'left|sonar': 'izquierdo', 'right|sonar': 'derecho', 'front|sonar': 'frontal',
   'Wheels in the air': 'Ruedas en el aire', 'Left motor and encoder': 'Motor y encoder izquierdos', 'Right motor and encoder': 'Motor y encoder derechos', 'Sonar: {}': 'Sonar {}', 'Servo': 'Servo',
   'Put the robot on a block so that both wheels hang free. The page arms the robot and turns one wheel at a time; STOP works at any moment.':

@@ -168,10 +168,23 @@ export const PAGE = {
   'Play or pause (K)': 'Reproducir o pausar (K)', 'One telemetry frame back (comma)': 'Una trama de telemetría atrás (coma)', 'One frame back': 'Una trama atrás',
   'One telemetry frame on (full stop)': 'Una trama de telemetría adelante (punto)', 'One frame on': 'Una trama adelante',
   'Time in the log': 'Tiempo en la grabación', 'Speed of the replay': 'Velocidad de la reproducción', '{} of {} s': '{} de {} s',
+  // Signals computed from others.
+  'computed': 'calculada', 'of names of signals, which the pointer shows above: + - * / min max abs sqrt clamp, derivative(x), filter(x, seconds)': 'con nombres de señales, que el puntero muestra arriba: + - * / min max abs sqrt clamp, derivative(x), filter(x, segundos)',
+  'the expression {} has no signal': 'la expresión {} no tiene ninguna señal', 'there is no signal {}': 'no hay ninguna señal {}', '{} and {} do not add up': '{} y {} no se pueden sumar', 'one plot has two units at most': 'una gráfica tiene como mucho dos unidades',
+  // The control loop as blocks.
+  'encoders': 'encoders', 'left wheel, right wheel': 'rueda izquierda, rueda derecha',
+  'certainly worse than before: {}': 'sin duda peor que antes: {}',
+  // Handing in a lesson.
+  'Hand in': 'Entregar', 'run': 'ensayo', 'hypotheses and answers': 'hipótesis y respuestas', 'Check the figures': 'Comprobar las cifras', 'Save to hand in': 'Guardar para entregar',
+  'Compare the figures in the tables with those that the lesson gives for the same runs': 'Compara las cifras de las tablas con las que da la lección para los mismos ensayos',
+  'Save name, tables with their runs, and answers as a Markdown file': 'Guarda el nombre, las tablas con sus ensayos y las respuestas como archivo Markdown',
+  'the lesson gives {}': 'la lección da {}', '{} agree, {} do not, {} are empty': '{} coinciden, {} no, {} están vacías',
+  // Video of a replay.
+  'Video': 'Vídeo', 'Stop the video': 'Terminar el vídeo', 'Save the map as a video, WebM, while the replay goes through the time that the plots show': 'Guarda el mapa como vídeo, WebM, mientras la reproducción recorre el tiempo que muestran las gráficas',
   // Map and state line.
   'Map': 'Mapa', 'Zoom in': 'Acercar', 'Zoom out': 'Alejar', 'Zoom in (+ on the map)': 'Acerca (+ en el mapa)', 'Zoom out (- on the map)': 'Aleja (- en el mapa)', 'nothing to plot here': 'nada que dibujar aquí', 'The robot has nothing wired to measure its battery': 'El robot no tiene nada conectado para medir su batería', 'ON starts it': 'ON lo pone en marcha',
-  'Map of the world and the robot. Drag to move, or the simulated robot to carry it, with Shift to turn it; two fingers, wheel or + and - zoom, 0 fits; in modes 7 and 8 a click picks a point, or Enter the one in the middle':
-    'Mapa del mundo y del robot. Arrastrar lo mueve, o lleva el robot simulado, con Mayús lo gira; dos dedos, la rueda o + y - lo amplían, 0 lo ajusta; en los modos 7 y 8 un clic elige un punto, o Intro el del centro',
+  'Map of the world and the robot. Drag to move; the simulated robot, boxes, walls, people and the goal are carried, the robot with Shift turned; two fingers, wheel or + and - zoom, 0 fits; in modes 7 and 8 a click picks a point, or Enter the one in the middle':
+    'Mapa del mundo y del robot. Arrastrar lo mueve; el robot simulado, las cajas, las paredes, las personas y la meta se llevan, el robot con Mayús se gira; dos dedos, la rueda o + y - lo amplían, 0 lo ajusta; en los modos 7 y 8 un clic elige un punto, o Intro el del centro',
   'true pose': 'pose real', 'estimated pose': 'pose estimada', '95 % confidence by the odometry\'s error model: the ellipse for the position, the sector for the heading': 'confianza del 95 % según el modelo de errores de la odometría: la elipse para la posición, el sector para el rumbo', 'Fit': 'Ajustar', 'Ghost here': 'Fantasma aquí', 'Start the ghost again where the robot is now': 'Empieza el fantasma de nuevo donde está ahora el robot', 'Show everything (0 on the map)': 'Muestra todo (0 en el mapa)',
   'Update the robot\'s sensor layout': 'Actualizar el montaje en el robot', 'Write the sensor layout (rig) that is mounted to the robot\'s parameters': 'Escribe en los parámetros del robot el montaje de sensores que lleva',
   'The robot is set to the sensor layout {}, but {} is mounted: it misreads its sonars.': 'El robot está configurado con el montaje {}, pero lleva {}: interpreta mal sus sonares.',

@@ -44,11 +44,16 @@ test('a plot with chosen signals is added, and a reload keeps it', async () => {
   await page.locator('#plot-title').fill('errors');
   await page.getByLabel('error of the speed, left wheel').check();
   await page.getByLabel('error of the speed, right wheel').check();
+  await page.locator('#plot-expression').fill('left_rpm - rigth_rpm');
+  await page.locator('#plot-dialog button[type=submit]').click();
+  await page.locator('#plot-dialog .complaint', { hasText: 'there is no signal rigth_rpm' }).waitFor();
+  await page.locator('#plot-expression').fill('left_rpm - right_rpm');
   await page.locator('#plot-dialog button[type=submit]').click();
   assert.deepEqual(await titles(), ['distance', 'wheels', 'PWM', 'errors']);
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.series('left_error_rpm').y.some((/** @type {unknown} */ y) => typeof y === 'number'));
   await page.reload();
   await page.locator('.plot-head b', { hasText: 'errors' }).waitFor();
+  await page.locator('.plot-head', { hasText: 'errors' }).locator('.curve', { hasText: /^left_rpm - right_rpm\s*[−\d]/ }).waitFor();
 });
 
 rare('a locked axis keeps its limits, also through a reload', async () => {

@@ -2,6 +2,7 @@
 /** A log in the dashboard. */
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { eventually, folder, open, program, rare } from '../dashboard.mjs';
@@ -144,4 +145,14 @@ rare('what is plotted does not jump where the robot moves its origin to its goal
 
 test('no script failed on the way', () => {
   assert.deepEqual(dashboard.complaints, []);
+});
+
+test('the map is saved as a video of what the plots show', async () => {
+  await page.locator('#replay-speed').selectOption('8');
+  const [video] = await Promise.all([page.waitForEvent('download'), page.locator('#replay-video').click()]);
+  assert.match(video.suggestedFilename(), /^mode1-3-0\.0-\d\.\d\.webm$/);
+  const content = readFileSync(await video.path());
+  assert.equal(content.readUInt32BE(0), 0x1a45dfa3, 'it is WebM');
+  assert.ok(content.length > 5_000, String(content.length));
+  await page.locator('#replay-video', { hasText: 'Video' }).waitFor();
 });

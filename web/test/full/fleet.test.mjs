@@ -15,7 +15,7 @@ const state = () => page.evaluate(() => /** @type {import('../../src/types.js').
 
 /** Goes to the page of a robot. @param {string} name */
 async function show(name) {
-  if (await page.locator('#robot').inputValue() !== name) await Promise.all([page.waitForEvent('load'), page.locator('#robot').selectOption(name)]);
+  if (await page.locator('#robot').inputValue() !== name) await Promise.all([page.waitForEvent('websocket'), page.locator('#robot').selectOption(name)]);
   await page.waitForFunction(() => /** @type {any} */ (window).rumbo.state()?.link.connected);
   assert.equal(await page.locator('#robot').inputValue(), name);
 }
@@ -32,6 +32,7 @@ before(async () => {
 after(() => dashboard?.close());
 
 test('each robot is driven from its own page', async () => {
+  await page.evaluate(() => Object.assign(window, { kept: true }));
   assert.deepEqual(await page.locator('#robot option').allTextContents(), ['robot1', 'robot2', 'robot3']);
   await show('robot2');
   assert.equal(await page.locator('#simulation').isVisible(), false, 'the first one has the choice');
@@ -44,6 +45,7 @@ test('each robot is driven from its own page', async () => {
   await show('robot1');
   assert.equal((await state()).robot.armed, false);
   assert.equal(await page.locator('#simulation').isVisible(), true);
+  assert.equal(await page.evaluate(() => 'kept' in window), true, 'the page has not been loaded again');
   assert.equal(await page.locator('#edit-world').isVisible(), false, 'a world is edited with one robot in it');
 });
 

@@ -97,6 +97,8 @@ pub struct Law {
     pub is: &'static str,
     /// Parameters within the terms that the equation does not spell out.
     pub gains: &'static [ParamId],
+    /// The states in which it holds, by number; none: in all.
+    pub states: &'static [u8],
 }
 
 impl Law {
@@ -106,7 +108,13 @@ impl Law {
             gives,
             is,
             gains: &[],
+            states: &[],
         }
+    }
+
+    /// One that holds in these states only.
+    pub const fn only_in(self, states: &'static [u8]) -> Self {
+        Self { states, ..self }
     }
 
     /// One whose terms have these parameters within.
@@ -203,6 +211,44 @@ pub(super) const WHEEL_RAMPS: Group = Group::new(
     "ramps of the wheels",
     &[ParamId::WheelAccel, ParamId::WheelDecel],
 );
+/// Way to the goal, and speed by the wheels: names for the equation of [`crate::motion::Line`].
+pub(super) const fn way(states: &'static [u8]) -> [Law; 2] {
+    [
+        Law::new(
+            "left_m",
+            "sqrt((goal_x_m - x_m) * (goal_x_m - x_m) + (goal_y_m - y_m) * (goal_y_m - y_m))",
+        )
+        .only_in(states),
+        Law::new(
+            "speed_m_s",
+            "max(0, left_rad_s * radius_left_m + right_rad_s * radius_right_m) / 2",
+        )
+        .only_in(states),
+    ]
+}
+
+/// The yaw rate of [`crate::motion::Line`].
+pub(super) const fn steering(states: &'static [u8]) -> Law {
+    Law::new(
+        "yaw_ref_rad_s",
+        "clamp(line_heading_kp * heading_error_rad, \
+         -1.2 * abs(forward_ref_m_s) / base_m, 1.2 * abs(forward_ref_m_s) / base_m)",
+    )
+    .with(&[ParamId::LineCross])
+    .only_in(states)
+}
+
+/// The yaw rate of [`crate::motion::Turn`].
+pub(super) const fn turning(states: &'static [u8]) -> Law {
+    Law::new(
+        "yaw_ref_rad_s",
+        "sign(heading_error_rad) * max(0.06 / base_m, min(turn_rate_rad_s, \
+         sqrt(2 * turn_brake_rad_s2 * abs(heading_error_rad))))",
+    )
+    .with(&[ParamId::SpeedLag])
+    .only_in(states)
+}
+
 /// From the robot's motion to its wheels ([`crate::odometry`]).
 pub(super) const TWIST: &[Law] = &[
     Law::new(

@@ -18,9 +18,11 @@
 //! it can drive at mode 1's speed and square up at the same time: 119 -> 30 cm in 2.2 s from 20 degrees askew instead
 //! of 3.4, within a degree (`rumbo run mode2 --runs 20`). Derivation and figures: docs/theory/front_align.md.
 
-use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states};
+use super::description::{
+    FEEDFORWARD, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states, turning,
+};
 use super::front_distance::{self, FrontDistance};
-use super::{Action, Description, Group, MetricGroup, Mode, Plot, Reference, SetpointError};
+use super::{Action, Description, Group, Law, MetricGroup, Mode, Plot, Reference, SetpointError};
 use crate::ahead::{Ahead, AheadState};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
@@ -57,10 +59,28 @@ pub const DESCRIPTION: Description = Description {
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
-    laws: &[TWIST, SPEED],
+    laws: &[LAWS, TWIST, SPEED],
     plots: &[Plot::Distance, Plot::Heading, Plot::Wheels],
     metrics: &[MetricGroup::Alignment],
 };
+
+/// [`FrontAlign::drive`], of the pair, whose readings are the wall's distance once it is square to it.
+const LAWS: &[Law] = &[
+    Law::new(
+        "error_m",
+        "(range_left_m + range_right_m) / 2 - reference_m",
+    )
+    .only_in(DRIVES),
+    front_distance::SPEED_LAW.only_in(DRIVES),
+    Law::new("most_rad_s", "min(abs(forward_ref_m_s) / base_m, 1.5)").only_in(DRIVES),
+    Law::new(
+        "yaw_ref_rad_s",
+        "clamp(align_kp * heading_error_rad, -most_rad_s, most_rad_s)",
+    )
+    .only_in(DRIVES),
+    turning(&[Phase::Turn as u8]),
+];
+const DRIVES: &[u8] = &[Phase::Approach as u8, Phase::Settle as u8];
 
 states! {
     /// States of mode 2.

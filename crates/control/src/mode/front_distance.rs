@@ -76,12 +76,14 @@ pub(super) const APPROACH: Group = Group::new(
 /// [`FrontDistance::speed_m_s`]; a sonar in doubt makes it slower.
 const LAWS: &[Law] = &[
     Law::new("error_m", "range_front_m - reference_m"),
-    Law::new(
-        "forward_ref_m_s",
-        "sign(error_m) * max(0.03, min(front_cruise_m_s, \
-         sqrt(2 * front_brake_m_s2 * abs(error_m)), front_kp * abs(error_m)))",
-    ),
+    SPEED_LAW,
 ];
+/// In mode 2 too.
+pub(super) const SPEED_LAW: Law = Law::new(
+    "forward_ref_m_s",
+    "sign(error_m) * max(0.03, min(front_cruise_m_s, \
+     sqrt(2 * front_brake_m_s2 * abs(error_m)), front_kp * abs(error_m)))",
+);
 
 states! {
     /// States of mode 1.

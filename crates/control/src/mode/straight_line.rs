@@ -17,7 +17,7 @@
 
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
 use super::{
-    Action, Description, Group, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference,
+    Action, Description, Group, Law, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference,
     ReferenceDescription, ReferenceKind, SetpointError,
 };
 use crate::estimate::Estimate;
@@ -48,10 +48,19 @@ pub const DESCRIPTION: Description = Description {
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
-    laws: &[TWIST, SPEED],
+    laws: &[LAWS, TWIST, SPEED],
     plots: &[Plot::Wheels, Plot::Heading, Plot::Position],
     metrics: &[MetricGroup::Drift],
 };
+
+/// Of the heading since it was armed, by the distances that the wheels rolled.
+const LAWS: &[Law] = &[Law::new(
+    "yaw_ref_rad_s",
+    "clamp(straight_kp * (heading_ref_rad - heading_since_on_rad), \
+     -0.6 * abs(forward_ref_m_s) / base_m, 0.6 * abs(forward_ref_m_s) / base_m)",
+)
+.with(&[ParamId::StraightOffset])
+.only_in(&[Phase::Drive as u8, Phase::Stop as u8])];
 
 /// Of both wheels; 40 rpm by default.
 const REFERENCE: ReferenceDescription = ReferenceDescription::commanded(

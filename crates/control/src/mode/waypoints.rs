@@ -18,10 +18,11 @@
 mod route;
 
 use super::description::{
-    FEEDFORWARD, LINES, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states,
+    FEEDFORWARD, LINES, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states, steering, turning,
+    way,
 };
 use super::{
-    Action, Description, Group, MetricGroup, Mode, Plot, Reference, ReferenceDescription,
+    Action, Description, Group, Law, MetricGroup, Mode, Plot, Reference, ReferenceDescription,
     ReferenceKind, Takes,
 };
 use crate::estimate::Estimate;
@@ -62,10 +63,24 @@ pub const DESCRIPTION: Description = Description {
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
-    laws: &[TWIST, SPEED],
+    laws: &[&way(LINE), LAWS, TWIST, SPEED],
     plots: &[Plot::Position, Plot::Heading, Plot::Wheels],
     metrics: &[MetricGroup::Route],
 };
+
+const LINE: &[u8] = &[Phase::Drive as u8];
+/// [`crate::motion`].
+const LAWS: &[Law] = &[
+    Law::new(
+        "forward_ref_m_s",
+        "max(0.03, min(line_cruise_m_s / (1 + abs(heading_error_rad) / 0.35), \
+         sqrt(2 * line_brake_m_s2 * max(0, left_m - speed_lag_s * speed_m_s))))",
+    )
+    .with(&[ParamId::LineAccel])
+    .only_in(LINE),
+    steering(LINE),
+    turning(&[Phase::Turn as u8, Phase::FinalTurn as u8]),
+];
 
 /// Each coordinate of a waypoint or a goal, in mode 8 too.
 pub(super) const REFERENCE: ReferenceDescription =

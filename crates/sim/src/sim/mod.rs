@@ -36,6 +36,7 @@ use rumbo_plant::plant::{Event, Plant, State, Truth};
 use rumbo_plant::sonar::Ping;
 use rumbo_plant::world::{ShapeError, World};
 use rumbo_wire::{Command, FromRobot};
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 pub use touches::Touch;
 use touches::Touches;
@@ -87,6 +88,8 @@ pub struct Sim {
     motors_cut: bool,
     /// What crossed the link, while it is tapped.
     tapped: Option<Vec<Burst>>,
+    /// What was put elsewhere, by number, and how far from where the world has it \[m\].
+    shifted: BTreeMap<usize, [f64; 2]>,
 }
 
 impl Sim {
@@ -179,6 +182,7 @@ impl Sim {
             off: false,
             motors_cut: false,
             tapped: None,
+            shifted: BTreeMap::new(),
         })
     }
 
@@ -407,6 +411,21 @@ impl Sim {
         if self.plant.has_room(&self.state, &at) {
             self.state.place(at);
         }
+    }
+
+    /// Puts something of the world elsewhere, by its distance from where the world has it \[m\], if there is room: what has
+    /// this number among obstacles, then bodies, which take their whole course along.
+    pub fn shift(&mut self, thing: usize, to_m: [f64; 2]) {
+        let was_m = self.shifted.get(&thing).copied().unwrap_or_default();
+        let by_m = [to_m[0] - was_m[0], to_m[1] - was_m[1]];
+        if self.plant.shift(&mut self.state, thing, by_m) {
+            self.shifted.insert(thing, to_m);
+        }
+    }
+
+    /// What stands elsewhere than the world has it, by [`Self::shift`].
+    pub fn shifted(&self) -> &BTreeMap<usize, [f64; 2]> {
+        &self.shifted
     }
 
     /// Moves the robot in the world, as a hand would; our native robot's estimated pose is set to `estimate`, relative

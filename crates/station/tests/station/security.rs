@@ -44,6 +44,11 @@ fn the_page_itself_is_no_secret_and_is_served_with_care() {
         assert!(page.contains(header), "{header} is missing: {page}");
     }
     assert!(!page.contains("set-cookie"), "{page}");
+    let script = ask(&host, "GET", "/src/dom.js", &[("Host", &host)]);
+    assert!(
+        script.contains("cache-control: private, max-age=10"),
+        "{script}"
+    );
     let outside = ask(&host, "GET", "/../Cargo.toml", &[("Host", &host)]);
     assert_eq!(status(&outside), "404");
 }

@@ -26,9 +26,12 @@ mod still;
 mod watch;
 
 use super::description::{
-    FEEDFORWARD, LINES, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states,
+    FEEDFORWARD, LINES, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states, steering, turning,
+    way,
 };
-use super::{Action, Description, Group, MetricGroup, Mode, Plot, Reference, Takes, waypoints};
+use super::{
+    Action, Description, Group, Law, MetricGroup, Mode, Plot, Reference, Takes, waypoints,
+};
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
@@ -91,10 +94,24 @@ pub const DESCRIPTION: Description = Description {
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
-    laws: &[TWIST, SPEED],
+    laws: &[&way(LINE), LAWS, TWIST, SPEED],
     plots: &[Plot::Position, Plot::Heading, Plot::Distance, Plot::Wheels],
     metrics: &[MetricGroup::Journey, MetricGroup::Goals, MetricGroup::Lane],
 };
+
+const LINE: &[u8] = &[Phase::GoToGoal as u8];
+/// On the line to the goal, where nothing is in the way ([`crate::motion`]).
+const LAWS: &[Law] = &[
+    Law::new(
+        "forward_ref_m_s",
+        "max(0.03, min(mission_cruise_m_s, line_cruise_m_s / (1 + abs(heading_error_rad) / 0.35), \
+         sqrt(2 * line_brake_m_s2 * max(0, left_m - speed_lag_s * speed_m_s))))",
+    )
+    .with(&[ParamId::LineAccel])
+    .only_in(LINE),
+    steering(LINE),
+    turning(&[Phase::InitialTurn as u8]),
+];
 
 states! {
     /// Where a mission stands; the report's numbers, and one more for the lane.
