@@ -121,10 +121,8 @@ impl Mega {
         let imu = imu.then(|| {
             "accelerometer and gyroscope: MPU-6050 by its data sheet, not identified".to_owned()
         });
-        let all: Vec<String> = {
-            let sensors = sensors.into_iter().chain(obstacles).chain(imu);
-            driver.into_iter().chain(sensors).collect()
-        };
+        let all = [driver, sensors, obstacles, imu].into_iter().flatten();
+        let all: Vec<String> = all.collect();
         (!all.is_empty()).then(|| all.join("; "))
     }
 
