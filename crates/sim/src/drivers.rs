@@ -146,8 +146,24 @@ static TB6612: Driver = Driver {
     ..L298N
 };
 
+/// The DRV8833.
+static DRV8833: Driver = Driver {
+    name: "drv8833",
+    title: "DRV8833",
+    // 0.36 ohm above and below together; no value for its diodes: silicon's.
+    source: Some("its data sheet (TI SLVSAR1)"),
+    has_enable: false,
+    has_standby: true,
+    does: [[Coast, Forward, Backward, Brake]; 2],
+    drop_v: 0.0,
+    drop_ohm: 0.36,
+    diode_v: 0.8,
+    brake_v: 0.0,
+    ..L298N
+};
+
 /// The drivers that there are.
-pub static DRIVERS: [&Driver; 7] = [
+pub static DRIVERS: [&Driver; 10] = [
     &L298N,
     &L293D,
     &Driver {
@@ -170,19 +186,38 @@ pub static DRIVERS: [&Driver; 7] = [
         shield: Some(&MOTOR_SHIELD_V2),
         ..TB6612
     },
+    &DRV8833,
     &Driver {
-        name: "drv8833",
-        title: "DRV8833",
-        // 0.36 ohm above and below together; no value for its diodes: silicon's.
-        source: Some("its data sheet (TI SLVSAR1)"),
-        has_enable: false,
-        has_standby: true,
-        does: [[Coast, Forward, Backward, Brake]; 2],
-        drop_v: 0.0,
-        drop_ohm: 0.36,
-        diode_v: 0.8,
-        brake_v: 0.0,
-        ..L298N
+        name: "mx1508",
+        title: "MX1508",
+        // 1.6 ohm above and below together, of its copy TC1508S: modules have either.
+        source: Some("the data sheet of the TC1508S"),
+        has_standby: false,
+        drop_ohm: 1.6,
+        ..DRV8833
+    },
+    &Driver {
+        name: "l9110s",
+        title: "L9110S",
+        // Both outputs are low where its inputs are alike. 1.40 V above and 0.45 V below at 0.75 A.
+        source: Some("its data sheet (ASIC L9110)"),
+        has_standby: false,
+        does: [[Brake, Forward, Backward, Brake]; 2],
+        drop_v: 1.85,
+        drop_ohm: 0.0,
+        ..DRV8833
+    },
+    &Driver {
+        name: "bts7960",
+        title: "two BTS7960 a motor (IBT-2)",
+        // 7 mohm above, 9 mohm below, diodes 0.9 V.
+        source: Some("its data sheet (Infineon, 2004-12-07)"),
+        has_enable: true,
+        has_standby: false,
+        does: L298N.does,
+        drop_ohm: 0.016,
+        diode_v: 0.9,
+        ..DRV8833
     },
     &Driver {
         name: "dir-pwm",

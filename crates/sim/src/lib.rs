@@ -16,6 +16,7 @@ pub mod fleet;
 pub mod floor;
 mod instruments;
 pub mod mega;
+pub mod obstacle;
 pub mod remote;
 mod sim;
 pub mod sonar_fault;

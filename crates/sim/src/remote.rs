@@ -1,8 +1,8 @@
 //! Infrared remote controls, and what their receiver does at its pin: the NEC protocol behind a demodulator (VS1838B, TSOP38).
 //!
 //! The receiver's output is high, and low while it sees the carrier. A key sends its frame once, and a short repeat every
-//! 108 ms while it is held. The address is 0, and the commands are those of the two remotes that come with Arduino kits, as the
-//! library IRremote lists the one with arrows (DemoIRCommandMapping.h, Keyes clone); the same chip in the other one sends the same
+//! 108 ms while it is held. The address is 0, and the commands are those of the three remotes that come with Arduino kits, as the
+//! library IRremote lists the one with arrows (DemoIRCommandMapping.h, Keyes clone); the same chip in the others sends the same
 //! command for the same place.
 
 use std::collections::VecDeque;
@@ -38,6 +38,27 @@ pub const ARROWS: [Key; 17] = [
     ("ok", 0x1C),
     ("right", 0x5A),
     ("down", 0x52),
+];
+
+/// The one with its arrows above the digits, as kits for cars have it (Elegoo, Keyestudio, LAFVIN), row by row.
+pub const CAR: [Key; 17] = [
+    ("up", 0x46),
+    ("left", 0x44),
+    ("ok", 0x40),
+    ("right", 0x43),
+    ("down", 0x15),
+    ("1", 0x16),
+    ("2", 0x19),
+    ("3", 0x0D),
+    ("4", 0x0C),
+    ("5", 0x18),
+    ("6", 0x5E),
+    ("7", 0x08),
+    ("8", 0x1C),
+    ("9", 0x5A),
+    ("*", 0x42),
+    ("0", 0x52),
+    ("#", 0x4A),
 ];
 
 /// The remote of a car radio, 21 keys, row by row.
@@ -168,7 +189,7 @@ mod tests {
 
     #[test]
     fn every_key_has_a_name_and_a_command_of_its_own() {
-        for keys in [&ARROWS[..], &RADIO[..]] {
+        for keys in [&ARROWS[..], &CAR, &RADIO] {
             let mut names: Vec<_> = keys.iter().map(|(name, _)| name).collect();
             let mut commands: Vec<_> = keys.iter().map(|(_, command)| command).collect();
             names.sort_unstable();

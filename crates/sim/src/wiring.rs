@@ -4,6 +4,7 @@ use crate::boards::Board;
 use crate::bus::{BusDevice, DeviceKind};
 use crate::drivers::Driver;
 use crate::floor::LineSensor;
+use crate::obstacle::ObstacleSensor;
 use crate::remote::Key;
 use std::collections::BTreeMap;
 
@@ -48,6 +49,8 @@ pub struct Wiring {
     pub held: BTreeMap<String, bool>,
     /// Sensors for lines on the floor.
     pub line_sensors: Vec<LineSensor>,
+    /// Infrared sensors for obstacles.
+    pub obstacle_sensors: Vec<ObstacleSensor>,
     /// What else is at pins: what a person works, and what shows something.
     pub parts: Vec<Part>,
     /// The devices on the two-wire bus.
@@ -90,6 +93,8 @@ impl Wiring {
         let parts = self.parts.iter().map(|part| (part.name.as_str(), part.pin));
         let sensors = self.line_sensors.iter();
         let sensors = sensors.map(|sensor| (sensor.name.as_str(), sensor.pin));
+        let obstacles = self.obstacle_sensors.iter();
+        let obstacles = obstacles.map(|sensor| (sensor.name.as_str(), sensor.pin));
         let interrupts = self.bus.iter().filter_map(|device| match device.kind {
             DeviceKind::Mpu6050 { interrupt, .. } => Some((device.name.as_str(), interrupt?)),
             _ => None,
@@ -101,6 +106,7 @@ impl Wiring {
             .chain(shield)
             .chain(parts)
             .chain(sensors)
+            .chain(obstacles)
             .chain(interrupts)
             .chain(lines);
         all.find(|(_, on)| *on == pin).map(|(name, _)| name)
@@ -116,8 +122,9 @@ pub struct Part {
     pub kind: PartKind,
     /// The board's pin.
     pub pin: u8,
-    /// A button or switch closes to 5 V, over a resistor to GND, instead of to GND.
-    pub to_supply: bool,
+    /// The level that a resistor gives an open button or switch, which closes to the other one; without a resistor it closes
+    /// to GND, and open it floats or follows the chip's pull-up.
+    pub resistor: Option<bool>,
     /// The keys of the remote control of an infrared receiver.
     pub keys: &'static [Key],
 }

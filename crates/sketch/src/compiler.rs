@@ -6,7 +6,7 @@ use crate::diagnostics::Diagnostic;
 use crate::error::SketchError;
 use crate::examples::example;
 use crate::layout::{Beside, Layout};
-use crate::libraries::Library;
+use crate::libraries::{Library, spelled};
 use crate::limits::Limits;
 use crate::options::{C, COMMON, CPP, LINK, OBJECT};
 use crate::preprocess;
@@ -14,13 +14,19 @@ use crate::sandbox::Sandbox;
 use crate::source::{Given, Source, given};
 use crate::toolchain::Toolchain;
 use sha2::{Digest, Sha256};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Part of every key: products of another layout are another's.
 const LAYOUT: &str = "preprocessed";
+/// How the compiler ends that it misses a header.
+const MISSING: &str = ": No such file or directory";
+/// Folder of a build with headers that include others.
+const SPELLED: &str = "rumbo~spelled";
+/// Headers as they are included, and as they are called.
+type Spelled = BTreeMap<String, String>;
 /// Most headers that a sketch may include by different names: FastLED has some thousands.
 const MOST_HEADERS: usize = 10_000;
 
@@ -131,12 +137,51 @@ impl Compiler {
     /// If the compiler rejects it, or it exceeds a limit.
     pub fn compile(&self, source: &Source, macros: &[&str]) -> Result<Image, SketchError> {
         source.check()?;
+        let mut spelled = Spelled::new();
+        loop {
+            let result = self.attempt(source, macros, &spelled);
+            let more = match &result {
+                Err(SketchError::Rejected(errors)) => self.other_spellings(source, errors),
+                _ => Spelled::new(),
+            };
+            let before = spelled.len();
+            spelled.extend(more);
+            if spelled.len() == before {
+                return result;
+            }
+        }
+    }
+
+    /// Headers that were not found, and how they are spelled where there is one: on Windows and macOS `servo.h` is `Servo.h`,
+    /// and many sketches are from there.
+    fn other_spellings(&self, source: &Source, errors: &[Diagnostic]) -> Spelled {
+        let missing = errors
+            .iter()
+            .filter_map(|error| error.text.split_once(MISSING));
+        let found = missing.filter_map(|(header, _)| {
+            let mut own = source.files.keys();
+            let own = own.find(|name| name.eq_ignore_ascii_case(header)).cloned();
+            let core = || spelled(&self.toolchain.core.join("cores/arduino"), header);
+            let library = || self.toolchain.spelled(header);
+            let real = own.or_else(core).or_else(library)?;
+            Some((header.to_owned(), real))
+        });
+        found.collect()
+    }
+
+    /// Compiles once, with headers by other names.
+    fn attempt(
+        &self,
+        source: &Source,
+        macros: &[&str],
+        spelled: &Spelled,
+    ) -> Result<Image, SketchError> {
         let layout = Layout::of(source);
         let main = preprocess::join(source, layout.main);
         if main.is_none() && !layout.own.iter().any(|name| is_source(name)) {
             return Err(SketchError::NoSketch(source.name.clone()));
         }
-        let needed = self.libraries_of(source, &layout)?;
+        let needed = self.libraries_of(source, &layout, spelled)?;
         let mut key = self.key(macros);
         for (name, bytes) in &source.files {
             part(&mut key, name.as_bytes());
@@ -164,6 +209,14 @@ impl Compiler {
         }
         for library in &needed.beside {
             build.look_in(library.headers.clone());
+        }
+        for (header, real) in spelled {
+            build.put(
+                SKETCH,
+                &format!("{SPELLED}/{header}"),
+                format!("#include <{real}>\n").as_bytes(),
+            )?;
+            build.look_in(SPELLED.to_owned());
         }
         let headers = layout.headers.iter().flat_map(|folder| ["-I", *folder]);
         let seen_by_own: Vec<&str> = macros.iter().copied().chain(headers).collect();
@@ -219,7 +272,7 @@ impl Compiler {
             return error;
         };
         for error in &mut errors {
-            if error.file.is_some() && error.text.ends_with(": No such file or directory") {
+            if error.file.is_some() && error.text.ends_with(MISSING) {
                 error.text += &format!(
                     "; no library has it: they are looked for in `libraries` in the sketch's folder, {}; install it with the \
                      Arduino IDE, or name its folder's folder by --libraries",
@@ -277,6 +330,7 @@ impl Compiler {
         &self,
         source: &Source,
         layout: &'a Layout<'_>,
+        spelled: &Spelled,
     ) -> Result<Needed<'a>, SketchError> {
         let ours = self.cache.join("libraries");
         let mut headers = Headers::default();
@@ -289,6 +343,7 @@ impl Compiler {
         own(&layout.own, &mut headers)?;
         let (mut beside, mut installed) = (BTreeSet::new(), Vec::<Library>::new());
         while let Some(header) = headers.next.pop() {
+            let header = spelled.get(&header).cloned().unwrap_or(header);
             if let Some(index) = layout.library(&header) {
                 if beside.insert(index) {
                     own(&layout.libraries[index].files, &mut headers)?;

@@ -111,13 +111,30 @@ fn complaint(line: &str) -> Option<Diagnostic> {
             return Some(at("", Severity::Error, text.to_owned()));
         }
     }
+    let quoted = |name: &str| name.trim_matches(['`', '\'']).to_owned();
+    if let Some((_, name)) = line.split_once(": multiple definition of ") {
+        let name = name.split("'; ").next().unwrap_or(name);
+        return Some(at("", Severity::Error, twice(&quoted(name))));
+    }
     let (place, name) = line.split_once(": undefined reference to ")?;
-    let name = name.trim_matches(['`', '\'']);
+    let name = quoted(name);
+    let name = name.as_str();
     let text = match name {
         "setup" | "loop" => format!("the sketch has no function `void {name}()`"),
         _ => format!("`{name}` is declared and used, but defined nowhere"),
     };
     Some(at(place, Severity::Error, text))
+}
+
+/// That two files define one name.
+fn twice(name: &str) -> String {
+    match name.strip_prefix("__vector_") {
+        Some(number) => format!(
+            "two libraries want the same interrupt, vector {number}, and its timer: the sketch can use only one of them (on a Uno \
+             tone() takes vector 7, Servo 11)"
+        ),
+        None => format!("`{name}` is defined twice; one definition must go, or be `static`"),
+    }
 }
 
 fn at(place: &str, severity: Severity, text: String) -> Diagnostic {
@@ -246,6 +263,23 @@ mod tests {
             "`drive(int)` is declared and used, but defined nowhere"
         );
         assert_eq!(found[2].file, None);
+    }
+
+    #[test]
+    fn what_is_defined_twice_is_named_by_the_linker() {
+        let found = parse(
+            "../out/1.o (symbol from plugin): In function `ping()':\n\
+             (.text+0x0): multiple definition of `__vector_7'\n\
+             ../out/0.o (symbol from plugin):(.text+0x0): first defined here\n\
+             /usr/bin/ld: ../out/2.o:/a/b.cpp:3: multiple definition of `speed'; ../out/0.o:c.cpp:1: first defined here\n\
+             collect2: error: ld returned 1 exit status\n",
+        );
+        assert!(
+            found[0]
+                .text
+                .starts_with("two libraries want the same interrupt, vector 7")
+        );
+        assert!(found[1].text.starts_with("`speed` is defined twice"));
     }
 
     #[test]

@@ -75,6 +75,22 @@ pub(crate) fn find(folders: &[PathBuf], header: &str) -> Result<Option<Library>,
         .transpose()
 }
 
+/// How a library in one of these folders spells a header.
+pub(crate) fn spelled_in(folders: &[PathBuf], header: &str) -> Option<String> {
+    let libraries = folders
+        .iter()
+        .filter_map(|folder| fs::read_dir(folder).ok());
+    let mut libraries = libraries.flat_map(|entries| entries.flatten());
+    libraries.find_map(|library| spelled(&layout(&library.path()).0, header))
+}
+
+/// How a folder spells a header, with other capitals.
+pub(crate) fn spelled(folder: &Path, header: &str) -> Option<String> {
+    let entries = fs::read_dir(folder).ok()?.flatten();
+    let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.find(|name| name.eq_ignore_ascii_case(header))
+}
+
 /// Where a library has its headers, and whether all below is its.
 fn layout(library: &Path) -> (PathBuf, bool) {
     let src = library.join("src");

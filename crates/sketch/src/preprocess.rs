@@ -30,11 +30,16 @@ pub(crate) fn join(source: &Source, folder: &str) -> Option<String> {
     (!parts.is_empty()).then_some(text)
 }
 
-/// Headers that a source includes.
+/// Headers that a source includes, or imports, which the compiler takes too.
 pub(crate) fn includes(text: &str) -> impl Iterator<Item = &str> {
-    let rests = text
+    let directives = text
         .lines()
-        .filter_map(|line| line.trim().strip_prefix("#include"));
+        .filter_map(|line| line.trim().strip_prefix('#'));
+    let rests = directives.filter_map(|line| {
+        let line = line.trim_start();
+        line.strip_prefix("include")
+            .or_else(|| line.strip_prefix("import"))
+    });
     rests.filter_map(|rest| {
         let quoted = rest.trim().strip_prefix(['<', '"'])?;
         quoted.split(['>', '"']).next()
@@ -185,6 +190,9 @@ fn functions(text: &str) -> Vec<(usize, String)> {
 
 /// `type name(arguments)`, and neither a class, an interrupt routine, an initialiser, a member nor a type.
 fn is_function(head: &str) -> bool {
+    let attribute = head.strip_prefix("__attribute__");
+    let behind = attribute.and_then(|rest| rest.split_once("))"));
+    let head = behind.map_or(head, |(_, head)| head);
     let name = head.split('(').next().unwrap_or_default();
     head.ends_with(')')
         && !head.starts_with("typedef")
@@ -207,6 +215,8 @@ fn blanked(text: &str) -> String {
             directive(rest)
         } else if rest.starts_with("/*") {
             rest.find("*/").map_or(rest.len(), |end| end + 2)
+        } else if let Some(length) = raw_literal(rest).filter(|_| !out.ends_with(is_of_word)) {
+            length
         } else if character == '"' || character == '\'' {
             literal(rest, character)
         } else {
@@ -227,6 +237,23 @@ fn directive(text: &str) -> usize {
     let mut ends = text.match_indices('\n').map(|(at, _)| at);
     let end = ends.find(|at| !text[..*at].trim_end_matches('\r').ends_with('\\'));
     end.unwrap_or(text.len())
+}
+
+fn is_of_word(character: char) -> bool {
+    character.is_alphanumeric() || character == '_'
+}
+
+/// Length of a raw string, `R"end(text)end"`, if the text begins with one; all of the text if it does not end.
+fn raw_literal(text: &str) -> Option<usize> {
+    /// The longest end.
+    const LONGEST: usize = 16;
+    let rest = text.strip_prefix("R\"")?.as_bytes();
+    let length = rest
+        .iter()
+        .take(LONGEST + 1)
+        .position(|byte| *byte == b'(')?;
+    let close = format!("){}\"", text.get(2..2 + length)?);
+    Some(text.find(&close).map_or(text.len(), |at| at + close.len()))
 }
 
 /// Length of a literal with its quotes.
@@ -271,6 +298,18 @@ mod tests {
     }
 
     #[test]
+    fn an_attribute_and_a_raw_string_hide_no_function() {
+        let text = "#line 1 \"a.ino\"\nconst char page[] = R\"(say \"{ )\";\n__attribute__((noinline)) int f() { return 1; }\n\
+                    int g() { return 2; }\n";
+        let made = with_declarations(text, None);
+        assert!(
+            made.contains("\n__attribute__((noinline)) int f();\n")
+                && made.contains("\nint g();\n"),
+            "{made}"
+        );
+    }
+
+    #[test]
     fn functions_are_those_behind_the_preprocessor() {
         let text = "#include <Arduino.h>\n#line 1 \"a.ino\"\n#if ESP\nvoid IRAM tick() {\n#else\nvoid tick() {\n#endif\n}\n\
                     ISR(TIMER) { }\nextern \"C\" void c() { }\ntypedef struct __attribute__((packed)) { int x; } T;\n\
@@ -300,6 +339,7 @@ mod tests {
             ("f(", 400_000),
             ("\"", 800_001),
             ("/*", 400_000),
+            ("R\"(", 250_000),
             ("#\\\n", 250_000),
         ] {
             let text = format!(
@@ -314,8 +354,9 @@ mod tests {
     #[test]
     fn libraries_are_known_by_what_is_included() {
         assert_eq!(
-            includes("#include <Servo.h>\n  #include \"pid.h\" // x\nint a;\n").collect::<Vec<_>>(),
-            ["Servo.h", "pid.h"]
+            includes("#include <Servo.h>\n  # include \"pid.h\" // x\n#import <Wire.h>\nint a;\n")
+                .collect::<Vec<_>>(),
+            ["Servo.h", "pid.h", "Wire.h"]
         );
     }
 }

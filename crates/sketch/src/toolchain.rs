@@ -142,6 +142,11 @@ impl Toolchain {
         ours.map(|folder| Library::of(folder, false)).transpose()
     }
 
+    /// How a library spells a header, with other capitals.
+    pub(crate) fn spelled(&self, header: &str) -> Option<String> {
+        libraries::spelled_in(&self.libraries, header)
+    }
+
     /// Where libraries are looked for, in words, a person's own folder as `~`.
     pub(crate) fn libraries_in_words(&self) -> String {
         let home = std::env::home_dir();

@@ -151,13 +151,14 @@ pub(crate) struct NewArgs {
     #[arg(long, value_name = "DRIVER", value_parser = values::driver_named)]
     pub(crate) driver: Option<(&'static Driver, bool)>,
     /// Pins of the robot's signals, e.g. left_forward=7,servo=9,front_echo=A1; line sensors from left to right, by names of yours,
-    /// as line_left=2,line_right=A1, and line_dark=low; link_baud=38400 is the rate of a Bluetooth module
+    /// as line_left=2,line_right=A1, and line_dark=low; so infrared ones for obstacles, obstacle_left=3, and sharp_front=A0;
+    /// link_baud=38400 is the rate of a Bluetooth module
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,
     /// Wheels, 2 or 4; the two of a side are driven alike
     #[arg(long, value_name = "COUNT", default_value_t = 2, value_parser = values::wheels)]
     pub(crate) wheels: u8,
-    /// Parts of the robot at a pin or an address, e.g. start=button:8,remote=infrared:2,screen=ssd1306:0x3c
+    /// Parts of the robot at a pin or an address, e.g. start=button:8,go=button:9:5v,remote=infrared:2,screen=ssd1306:0x3c
     #[arg(long, value_name = "NAME=KIND:PLACE", value_delimiter = ',', value_parser = values::part)]
     pub(crate) parts: Vec<[String; 3]>,
     /// Begin with the file of this robot (`rumbo list robots`), or with this example (`rumbo list sketches`)

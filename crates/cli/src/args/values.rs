@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
-use rumbo_experiment::files::new_robot::{JUMPERS, LINE, LINK_BAUD};
+use rumbo_experiment::files::new_robot::{JUMPERS, LINE, LINK_BAUD, OBSTACLE, SHARP};
 use rumbo_experiment::files::{Port, TimedText, check_line, parameters, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Driver};
@@ -43,9 +43,11 @@ pub(super) fn pin(text: &str) -> Result<(String, String), String> {
         .split_once('=')
         .ok_or("write it as left_forward=7,left_backward=8")?;
     let (signal, pin) = (signal.trim(), pin.trim());
-    if !SIGNALS.contains(&signal) && !signal.starts_with(LINE) && signal != LINK_BAUD {
+    let named = [LINE, OBSTACLE, SHARP];
+    let is_named = named.iter().any(|begin| signal.starts_with(begin));
+    if !SIGNALS.contains(&signal) && !is_named && signal != LINK_BAUD {
         return Err(format!(
-            "no signal `{signal}`; there are {}, {LINK_BAUD}, and with a name of yours {LINE}NAME",
+            "no signal `{signal}`; there are {}, {LINK_BAUD}, and with a name of yours {LINE}NAME, {OBSTACLE}NAME, {SHARP}NAME",
             SIGNALS.join(", ")
         ));
     }
@@ -61,7 +63,7 @@ pub(super) fn wheels(text: &str) -> Result<u8, &'static str> {
     }
 }
 
-/// A part of a robot with its kind and its place: `start=button:8`.
+/// A part of a robot with its kind and its place, and what else it says of itself: `start=button:8:5v`.
 pub(super) fn part(text: &str) -> Result<[String; 3], String> {
     let split = text.split_once('=').and_then(|(name, rest)| {
         let (kind, place) = rest.split_once(':')?;
@@ -69,7 +71,7 @@ pub(super) fn part(text: &str) -> Result<[String; 3], String> {
     });
     split
         .filter(|words| words.iter().all(|word| !word.is_empty()))
-        .ok_or_else(|| "write it as start=button:8,screen=ssd1306:0x3c".to_owned())
+        .ok_or_else(|| "write it as start=button:8,go=button:9:5v,screen=ssd1306:0x3c".to_owned())
 }
 
 /// Seconds of simulation or of a log per second.

@@ -23,7 +23,7 @@ const MOST_LINES: usize = 100;
 const MOST_POINTS: usize = 500;
 const WIDTH: Allowed = Allowed::new(0.002, 0.2, "m");
 /// Position of a sensor on the body.
-const MOUNT: Allowed = Allowed::new(-0.5, 0.5, "m");
+pub(super) const MOUNT: Allowed = Allowed::new(-0.5, 0.5, "m");
 /// That of usual tape.
 const TAPE_M: f64 = 0.019;
 
@@ -69,6 +69,16 @@ fn read_line(table: &Table<'_, '_>) -> Line {
     Line { points_m, width_m }
 }
 
+/// Whether a key says `"high"`, not `"low"`.
+pub(super) fn read_level(table: &Table<'_, '_>, key: &str) -> Option<bool> {
+    let level = table.text(key)?;
+    if !["high", "low"].contains(&level.value.as_str()) {
+        let remedy = "must be \"high\" or \"low\"";
+        table.complain(key, level.line, &level.value, remedy);
+    }
+    Some(level.value == "high")
+}
+
 /// Reads the line sensors into a wiring.
 pub(super) fn read_line_sensors(table: &Table<'_, '_>, wiring: &mut Wiring) {
     for key in table.keys() {
@@ -80,17 +90,7 @@ pub(super) fn read_line_sensors(table: &Table<'_, '_>, wiring: &mut Wiring) {
             own.required_number("x_m", MOUNT),
             own.number("y_m", MOUNT).unwrap_or(0.0),
         ];
-        let dark = own.text("dark").map(|dark| {
-            if !["high", "low"].contains(&dark.value.as_str()) {
-                own.complain(
-                    "dark",
-                    dark.line,
-                    &dark.value,
-                    "must be \"high\" or \"low\"",
-                );
-            }
-            dark.value
-        });
+        let dark_high = read_level(&own, "dark").unwrap_or(true);
         own.finish();
         let Some(pin) = pin else { continue };
         is_free(&own, "pin", pin, wiring);
@@ -99,7 +99,7 @@ pub(super) fn read_line_sensors(table: &Table<'_, '_>, wiring: &mut Wiring) {
             at_m,
             pin,
             analogue,
-            dark_high: dark.is_none_or(|dark| dark == "high"),
+            dark_high,
         });
     }
     table.finish();

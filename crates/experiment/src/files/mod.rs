@@ -18,6 +18,7 @@ mod mover;
 mod names;
 pub(crate) mod near;
 pub mod new_robot;
+mod obstacle;
 pub mod parameters;
 mod parts;
 mod pin;

@@ -20,8 +20,16 @@ pub const LINE: &str = "line_";
 const DARK: &str = "line_dark";
 /// Rate of the Bluetooth module in place of a pin \[baud\].
 pub const LINK_BAUD: &str = "link_baud";
-/// Line sensors are so far apart \[m\].
+/// Line sensors are so far apart \[m\]; two stand beside the tape, one on each side.
 const PITCH_M: f64 = 0.015;
+const ASTRIDE_M: f64 = 0.04;
+/// How the name of an infrared switch for obstacles begins.
+pub const OBSTACLE: &str = "obstacle_";
+/// How that of a Sharp begins, which gives a voltage.
+pub const SHARP: &str = "sharp_";
+/// Those for obstacles are so far apart \[m\], and look so far apart \[deg\].
+const APART_M: f64 = 0.05;
+const APART_DEG: f64 = 30.0;
 
 /// What a robot is made of.
 #[derive(Clone, Debug)]
@@ -214,17 +222,26 @@ impl NewRobot {
             ));
         }
         for [name, kind, place] in &self.parts {
+            let (place, more) = place.split_once(':').unwrap_or((place, ""));
             let number = match place.strip_prefix("0x") {
                 Some(digits) => u8::from_str_radix(digits, 16),
                 None => place.parse(),
             };
             let place = match number {
-                Ok(_) => place.clone(),
+                Ok(_) => place.to_owned(),
                 Err(_) => format!("{place:?}"),
             };
-            put(format!("parts.{name} = {{ {kind} = {place} }}"));
+            // What else such a part may say.
+            let more = match (more, kind.as_str()) {
+                ("", _) => String::new(),
+                (keys, "infrared") => format!(", keys = {}", quoted(keys)),
+                (to, "button" | "switch") => format!(", to = {to:?}"),
+                (size, _) => format!(", size = {size:?}"),
+            };
+            put(format!("parts.{name} = {{ {kind} = {place}{more} }}"));
         }
         text.push_str(&self.line_sensors());
+        text.push_str(&self.obstacle_sensors());
         text.push_str(&match self.four_wheels {
             true => four_wheels(),
             false => TWO_WHEELS.to_owned(),
@@ -254,14 +271,49 @@ impl NewRobot {
             );
         }
         for (index, (name, pin)) in sensors.iter().enumerate() {
-            let y_m = PITCH_M * (0.5 * (sensors.len() as f64 - 1.0) - index as f64);
-            let (pin, analogue) = match pin.parse::<u8>() {
-                Ok(_) => ((*pin).clone(), ""),
-                Err(_) => (format!("{pin:?}"), ", analogue = true"),
+            let pitch_m = if sensors.len() == 2 {
+                ASTRIDE_M
+            } else {
+                PITCH_M
             };
+            let y_m = pitch_m * from_left(index, sensors.len());
+            let analogue = match pin.parse::<u8>() {
+                Ok(_) => "",
+                Err(_) => ", analogue = true",
+            };
+            let pin = quoted(pin);
             let _ = writeln!(
                 text,
                 "{name} = {{ pin = {pin}, x_m = 0.09, y_m = {y_m:.4}{analogue}{dark} }}"
+            );
+        }
+        text
+    }
+
+    /// Infrared sensors for obstacles, from left to right as they were given.
+    fn obstacle_sensors(&self) -> String {
+        let sensors = self.pins.iter().filter_map(|(signal, pin)| {
+            let switch = signal.strip_prefix(OBSTACLE).map(|name| (name, ""));
+            let sharp = signal.strip_prefix(SHARP);
+            let sharp = sharp.map(|name| (name, ", analogue = true"));
+            let (name, kind) = switch.or(sharp)?;
+            Some((name, kind, quoted(pin)))
+        });
+        let sensors: Vec<_> = sensors.collect();
+        let mut text = String::new();
+        if !sensors.is_empty() {
+            let _ = write!(
+                text,
+                "\n# Infrared sensors for obstacles, from left to right: measure where they are and look. One is low where something is\n\
+                 # nearer than reach_m = 0.15, unless seen = \"high\"; an analogue one is a Sharp GP2Y0A21YK.\n[wiring.{OWN}.obstacle]\n"
+            );
+        }
+        for (index, (name, kind, pin)) in sensors.iter().enumerate() {
+            let aside = from_left(index, sensors.len());
+            let (y_m, angle_deg) = (APART_M * aside, APART_DEG * aside);
+            let _ = writeln!(
+                text,
+                "{name} = {{ pin = {pin}, x_m = 0.11, y_m = {y_m:.3}, angle_deg = {angle_deg}{kind} }}"
             );
         }
         text
@@ -276,6 +328,19 @@ impl NewRobot {
         let file = RobotFile::parse(&self.name, &format!("{}.toml", self.name), &text)?;
         Ok((text, file))
     }
+}
+
+/// A pin as a file has it: a number, or a name in quotes.
+fn quoted(pin: &str) -> String {
+    match pin.parse::<u8>() {
+        Ok(_) => pin.to_owned(),
+        Err(_) => format!("{pin:?}"),
+    }
+}
+
+/// Where the sensor of a number is of so many in a row, from the middle to the left, in steps from one to the next.
+fn from_left(index: usize, of: usize) -> f64 {
+    0.5 * (of as f64 - 1.0) - index as f64
 }
 
 /// What does not suit a wiring's board, though a robot may be built so, a line each.

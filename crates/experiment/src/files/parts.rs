@@ -1,11 +1,12 @@
 //! The parts of a wiring: what a person works or looks at, at a pin, and the devices on the two-wire bus, at an address.
 //!
 //! ```toml
-//! parts.start = { button = 8 }            # to GND; with to = "5v" to the supply
+//! parts.start = { button = 8 }            # to GND; to = "gnd" or "5v": that, with a resistor to the other one
 //! parts.mode = { switch = "A2" }
 //! parts.speed = { potentiometer = "A0" }
 //! parts.lamp = { led = 13 }               # or buzzer
-//! parts.remote = { infrared = 11 }        # a remote control with arrows; with keys = 21 that of a car radio
+//! parts.remote = { infrared = 11 }        # a remote control with arrows; with keys = 21 that of a car radio,
+//!                                         # with keys = "car" that with its arrows above the digits
 //! parts.imu = { mpu6050 = 0x68 }          # with x_m and y_m where it is, interrupt = 2 for its INT, and where
 //!                                         # its x, y and z point where not so: axes = "forward left up"
 //! parts.screen = { ssd1306 = 0x3c }       # with size = "128x32"
@@ -16,7 +17,7 @@ use super::error::did_you_mean;
 use super::pin::read_pin;
 use super::read::{Allowed, Table};
 use rumbo_sim::bus::{BusDevice, DeviceKind};
-use rumbo_sim::remote::{ARROWS, Key, RADIO};
+use rumbo_sim::remote::{ARROWS, CAR, Key, RADIO};
 use rumbo_sim::wiring::{Part, PartKind, Wiring};
 
 /// What is written as an address: one of 7 bits, or by mistake one of 8.
@@ -55,7 +56,7 @@ pub(super) fn read_parts(table: &Table<'_, '_>, wiring: &mut Wiring) {
 fn read_part(own: &Table<'_, '_>, name: &str, kind: PartKind, wiring: &mut Wiring) {
     let analogue = kind == PartKind::Potentiometer;
     let pin = read_pin(own, kind.name(), wiring.board, analogue);
-    let to_supply = own.text("to").is_some_and(|to| {
+    let resistor = own.text("to").map(|to| {
         if !["gnd", "5v"].contains(&to.value.as_str())
             || !matches!(kind, PartKind::Button | PartKind::Switch)
         {
@@ -66,7 +67,7 @@ fn read_part(own: &Table<'_, '_>, name: &str, kind: PartKind, wiring: &mut Wirin
                 "must be \"gnd\" or \"5v\", of a button or a switch",
             );
         }
-        to.value == "5v"
+        to.value == "gnd"
     });
     let keys = read_keys(own, kind);
     own.finish();
@@ -76,7 +77,7 @@ fn read_part(own: &Table<'_, '_>, name: &str, kind: PartKind, wiring: &mut Wirin
         name: name.to_owned(),
         kind,
         pin,
-        to_supply,
+        resistor,
         keys,
     });
 }
@@ -85,6 +86,12 @@ fn read_part(own: &Table<'_, '_>, name: &str, kind: PartKind, wiring: &mut Wirin
 fn read_keys(own: &Table<'_, '_>, kind: PartKind) -> &'static [Key] {
     if kind != PartKind::Infrared {
         return &[];
+    }
+    if !own.has("keys") {
+        return &ARROWS;
+    }
+    if own.is_text("keys") {
+        return read_car_keys(own);
     }
     let Some(count) = own.placed_number("keys", Allowed::new(1.0, 99.0, "count")) else {
         return &ARROWS;
@@ -95,13 +102,22 @@ fn read_keys(own: &Table<'_, '_>, kind: PartKind) -> &'static [Key] {
         .find(|keys| keys.len() == count.value as usize);
     found.unwrap_or_else(|| {
         let remedy = format!(
-            "there is one with arrows, {} keys, and that of a car radio, {}",
+            "there is one with arrows, {} keys, and that of a car radio, {}; and \"car\", its arrows above the digits",
             ARROWS.len(),
             RADIO.len()
         );
         own.complain("keys", count.line, &count.value.to_string(), &remedy);
         &ARROWS
     })
+}
+
+/// The remote control of a car kit, which has as many keys as another one.
+fn read_car_keys(own: &Table<'_, '_>) -> &'static [Key] {
+    if let Some(name) = own.text("keys").filter(|name| name.value != "car") {
+        let remedy = "must be 17, 21 or \"car\"";
+        own.complain("keys", name.line, &format!("{:?}", name.value), remedy);
+    }
+    &CAR
 }
 
 /// Reports a pin that something else is on.

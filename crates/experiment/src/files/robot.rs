@@ -19,6 +19,7 @@
 
 use super::error::{FileError, did_you_mean};
 use super::line::read_line_sensors;
+use super::obstacle::read_obstacle_sensors;
 use super::parameters::read_parameters;
 use super::parts::read_parts;
 use super::pin::{Wired, read_wired};
@@ -249,6 +250,7 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
     }
     read_parts(&table.table("parts"), &mut wiring);
     read_line_sensors(&table.table("line"), &mut wiring);
+    read_obstacle_sensors(&table.table("obstacle"), &mut wiring);
     suits_driver(table, &wiring);
     for (signal, pin) in &wiring.pins {
         if wiring.shield_pins().any(|taken| taken == *pin) {

@@ -245,6 +245,13 @@ mod tests {
             ("drv8833", "1001", Released),
             ("drv8833", "1111", Brake(1.0)),
             ("drv8833", "1010", Released),
+            ("mx1508", "1001", Released),
+            ("l9110s", "1011", Backward(1.0)),
+            ("l9110s", "1001", Brake(1.0)),
+            ("l9110s", "1111", Brake(1.0)),
+            ("bts7960", "1101", Forward(1.0)),
+            ("bts7960", "1001", Brake(1.0)),
+            ("bts7960", "0101", Released),
         ] {
             assert_eq!(
                 half(driver, levels(word)).state().0,

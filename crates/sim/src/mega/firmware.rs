@@ -6,6 +6,7 @@ use crate::boards::Board;
 use crate::bus::BusDevice;
 use crate::error::SimError;
 use crate::floor::LineSensor;
+use crate::obstacle::ObstacleSensor;
 use crate::wiring::{Motor, Part, Wiring};
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
@@ -50,6 +51,7 @@ pub struct Firmware {
     pins: BTreeMap<String, u8>,
     parts: Vec<Part>,
     line_sensors: Vec<LineSensor>,
+    obstacle_sensors: Vec<ObstacleSensor>,
     bus: Vec<BusDevice>,
     motors: [Option<Motor>; 2],
 }
@@ -75,6 +77,7 @@ impl Firmware {
             pins: pins.pins.clone(),
             parts: pins.parts.clone(),
             line_sensors: pins.line_sensors.clone(),
+            obstacle_sensors: pins.obstacle_sensors.clone(),
             bus: pins.bus.clone(),
             motors: pins.motors,
             link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
@@ -123,6 +126,11 @@ impl Firmware {
     /// Its sensors for lines on the floor.
     pub fn line_sensors(&self) -> &[LineSensor] {
         &self.line_sensors
+    }
+
+    /// Its infrared sensors for obstacles.
+    pub fn obstacle_sensors(&self) -> &[ObstacleSensor] {
+        &self.obstacle_sensors
     }
 
     /// The devices on its two-wire bus.

@@ -24,9 +24,8 @@ impl Mega {
                 let channel = sensor.pin.saturating_sub(firmware.board().first_analogue);
                 let volts = sensor.volts(darkness) + error_v;
                 self.chip.input(cycle, Input::Volts { channel, volts });
-                self.floor[index] = (darkness, false);
-                continue;
             }
+            // digitalRead() works on the pin of an analogue one too.
             let level = sensor.level(darkness, level_before);
             if level != level_before || before.is_nan() {
                 self.put(cycle, firmware.board().pin(sensor.pin), level);

@@ -19,7 +19,7 @@
 //! | `console` | output of the USARTs, for people |
 //! | `meters` | what instruments at the wired pins show |
 //! | `marks` | when the program reaches some of its functions |
-//! | `floor` | line sensors |
+//! | `floor`, `obstacle` | infrared sensors for lines, for obstacles |
 //! | `parts` | buttons, switches, potentiometers and remote controls |
 //! | `register` | the register of a motor shield |
 //! | `wheels` | what the program did with each motor |
@@ -42,6 +42,7 @@ mod marks;
 mod meters;
 mod module;
 mod notes;
+mod obstacle;
 mod outputs;
 mod parts;
 mod register;
@@ -50,6 +51,7 @@ mod uart;
 mod wheels;
 
 use crate::bus::Bus;
+use crate::obstacle::Seen;
 use crate::remote::Remote;
 use crate::sonar_fault::SonarFaults;
 use crate::wire_fault::WireFaults;
@@ -149,6 +151,8 @@ pub struct Mega {
     bus: Bus,
     /// How dark it is below each line sensor, and the level that it gives.
     floor: Vec<(f64, bool)>,
+    /// What each sensor for obstacles sees.
+    obstacles: Vec<Option<Seen>>,
     /// What has been set of each part.
     worked: Vec<f64>,
     /// The remote controls, each with the number of its part.
@@ -197,6 +201,7 @@ impl Mega {
             meters: Meters::at(firmware.metered()),
             bus: Bus::new(firmware.bus(), shield),
             floor: Vec::new(),
+            obstacles: Vec::new(),
             worked: Vec::new(),
             remotes: Vec::new(),
             verdict: None,
@@ -321,6 +326,7 @@ impl Mega {
     pub(crate) fn read_meters(&mut self) -> Vec<(String, f64)> {
         let mut shown = self.meters.read(self.chip.cycle());
         shown.extend(self.read_floor());
+        shown.extend(self.read_obstacles());
         shown.extend(self.read_imus());
         shown
     }

@@ -4,7 +4,9 @@ use super::console::Console;
 use super::firmware::Language;
 use super::{CYCLES_PER_US, Mega, PARTS, TRIGGER_CYCLES};
 use crate::bus::DeviceKind;
+use crate::wiring::PartKind;
 use rumbo_emulator::cpu::Standstill;
+use rumbo_emulator::devices::ports::Drive;
 use rumbo_emulator::devices::{Cause, Unmodelled};
 
 /// The USARTs as a sketch calls them, and the module on other pins.
@@ -90,7 +92,7 @@ impl Mega {
         let strange = self.chip.unmodelled().iter().map(line);
         let notes = strange.chain(self.standstill()).chain(self.restarted());
         let notes = notes.chain(self.unsent());
-        let notes = notes.chain(self.misframed());
+        let notes = notes.chain(self.misframed()).chain(self.floating());
         let notes = notes.chain(self.oddities.told(self.firmware.name()));
         let bus = self.bus.notes().into_iter();
         let bus = bus.map(|note| format!("firmware {}: {note}", self.firmware.name()));
@@ -110,12 +112,17 @@ impl Mega {
         let sensors = (!self.firmware.line_sensors().is_empty()).then(|| {
             "line sensors: TCRT5000 modules by their data sheet, not identified".to_owned()
         });
+        let obstacles = (!self.firmware.obstacle_sensors().is_empty()).then(|| {
+            "sensors for obstacles: by what their sellers and Sharp's data sheet say, not identified"
+                .to_owned()
+        });
         let mut bus = self.firmware.bus().iter();
         let imu = bus.any(|device| matches!(device.kind, DeviceKind::Mpu6050 { .. }));
         let imu = imu.then(|| {
             "accelerometer and gyroscope: MPU-6050 by its data sheet, not identified".to_owned()
         });
-        let all: Vec<String> = driver.into_iter().chain(sensors).chain(imu).collect();
+        let all = [driver, sensors, obstacles, imu].into_iter().flatten();
+        let all: Vec<String> = all.collect();
         (!all.is_empty()).then(|| all.join("; "))
     }
 
@@ -164,6 +171,23 @@ impl Mega {
             format!(
                 "firmware {name}: what it sends to the Bluetooth module is not at {baud} baud, and what that passes on is garbage: give begin() that rate, or the wiring link_baud"
             )
+        })
+    }
+
+    /// A button at a pin that floats while it is open.
+    fn floating(&self) -> impl Iterator<Item = String> {
+        let (name, board) = (self.firmware.name(), self.firmware.board());
+        self.parts().filter_map(move |(part, _)| {
+            let switches = matches!(part.kind, PartKind::Button | PartKind::Switch);
+            let pin = board.pin(part.pin).filter(|_| switches && part.resistor.is_none())?;
+            let floats = self.chip.devices().drive(pin) == Drive::Floating;
+            floats.then(|| {
+                format!(
+                    "firmware {name}: {} on pin {} closes to GND, and the program switches no pull-up on, so that open and closed read alike: use INPUT_PULLUP, or say what resistor there is, to = \"5v\" where pressed is HIGH, else to = \"gnd\"",
+                    part.name,
+                    board.shown(part.pin)
+                )
+            })
         })
     }
 

@@ -95,7 +95,7 @@ impl Mega {
         let Part {
             kind,
             pin,
-            to_supply,
+            resistor,
             ..
         } = self.firmware.parts()[index];
         let cycle = self.chip.cycle();
@@ -107,11 +107,9 @@ impl Mega {
                 self.chip.input(cycle, Input::Volts { channel, volts });
             }
             (PartKind::Button | PartKind::Switch, Some(pin)) => {
-                let level = match (value >= MIDDLE, to_supply) {
-                    (true, to_supply) => Some(to_supply),
-                    // Open: a resistor pulls it down, or the chip's own one up.
-                    (false, true) => Some(false),
-                    (false, false) => None,
+                let level = match value >= MIDDLE {
+                    true => Some(resistor == Some(false)),
+                    false => resistor,
                 };
                 if let Some(level) = level {
                     self.meters.set(cycle, pin, level);

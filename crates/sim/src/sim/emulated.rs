@@ -27,6 +27,9 @@ impl Sim {
             if !mega.firmware().line_sensors().is_empty() {
                 mega.see_floor(&self.lines, &self.pose(), self.now_us(), &self.noise);
             }
+            if !mega.firmware().obstacle_sensors().is_empty() {
+                mega.see_obstacles(self.world(), &self.pose(), self.now_us());
+            }
             if !mega.firmware().bus().is_empty() {
                 let Truth {
                     forward_m_s,

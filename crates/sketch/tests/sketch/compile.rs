@@ -307,7 +307,7 @@ fn libraries_are_taken_by_their_headers_from_beside_the_sketch_and_from_folders(
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, text).unwrap();
     }
-    let main = "#include <Horn.h>\n#include <SteerControl.h>\n#include <Lamp.hpp>\nHorn horn;\n\
+    let main = "#include <arduino.h>\n#include <horn.h>\n#include \"pins.h\"\n# include <SteerControl.h>\n#include <Lamp.hpp>\nHorn horn;\n\
                 void setup() { horn.blow(steer(lamp())); }\nvoid loop() {}\n";
     let lamp = [
         ("libraries/Lamp/src/Lamp.hpp", "int lamp();\n"),
@@ -320,7 +320,12 @@ fn libraries_are_taken_by_their_headers_from_beside_the_sketch_and_from_folders(
     let sandbox = Sandbox::trusting(Limits::default());
     let toolchain = toolchain.with_libraries(&[folders.path().to_owned()]);
     let compiler = Compiler::new(BOARDS[0], toolchain, sandbox, cache.path().to_owned()).unwrap();
-    let files = [&[("honk.ino", main)][..], &lamp].concat();
+    // As on Windows and macOS, a header is found whatever its capitals are.
+    let files = [
+        &[("honk.ino", main), ("Pins.h", "#define HORN 3\n")][..],
+        &lamp,
+    ]
+    .concat();
     // A library's warnings are nobody's here.
     assert_eq!(
         compiler

@@ -8,6 +8,7 @@ mod import;
 mod information;
 mod kits;
 mod observe;
+mod obstacles;
 mod run;
 mod sketch;
 mod wrong_input;

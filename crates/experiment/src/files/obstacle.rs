@@ -1,0 +1,54 @@
+//! The infrared sensors of a robot that look for obstacles.
+//!
+//! ```toml
+//! [wiring.mine.obstacle]
+//! left = { pin = 2, x_m = 0.1, y_m = 0.05, angle_deg = 30 }   # low where something is nearer than reach_m = 0.15
+//! front = { pin = "A0", x_m = 0.1, analogue = true }          # a voltage, Sharp GP2Y0A21YK
+//! ```
+
+use super::line::{MOUNT, read_level};
+use super::parts::is_free;
+use super::pin::read_pin;
+use super::read::{Allowed, Table};
+use rumbo_sim::obstacle::{ObstacleSensor, Sight};
+use rumbo_sim::wiring::Wiring;
+
+/// Where a sensor may look.
+const ANGLE: Allowed = Allowed::new(-180.0, 180.0, "deg");
+/// What the potentiometer of a switch sets.
+const REACH: Allowed = Allowed::new(0.02, 0.8, "m");
+/// Where it usually stands \[m\].
+const REACH_M: f64 = 0.15;
+
+/// Reads the sensors into a wiring.
+pub(super) fn read_obstacle_sensors(table: &Table<'_, '_>, wiring: &mut Wiring) {
+    for key in table.keys() {
+        let own = table.table(key.value);
+        let analogue = own.flag("analogue").is_some_and(|flag| flag.value);
+        own.require("pin", "the pin of the sensor's output, e.g. 2 or \"A0\"");
+        let pin = read_pin(&own, "pin", wiring.board, analogue);
+        let at_m = [
+            own.required_number("x_m", MOUNT),
+            own.number("y_m", MOUNT).unwrap_or(0.0),
+        ];
+        let angle_deg = own.number("angle_deg", ANGLE).unwrap_or(0.0);
+        let sight = match analogue {
+            true => Sight::Volts,
+            false => Sight::Switch {
+                reach_m: own.number("reach_m", REACH).unwrap_or(REACH_M),
+                seen_high: read_level(&own, "seen").unwrap_or(false),
+            },
+        };
+        own.finish();
+        let Some(pin) = pin else { continue };
+        is_free(&own, "pin", pin, wiring);
+        wiring.obstacle_sensors.push(ObstacleSensor {
+            name: key.value.to_owned(),
+            at_m,
+            angle_rad: angle_deg.to_radians(),
+            pin,
+            sight,
+        });
+    }
+    table.finish();
+}
