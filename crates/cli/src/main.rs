@@ -12,6 +12,7 @@ mod column_names;
 mod compare;
 mod connect;
 mod csv_rows;
+mod debug;
 mod experiments;
 mod explain;
 mod export;
@@ -89,6 +90,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
                 .compile(args.setting.robot.as_deref(), scenario)?;
             run::run(&args)
         }
+        Some(Command::Debug(args)) => debug::debug(&args),
         Some(Command::Sweep(mut args)) => {
             let robot = args.setting.robot.as_deref();
             args.image.compile(robot, Some(&args.scenario))?;

@@ -19,6 +19,15 @@ use std::time::Duration;
 /// Time for compiling a sketch that was dropped; the next one waits for it.
 const DROPPED: Duration = Duration::from_secs(30);
 
+/// What VS Code needs to debug a sketch: what to launch, and an extension that says by what.
+const EDITOR: [(&str, &str); 2] = [
+    (".vscode/launch.json", include_str!("editor/launch.json")),
+    (
+        ".vscode/extensions/rumbo-debug/package.json",
+        include_str!("editor/package.json"),
+    ),
+];
+
 impl From<SketchError> for Failure {
     fn from(error: SketchError) -> Self {
         match error {
@@ -105,6 +114,21 @@ pub(crate) fn image(name: &str, board: &Board) -> Result<PathBuf, Failure> {
     Ok(image.path)
 }
 
+/// The image of a program to debug, and the compiler's warnings; as it is to run, if it is to be `optimised`.
+pub(crate) fn image_to_debug(
+    name: &str,
+    board: &Board,
+    optimised: bool,
+) -> Result<(PathBuf, Vec<String>), Failure> {
+    let compile = match optimised {
+        true => rumbo_sketch::image_of,
+        false => rumbo_sketch::image_to_debug,
+    };
+    let image = compile(name, target(board), libraries())?;
+    let warnings = image.warnings.iter().map(ToString::to_string);
+    Ok((image.path, warnings.collect()))
+}
+
 /// Makes a folder with a sketch to start from: for a board, or as an example has it.
 pub(crate) fn begin(
     folder: &Path,
@@ -146,6 +170,11 @@ pub(crate) fn begin(
             return Err(place::unwritable(&path, &error));
         }
     }
+    let robot = match Library::new().robot_with(|robot| robot.board == board) {
+        Some(robot) if board != <&Board>::default() => Some(robot),
+        _ => None,
+    };
+    write_for_editors(folder, robot.as_deref())?;
     let (file, folder) = (output::shown(&begun), output::shown(folder));
     // An example says in its first line how to drive it.
     let first = files.iter().find(|(file, _)| main.as_ref() == Some(file));
@@ -157,14 +186,31 @@ pub(crate) fn begin(
     if let Some(command) = command {
         return output::line(&format!("{file}: edit it, then `{command}`"));
     }
-    let robot = match Library::new().robot_with(|robot| robot.board == board) {
-        Some(robot) if board != <&Board>::default() => format!(" --robot {robot}"),
-        _ => String::new(),
-    };
+    let robot = robot.map(|robot| format!(" --robot {robot}"));
+    let robot = robot.unwrap_or_default();
     output::line(&format!(
         "{file}: `rumbo lab --scenario mode1{robot} --sketch {folder}` shows it drive, also while it is edited; \
          `rumbo run mode1{robot} --sketch {folder}` judges it, and the template does not take the second setpoint"
     ))
+}
+
+/// What VS Code needs, for a robot that is not the scenario's.
+fn write_for_editors(folder: &Path, robot: Option<&str>) -> Result<(), Failure> {
+    for (file, text) in EDITOR {
+        let path = folder.join(file);
+        let robot = robot.map(|robot| {
+            format!("\"program\": \"${{workspaceFolder}}\",\n      \"robot\": \"{robot}\",")
+        });
+        let text = match robot {
+            Some(robot) if file.ends_with("launch.json") => {
+                text.replace("\"program\": \"${workspaceFolder}\",", &robot)
+            }
+            _ => text.to_owned(),
+        };
+        place::folder(path.parent().unwrap_or(folder))?;
+        std::fs::write(&path, text).map_err(|error| place::unwritable(&path, &error))?;
+    }
+    Ok(())
 }
 
 fn is_name(name: &str) -> bool {

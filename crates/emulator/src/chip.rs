@@ -61,6 +61,11 @@ impl Chip {
         self.devices.clock().time(self.cpu.cycle())
     }
 
+    /// The crystal's cycle at one of the CPU's, by how the clock is divided now.
+    pub fn time_of(&self, cycle: u64) -> u64 {
+        self.devices.clock().time(cycle)
+    }
+
     /// Runs until `cycle` cycles of the crystal have passed since power-on, to the end of the instruction that passes it.
     pub fn run_until(&mut self, cycle: u64) -> Stopped {
         loop {

@@ -16,6 +16,7 @@ pub mod io;
 pub mod model;
 pub mod observe;
 mod registers;
+pub mod space;
 pub mod status;
 pub mod verdict;
 mod watchpoint;

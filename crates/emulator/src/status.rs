@@ -56,6 +56,18 @@ impl Status {
         }
     }
 
+    /// The flags of a register's value, I to C, set ones in capitals: `iTHsvnZc`.
+    pub fn letters(bits: u8) -> String {
+        let flag = |bit: u8| {
+            let letter = char::from(b"cznvshti"[usize::from(bit)]);
+            match bits >> bit & 1 {
+                0 => letter,
+                _ => letter.to_ascii_uppercase(),
+            }
+        };
+        (0..8).rev().map(flag).collect()
+    }
+
     /// The register's value.
     pub const fn bits(self) -> u8 {
         let mut bits = 0;

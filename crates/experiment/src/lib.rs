@@ -12,6 +12,7 @@ pub mod campaign;
 pub mod claims;
 #[cfg(feature = "host")]
 pub mod compare;
+pub mod debugged;
 pub mod files;
 #[cfg(feature = "host")]
 pub mod grade;

@@ -13,7 +13,7 @@
 use crate::board::Board;
 use crate::diagnostics::{Diagnostic, Severity, parse};
 use crate::error::SketchError;
-use crate::options::{C, COMMON, CPP, LINK, OBJECT};
+use crate::options::{C, CPP, Options};
 use crate::product;
 use crate::sandbox::{Sandbox, Task};
 use crate::source::ending;
@@ -36,6 +36,7 @@ const MOST_COMPLAINTS: usize = 200;
 /// One compilation, in its own folder: the sketch beside its products.
 pub(crate) struct Build<'a> {
     board: Board,
+    options: Options,
     toolchain: &'a Toolchain,
     sandbox: &'a Sandbox,
     folder: tempfile::TempDir,
@@ -53,7 +54,7 @@ pub(crate) struct Build<'a> {
 impl<'a> Build<'a> {
     /// A build in a new folder in `within`.
     pub(crate) fn new(
-        board: Board,
+        (board, options): (Board, Options),
         toolchain: &'a Toolchain,
         sandbox: &'a Sandbox,
         within: &Path,
@@ -69,6 +70,7 @@ impl<'a> Build<'a> {
         }
         Ok(Self {
             board,
+            options,
             toolchain,
             sandbox,
             folder,
@@ -128,7 +130,7 @@ impl<'a> Build<'a> {
             core.join("variants").join(self.board.variant),
         ];
         let board = &self.board.options[..];
-        let options = [board, &COMMON, flags, language].concat();
+        let options = [board, self.options.common, flags, language].concat();
         let mut args: Vec<OsString> = options.into_iter().map(OsString::from).collect();
         for folder in folders.iter().chain(&self.libraries) {
             args.extend(["-I".into(), OsString::from(folder)]);
@@ -168,7 +170,7 @@ impl<'a> Build<'a> {
     /// Compiles one file, of ours or of a library; an error does not keep the others from being compiled, so that all errors are seen.
     pub(crate) fn object(&mut self, file: &Path, flags: &[&str]) {
         let object = format!("{}.o", self.objects.len());
-        let mut args = self.args(&[&OBJECT, flags].concat(), file);
+        let mut args = self.args(&[self.options.object, flags].concat(), file);
         args.extend([OsString::from(file), "-o".into(), seen(OUT, &object)]);
         if self.failed.is_none()
             && let Err(error) = self.run(&self.toolchain.gcc, &args, &object, &[])
@@ -182,7 +184,7 @@ impl<'a> Build<'a> {
     pub(crate) fn link(&mut self, core: &Path) -> Result<(), SketchError> {
         let toolchain = self.toolchain;
         let board = &self.board.options[..];
-        let options = [board, &COMMON, &LINK].concat();
+        let options = [board, self.options.common, self.options.link].concat();
         let mut args: Vec<OsString> = options.into_iter().map(OsString::from).collect();
         args.extend(["-o".into(), seen(OUT, IMAGE)]);
         args.extend(self.objects.iter().map(|object| seen(OUT, object)));

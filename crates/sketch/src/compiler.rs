@@ -8,7 +8,7 @@ use crate::examples::example;
 use crate::layout::{Beside, Layout};
 use crate::libraries::{Library, spelled};
 use crate::limits::Limits;
-use crate::options::{C, COMMON, CPP, LINK, OBJECT};
+use crate::options::{C, CPP, DEBUG, Options, RUN};
 use crate::preprocess;
 use crate::sandbox::Sandbox;
 use crate::source::{Given, Source, given};
@@ -34,6 +34,7 @@ const MOST_HEADERS: usize = 10_000;
 #[derive(Clone, Debug)]
 pub struct Compiler {
     board: Board,
+    options: Options,
     toolchain: Toolchain,
     sandbox: Sandbox,
     cache: PathBuf,
@@ -73,6 +74,27 @@ pub fn cache() -> PathBuf {
 /// # Errors
 /// There is none, no compiler, or it rejects the sketch.
 pub fn image_of(name: &str, board: Board, libraries: &[PathBuf]) -> Result<Image, SketchError> {
+    compiled(name, board, libraries, RUN)
+}
+
+/// The same for a debugger: hardly optimised, so that each line has code and each variable a place.
+///
+/// # Errors
+/// As [`image_of`].
+pub fn image_to_debug(
+    name: &str,
+    board: Board,
+    libraries: &[PathBuf],
+) -> Result<Image, SketchError> {
+    compiled(name, board, libraries, DEBUG)
+}
+
+fn compiled(
+    name: &str,
+    board: Board,
+    libraries: &[PathBuf],
+    options: Options,
+) -> Result<Image, SketchError> {
     let source = match name.strip_prefix(EXAMPLE) {
         Some(name) => example(name)?,
         None => match given(Path::new(name), true)? {
@@ -86,7 +108,8 @@ pub fn image_of(name: &str, board: Board, libraries: &[PathBuf]) -> Result<Image
             Given::Sketch(source) => source,
         },
     };
-    Compiler::trusting(board, libraries)?.compile(&source, &[])
+    let compiler = Compiler::of_user(board, libraries, options)?;
+    compiler.compile(&source, &[])
 }
 
 impl Compiler {
@@ -100,12 +123,23 @@ impl Compiler {
         sandbox: Sandbox,
         cache: PathBuf,
     ) -> Result<Self, SketchError> {
+        Self::with(board, RUN, toolchain, sandbox, cache)
+    }
+
+    fn with(
+        board: Board,
+        options: Options,
+        toolchain: Toolchain,
+        sandbox: Sandbox,
+        cache: PathBuf,
+    ) -> Result<Self, SketchError> {
         fs::create_dir_all(&cache).map_err(|error| SketchError::file(&cache, error))?;
         let cache = cache
             .canonicalize()
             .map_err(|error| SketchError::file(&cache, error))?;
         let mut compiler = Self {
             board,
+            options,
             toolchain,
             sandbox,
             cache,
@@ -120,9 +154,13 @@ impl Compiler {
     /// # Errors
     /// There is none, or as [`Compiler::new`].
     pub fn trusting(board: Board, libraries: &[PathBuf]) -> Result<Self, SketchError> {
+        Self::of_user(board, libraries, RUN)
+    }
+
+    fn of_user(board: Board, libraries: &[PathBuf], options: Options) -> Result<Self, SketchError> {
         let sandbox = Sandbox::trusting(Limits::default());
         let toolchain = Toolchain::find()?.with_libraries(libraries);
-        Self::new(board, toolchain, sandbox, cache())
+        Self::with(board, options, toolchain, sandbox, cache())
     }
 
     /// Compiler and core.
@@ -263,7 +301,13 @@ impl Compiler {
         sandbox: &'a Sandbox,
         folders: Vec<PathBuf>,
     ) -> Result<Build<'a>, SketchError> {
-        Build::new(self.board, &self.toolchain, sandbox, &self.cache, folders)
+        Build::new(
+            (self.board, self.options),
+            &self.toolchain,
+            sandbox,
+            &self.cache,
+            folders,
+        )
     }
 
     /// The error, with where a missing header was looked for.
@@ -312,7 +356,16 @@ impl Compiler {
     fn key(&self, flags: &[&str]) -> Sha256 {
         let mut key = Sha256::new();
         let board = &self.board.options[..];
-        let fixed = [board, &COMMON, &OBJECT, &C, &CPP, &LINK, flags].concat();
+        let fixed = [
+            board,
+            self.options.common,
+            self.options.object,
+            &C,
+            &CPP,
+            self.options.link,
+            flags,
+        ]
+        .concat();
         for text in fixed.into_iter().chain([
             self.toolchain.compiler.as_str(),
             self.toolchain.core_version.as_str(),

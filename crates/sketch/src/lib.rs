@@ -32,7 +32,7 @@ mod source;
 mod toolchain;
 
 pub use board::{BOARDS, Board};
-pub use compiler::{Compiler, EXAMPLE, Image, cache, image_of};
+pub use compiler::{Compiler, EXAMPLE, Image, cache, image_of, image_to_debug};
 pub use diagnostics::{Diagnostic, Severity};
 pub use error::SketchError;
 pub use examples::{example, examples, starter};

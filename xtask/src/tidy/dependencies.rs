@@ -9,12 +9,13 @@ use serde_json::Value;
 use super::Finding;
 
 /// Each crate of the project and the crates it builds on.
-const ARROWS: [(&str, &[&str]); 26] = [
+const ARROWS: [(&str, &[&str]); 27] = [
     ("rumbo-control", &[]),
     ("rumbo-wire", &["rumbo-control"]),
     ("rumbo-robot", &["rumbo-wire"]),
     ("rumbo-plant", &[]),
     ("rumbo-emulator", &[]),
+    ("rumbo-debug", &["rumbo-emulator"]),
     ("rumbo-flash", &[]),
     (
         "rumbo-sim",
@@ -42,6 +43,7 @@ const ARROWS: [(&str, &[&str]); 26] = [
             "rumbo-station",
             "rumbo-report",
             "rumbo-lab",
+            "rumbo-debug",
             "rumbo-sketch",
             "rumbo-ros",
         ],

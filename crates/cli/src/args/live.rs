@@ -1,4 +1,4 @@
-//! Options of the commands that drive: `lab`, `connect`; and of `flash`.
+//! Options of the commands that drive: `lab`, `connect`; of `debug`; and of `flash`.
 
 use super::groups::{ImageArgs, SeedArgs, SessionArgs, SettingArgs};
 use super::values::speed;
@@ -49,6 +49,44 @@ pub(crate) struct LabArgs {
     #[cfg(unix)]
     #[arg(long, requires = "image")]
     pub(crate) usb_pty: bool,
+}
+
+/// Options of `rumbo debug`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  rumbo debug my_sketch
+  rumbo debug my_sketch --scenario mode1 --robot uno
+  rumbo debug example:wall --scenario mode5
+  rumbo debug my_sketch.elf --port 4711
+
+An editor starts this, or connects to the port, and speaks the Debug Adapter Protocol; docs/debugging.md has what to configure in VS Code,
+Neovim, Helix, Zed and Emacs. What the sketch sends to Serial appears in the editor's console; a line typed there behind
+a > goes to Serial.")]
+pub(crate) struct DebugArgs {
+    /// Folder of a sketch, its .ino, example:NAME, or an ELF file with debugging information [default: what the editor's
+    /// launch names]
+    #[arg(value_name = "PROGRAM")]
+    pub(crate) program: Option<String>,
+    /// Scenario that the robot stands in: name or path
+    #[arg(long, value_name = "NAME", default_value = "free")]
+    pub(crate) scenario: String,
+    #[command(flatten)]
+    pub(crate) setting: SettingArgs,
+    /// Wiring of the robot's board, of the robot file [default: the report's for the experiment]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) wiring: Option<String>,
+    /// Folder of Arduino libraries, which come before those of the Arduino IDE; may be repeated
+    #[arg(long, value_name = "DIR")]
+    pub(crate) libraries: Vec<PathBuf>,
+    /// Compile the sketch as it is compiled to run (-Os), not for debugging (-Og): lines and variables get lost
+    #[arg(long)]
+    pub(crate) optimised: bool,
+    #[command(flatten)]
+    pub(crate) seed: SeedArgs,
+    /// Port on 127.0.0.1 where one editor may connect, in place of stdin and stdout; 0 takes any free one
+    #[arg(long, value_name = "PORT")]
+    pub(crate) port: Option<u16>,
 }
 
 /// Options of `rumbo connect`.

@@ -8,7 +8,7 @@ mod studies;
 mod values;
 
 pub(crate) use groups::{OverwriteArgs, ServeArgs, board};
-pub(crate) use live::{ConnectArgs, FlashArgs, LabArgs};
+pub(crate) use live::{ConnectArgs, DebugArgs, FlashArgs, LabArgs};
 pub(crate) use logs::{
     CompareArgs, ExplainArgs, ExportArgs, Format, ImportArgs, PruneArgs, ReplayArgs, RerunArgs,
 };
@@ -58,6 +58,8 @@ pub(crate) enum Command {
     Flash(FlashArgs),
     /// Run scenarios as fast as the machine can and judge their metrics
     Run(RunArgs),
+    /// Debug a sketch or an image in an editor, forwards and backwards, while robot and world stand still
+    Debug(DebugArgs),
     /// Run a scenario with many values of its parameters: a table, and a page with plots
     Sweep(SweepArgs),
     /// Compare variants of a scenario pair by pair, or logs side by side

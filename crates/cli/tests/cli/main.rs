@@ -9,6 +9,7 @@
 mod browser;
 mod calibration;
 mod command_line;
+mod debug;
 mod experiments;
 mod files;
 mod flash;

@@ -28,6 +28,7 @@ use crate::model::Model;
 use crate::status::Status;
 use crate::verdict::{Arrival, Verdict};
 use crate::watchpoint::Watchpoint;
+use std::sync::Arc;
 
 /// Cycles from the recognition of an interrupt to the first instruction of its routine, a jump in the table, and as
 /// many more out of sleep; one less where addresses on the stack are short.
@@ -109,9 +110,10 @@ pub struct Cpu {
     rampz: u8,
     eind: u8,
     sram: Box<[u8]>,
-    flash: Box<[u8]>,
+    /// Shared between snapshots, as are the operations, until one of them is changed.
+    flash: Arc<[u8]>,
     /// As many as any model has; a smaller flash is repeated, as its short program counter sees it.
-    operations: Box<[Op; FLASH_WORDS]>,
+    operations: Arc<[Op; FLASH_WORDS]>,
     breakpoints: Vec<u32>,
     /// Pushing below this address runs the stack into data.
     stack_floor: u16,
@@ -166,7 +168,7 @@ impl Cpu {
             eind: 0,
             sram: vec![0; model.sram_bytes()].into(),
             flash: flash.into(),
-            operations,
+            operations: operations.into(),
             breakpoints: Vec::new(),
             stack_floor: model.sram_start,
             stack_known: true,
@@ -331,8 +333,9 @@ impl Cpu {
         let word = word & self.last_word;
         let at = 2 * word as usize;
         let [low, high] = value.to_le_bytes();
-        self.flash[at] = low;
-        self.flash[at + 1] = high;
+        let flash = Arc::make_mut(&mut self.flash);
+        flash[at] = low;
+        flash[at + 1] = high;
         self.predecode_around(word);
     }
 
@@ -348,6 +351,11 @@ impl Cpu {
     fn flash_word(&self, word: u32) -> u16 {
         let at = 2 * (word & self.last_word) as usize;
         u16::from_le_bytes([self.flash[at], self.flash[at + 1]])
+    }
+
+    /// The operation at an address [words], whether a breakpoint stands there or not.
+    pub fn operation(&self, word: u32) -> Op {
+        self.original(word & self.last_word)
     }
 
     fn original(&self, word: u32) -> Op {
@@ -372,8 +380,7 @@ impl Cpu {
     /// Puts an operation in its place, in each repetition of the flash.
     fn put(&mut self, word: u32, op: Op) {
         let words = self.model.flash_words as usize;
-        for place in self
-            .operations
+        for place in Arc::make_mut(&mut self.operations)
             .iter_mut()
             .skip(word as usize)
             .step_by(words)

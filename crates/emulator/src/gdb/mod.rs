@@ -38,6 +38,24 @@ pub trait Machine {
     }
 }
 
+/// A chip with its world. A clone is a snapshot, which continues bit for bit the same.
+pub trait World: Machine + Clone {
+    /// Runs like [`Machine::go`], at most to this cycle of the crystal.
+    fn go_to(&mut self, cycle: u64) -> Stopped;
+
+    /// Simulated time [us].
+    fn now_us(&self) -> u64;
+
+    /// What the program has sent to its USB port since the last call.
+    fn take_serial(&mut self) -> Vec<u8>;
+
+    /// Sends bytes there.
+    fn type_in(&mut self, bytes: &[u8]);
+
+    /// The board's pins that are named, and their levels.
+    fn pins(&self) -> Vec<(String, bool)>;
+}
+
 /// A chip with nothing connected to it.
 impl Machine for Chip {
     fn chip(&self) -> &Chip {

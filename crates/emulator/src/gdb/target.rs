@@ -11,6 +11,7 @@ use super::Machine;
 use super::arch::{Avr, AvrRegisters};
 use crate::cpu::Stopped;
 use crate::observe::Watchpoint;
+use crate::space::{DATA, Place};
 use crate::status::Status;
 use crate::verdict::Verdict;
 use gdbstub::common::Signal;
@@ -36,9 +37,6 @@ use std::marker::PhantomData;
 use std::net::TcpStream;
 use std::ops::Range;
 
-const DATA: u32 = 0x80_0000;
-const EEPROM: u32 = 0x81_0000;
-const SIGNATURE: u32 = 0x84_0000;
 /// "Bad address", as GDB's protocol numbers it.
 const EFAULT: u8 = 14;
 /// Steps between two polls of the connection.
@@ -51,15 +49,6 @@ enum Motion {
     Step,
     /// Steps as long as the program counter [bytes] is in here.
     Within(Range<u32>),
-}
-
-/// A byte of one of the memories.
-#[derive(Clone, Copy, Debug)]
-enum Place {
-    Flash(usize),
-    Data(usize),
-    Eeprom(usize),
-    Signature(usize),
 }
 
 /// A machine in the hands of a debugger.
@@ -163,49 +152,6 @@ impl<M: Machine> Debugger<M> {
             Stopped::Ended(_) => Some(SingleThreadStopReason::Signal(Signal::SIGILL)),
         }
     }
-
-    /// The memory at an address, and where in it.
-    fn place(&self, address: u32) -> Option<Place> {
-        let model = self.machine.chip().model();
-        let within = |start: u32, bytes: usize| {
-            let at = address.checked_sub(start)? as usize;
-            (at < bytes).then_some(at)
-        };
-        let flash = within(0, model.flash_bytes()).map(Place::Flash);
-        flash
-            .or_else(|| within(DATA, usize::from(model.ram_end) + 1).map(Place::Data))
-            .or_else(|| within(EEPROM, model.eeprom_bytes).map(Place::Eeprom))
-            .or_else(|| within(SIGNATURE, model.signature.len()).map(Place::Signature))
-    }
-
-    fn read(&self, address: u32) -> Option<u8> {
-        let chip = self.machine.chip();
-        match self.place(address)? {
-            Place::Flash(at) => chip.cpu().flash().get(at).copied(),
-            Place::Data(at) => Some(chip.read_data(at as u16)),
-            Place::Eeprom(at) => chip.devices().eeprom().get(at).copied(),
-            Place::Signature(at) => chip.model().signature.get(at).copied(),
-        }
-    }
-
-    /// Says whether there is something to write to.
-    fn write(&mut self, address: u32, value: u8) -> bool {
-        let place = self.place(address);
-        let chip = self.machine.chip_mut();
-        match place {
-            Some(Place::Data(at)) => chip.write_data(at as u16, value),
-            Some(Place::Eeprom(at)) => chip.devices_mut().eeprom_mut()[at] = value,
-            Some(Place::Flash(at)) => {
-                let flash = chip.cpu().flash();
-                let mut bytes = [flash[at & !1], flash[at | 1]];
-                bytes[at & 1] = value;
-                let word = (at / 2) as u32;
-                chip.cpu_mut().write_flash(word, u16::from_le_bytes(bytes));
-            }
-            Some(Place::Signature(_)) | None => return false,
-        }
-        true
-    }
 }
 
 impl<M: Machine> Target for Debugger<M> {
@@ -277,7 +223,7 @@ impl<M: Machine> SingleThreadBase for Debugger<M> {
     fn read_addrs(&mut self, start: u32, data: &mut [u8]) -> TargetResult<usize, Self> {
         let mut read = 0;
         for (place, address) in data.iter_mut().zip(start..) {
-            let Some(byte) = self.read(address) else {
+            let Some(byte) = self.machine.chip().read_space(address) else {
                 break;
             };
             *place = byte;
@@ -291,7 +237,7 @@ impl<M: Machine> SingleThreadBase for Debugger<M> {
 
     fn write_addrs(&mut self, start: u32, data: &[u8]) -> TargetResult<(), Self> {
         for (byte, address) in data.iter().zip(start..) {
-            if !self.write(address, *byte) {
+            if !self.machine.chip_mut().write_space(address, *byte) {
                 return Err(TargetError::Errno(EFAULT));
             }
         }
@@ -348,7 +294,7 @@ impl<M: Machine> Breakpoints for Debugger<M> {
 
 impl<M: Machine> SwBreakpoint for Debugger<M> {
     fn add_sw_breakpoint(&mut self, address: u32, _: usize) -> TargetResult<bool, Self> {
-        if !matches!(self.place(address), Some(Place::Flash(_))) {
+        if !matches!(self.machine.chip().place(address), Some(Place::Flash(_))) {
             return Ok(false);
         }
         self.breakpoints.push(address / 2);
@@ -381,7 +327,7 @@ impl<M: Machine> HwBreakpoint for Debugger<M> {
 impl<M: Machine> Debugger<M> {
     /// Data addresses that are watched; `None` if they are not in the data space.
     fn watchpoint(&self, address: u32, length: u32, kind: WatchKind) -> Option<Watchpoint> {
-        let Place::Data(start) = self.place(address)? else {
+        let Place::Data(start) = self.machine.chip().place(address)? else {
             return None;
         };
         let last = self.machine.chip().model().ram_end;

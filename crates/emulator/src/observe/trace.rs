@@ -5,6 +5,7 @@ use crate::cpu::{Cpu, Turn};
 use crate::decode::Op;
 use crate::disassemble;
 use crate::image::Image;
+use crate::status::Status;
 use std::fmt::Write;
 use std::ops::Range;
 
@@ -60,16 +61,7 @@ impl Traced {
             let _ = write!(changes, " r{register}={value:02x}");
         }
         if let Some(status) = self.status {
-            let flag = |bit: u8| {
-                let letter = char::from(b"cznvshti"[usize::from(bit)]);
-                if status >> bit & 1 == 0 {
-                    letter
-                } else {
-                    letter.to_ascii_uppercase()
-                }
-            };
-            let flags: String = (0..8).rev().map(flag).collect();
-            let _ = write!(changes, " {flags}");
+            let _ = write!(changes, " {}", Status::letters(status));
         }
         if let Some(stack_pointer) = self.stack_pointer {
             let _ = write!(changes, " sp={stack_pointer:04x}");

@@ -168,6 +168,8 @@ pub struct Mega {
     toil: u64,
     /// The program does one instruction and halts.
     stepping: bool,
+    /// The program halts at this cycle of the crystal.
+    halt_at: Option<u64>,
     /// Why the program stands, until a debugger lets it go on.
     halt: Option<Stopped>,
 }
@@ -210,6 +212,7 @@ impl Mega {
             oddities: notes::Oddities::default(),
             toil: 0,
             stepping: false,
+            halt_at: None,
             halt: None,
             firmware,
         };
@@ -272,6 +275,11 @@ impl Mega {
     /// Makes the program run one instruction and halt.
     pub fn step(&mut self) {
         self.stepping = true;
+    }
+
+    /// Makes the program halt at a cycle of the crystal, or lets it pass.
+    pub fn halt_at(&mut self, cycle: Option<u64>) {
+        self.halt_at = cycle;
     }
 
     /// Why the program is halted; it continues at the next advance.
@@ -395,6 +403,10 @@ impl Mega {
         let until = self.cycle_of(until_us);
         loop {
             let now = self.chip.cycle();
+            if self.halt_at.is_some_and(|at| now >= at) {
+                self.halt_at = None;
+                self.halt = Some(Stopped::Reached);
+            }
             if self.halt.is_some() {
                 let at_us = (now - self.zero_cycle) / CYCLES_PER_US;
                 return Pause::Halted(at_us.min(until_us));
@@ -407,6 +419,7 @@ impl Mega {
             let waves = self.bridges.iter().filter_map(HalfBridge::expires_cycle);
             let target = waves
                 .chain(self.next_input().map(|cycle| cycle - AHEAD_CYCLES))
+                .chain(self.halt_at)
                 .fold(until, u64::min);
             let stepping = std::mem::take(&mut self.stepping);
             let stopped = if stepping {

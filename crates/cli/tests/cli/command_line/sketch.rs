@@ -107,6 +107,13 @@ fn a_new_sketch_for_an_uno_drives_the_robot_with_an_uno_and_no_other() {
     };
     let made = rumbo(&bench, &["new", "sketch", "small", "--board", "uno"]);
     assert!(stdout(&made).contains("run mode1 --robot uno --sketch small"));
+    let read = |name: &str| std::fs::read(bench.join("small/.vscode").join(name)).unwrap();
+    let launch: serde_json::Value = serde_json::from_slice(&read("launch.json")).unwrap();
+    assert_eq!(launch["configurations"][0]["robot"], "uno");
+    let extension = read("extensions/rumbo-debug/package.json");
+    let extension: serde_json::Value = serde_json::from_slice(&extension).unwrap();
+    let debugger = &extension["contributes"]["debuggers"][0];
+    assert_eq!(debugger["type"], launch["configurations"][0]["type"]);
     let metrics = metrics(
         &bench,
         &["run", "mode1", "--robot", "uno", "--sketch", "small"],

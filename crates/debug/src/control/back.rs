@@ -1,0 +1,112 @@
+//! The way back: where the program stood before.
+
+use super::{DataBreakpoint, Debugger, Reason, Step, calls};
+use crate::expression;
+use crate::stack::stack;
+use crate::value::Memory;
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::gdb::World;
+use std::collections::BTreeSet;
+
+impl<W: World> Debugger<W> {
+    /// Goes back: over an instruction, a line, or out to the call.
+    pub fn step_back(&mut self, step: Step) -> Reason {
+        let found = match step {
+            Step::Instruction => self.history.last_instruction(),
+            _ => {
+                let (stops, cfa, inside) = self.lines_back();
+                let symbols = &self.symbols;
+                let accept = &mut |chip: &Chip| {
+                    let there = symbols.cfa(chip);
+                    match cfa {
+                        None => true,
+                        Some(cfa) if there == Some(cfa) => {
+                            inside.contains(&chip.cpu().program_counter())
+                        }
+                        Some(cfa) => there.is_some_and(|there| there > cfa),
+                    }
+                };
+                self.history.last_stop(&stops, &[], accept)
+            }
+        };
+        self.arrive(found, Reason::Step)
+    }
+
+    /// Beginnings of lines of the functions on the stack, the CFA of the innermost, and those of it.
+    fn lines_back(&self) -> (BTreeSet<u32>, Option<u16>, BTreeSet<u32>) {
+        let frames = self.symbols.frames(self.chip());
+        let (mut stops, mut inside) = (BTreeSet::new(), BTreeSet::new());
+        let own = self
+            .symbols
+            .function(self.address())
+            .map(|function| calls(function, self.address()));
+        for (index, frame) in frames.iter().enumerate() {
+            let Some(function) = self.symbols.function(frame.address_in_code()) else {
+                continue;
+            };
+            let rows = function
+                .ranges
+                .iter()
+                .flat_map(|range| self.symbols.lines.begins(range.clone()));
+            for row in rows {
+                let depth = calls(function, row.address).len();
+                stops.insert(row.address / 2);
+                if index == 0 && own.as_ref().is_some_and(|own| depth <= own.len()) {
+                    inside.insert(row.address / 2);
+                }
+            }
+        }
+        (stops, frames.first().and_then(|frame| frame.cfa), inside)
+    }
+
+    /// Goes back to the last breakpoint, or to the beginning.
+    pub fn go_back(&mut self) -> Reason {
+        let addresses = self
+            .breakpoints
+            .iter()
+            .filter(|breakpoint| breakpoint.log.is_none());
+        let stops: BTreeSet<u32> = addresses
+            .flat_map(|breakpoint| &breakpoint.addresses)
+            .map(|at| at / 2)
+            .collect();
+        let watches: Vec<_> = self.data.iter().map(DataBreakpoint::watchpoint).collect();
+        let (symbols, breakpoints) = (&self.symbols, &self.breakpoints);
+        let accept = &mut |chip: &Chip| {
+            let at = 2 * chip.cpu().program_counter();
+            let mut here = breakpoints
+                .iter()
+                .filter(|breakpoint| breakpoint.addresses.contains(&at))
+                .peekable();
+            here.peek().is_none()
+                || here.any(|breakpoint| {
+                    breakpoint.condition.as_ref().is_none_or(|condition| {
+                    let memory = Memory { chip, symbols };
+                    let frames = stack(memory);
+                    let item = frames
+                        .first()
+                        .map(|frame| expression::evaluate(condition, frame));
+                    matches!(item, Some(Ok(item)) if expression::is_true(&item, memory) == Ok(true))
+                })
+                })
+        };
+        let found = match stops.is_empty() && watches.is_empty() {
+            true => None,
+            false => self.history.last_stop(&stops, &watches, accept),
+        };
+        self.arrive(found, Reason::Breakpoint(Vec::new()))
+    }
+
+    fn arrive(&mut self, found: Option<u64>, reason: Reason) -> Reason {
+        self.history.set_stops(BTreeSet::new(), Vec::new());
+        match found {
+            Some(cycle) => {
+                self.history.travel(cycle);
+                reason
+            }
+            None => {
+                self.history.travel(self.history.first());
+                Reason::Start
+            }
+        }
+    }
+}

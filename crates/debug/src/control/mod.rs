@@ -1,0 +1,392 @@
+//! Breakpoints and steps.
+//!
+//! A step runs the program at full speed to where it may end: the beginnings of the lines of the function, and the return
+//! to its caller. That the frame is still the same one shows in its CFA; interrupts and recursion pass by. Back, the same
+//! places are looked for in the past.
+
+mod back;
+mod breakpoints;
+mod values;
+
+pub use breakpoints::{Breakpoint, DataBreakpoint};
+
+use crate::history::History;
+use crate::stack::{CallFrame, stack};
+use crate::symbols::{Kind, Scope, Symbols};
+use crate::value::Memory;
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::decode::Code;
+use rumbo_emulator::gdb::World;
+use std::collections::BTreeSet;
+
+/// How far a step goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// To the next line, over calls.
+    Over,
+    /// To the next line, into calls of functions with lines.
+    In,
+    /// To the caller.
+    Out,
+    /// Over one instruction.
+    Instruction,
+}
+
+/// Why the program stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// At breakpoints, by their numbers.
+    Breakpoint(Vec<u64>),
+    /// It has accessed what a data breakpoint watches.
+    Data(u64),
+    /// A step is done.
+    Step,
+    /// The user wants it.
+    Pause,
+    /// It cannot go on.
+    Ended(String),
+    /// The scenario's time is over.
+    Over,
+    /// Back at the beginning.
+    Start,
+}
+
+/// How the program moves.
+#[derive(Clone, Debug)]
+enum Motion {
+    Continue,
+    Step(Plan),
+}
+
+/// Where a step may end.
+#[derive(Clone, Debug, Default)]
+struct Plan {
+    /// Words, in the frame with this CFA.
+    stops: BTreeSet<u32>,
+    cfa: Option<u16>,
+    /// Where its caller goes on, with the stack at least there.
+    returns: Option<u32>,
+    /// Words of calls that are to be followed.
+    calls: BTreeSet<u32>,
+}
+
+/// A program under a debugger.
+pub struct Debugger<W> {
+    pub(crate) symbols: Symbols,
+    pub(crate) history: History<W>,
+    motion: Option<Motion>,
+    pub(crate) breakpoints: Vec<Breakpoint>,
+    pub(crate) data: Vec<DataBreakpoint>,
+    /// What breakpoints have written.
+    logged: Vec<String>,
+}
+
+impl<W: World> Debugger<W> {
+    /// The program stands where the world does.
+    pub fn new(symbols: Symbols, world: W) -> Self {
+        let history = History::new(world);
+        Debugger {
+            symbols,
+            history,
+            motion: None,
+            breakpoints: Vec::new(),
+            data: Vec::new(),
+            logged: Vec::new(),
+        }
+    }
+
+    /// The chip, to look at.
+    pub fn chip(&self) -> &Chip {
+        self.history.chip()
+    }
+
+    /// The world.
+    pub fn world(&self) -> &W {
+        self.history.now()
+    }
+
+    /// The symbols.
+    pub fn symbols(&self) -> &Symbols {
+        &self.symbols
+    }
+
+    /// Memory and symbols.
+    pub(crate) fn memory(&self) -> Memory<'_> {
+        Memory {
+            chip: self.chip(),
+            symbols: &self.symbols,
+        }
+    }
+
+    /// The frames, innermost first.
+    pub fn stack(&self) -> Vec<CallFrame<'_>> {
+        stack(self.memory())
+    }
+
+    /// It runs.
+    pub fn is_running(&self) -> bool {
+        self.motion.is_some()
+    }
+
+    /// Drains what breakpoints have written.
+    pub fn take_log(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.logged)
+    }
+
+    /// Drains what the program has sent to its USB port.
+    pub fn take_serial(&mut self) -> Vec<u8> {
+        self.history.take_serial()
+    }
+
+    /// Sends bytes there.
+    pub fn type_in(&mut self, bytes: &[u8]) {
+        self.history.change(|world| world.type_in(bytes));
+    }
+
+    /// Lets the program run.
+    pub fn go(&mut self) {
+        self.motion = Some(Motion::Continue);
+        self.arm(BTreeSet::new());
+    }
+
+    /// Lets it run to the first line of `setup`, or else of `main`.
+    pub fn go_to_entry(&mut self) {
+        let mut entries = ["setup", "main"]
+            .into_iter()
+            .filter_map(|name| self.symbols.functions_named(name).next());
+        let stops = entries
+            .next()
+            .map(|function| self.symbols.body(function) / 2);
+        self.follow(Plan {
+            stops: stops.into_iter().collect(),
+            ..Plan::default()
+        });
+    }
+
+    /// Back to the beginning.
+    pub fn restart(&mut self) {
+        self.motion = None;
+        self.breakpoints
+            .iter_mut()
+            .for_each(|breakpoint| breakpoint.reached = 0);
+        self.history.restart();
+    }
+
+    pub(super) fn arm_again(&mut self) {
+        match self.motion.clone() {
+            Some(Motion::Step(plan)) => self.follow(plan),
+            Some(Motion::Continue) => self.go(),
+            None => {}
+        }
+    }
+
+    /// Stops it.
+    pub fn pause(&mut self) {
+        self.motion = None;
+        self.history.set_stops(BTreeSet::new(), Vec::new());
+    }
+
+    /// Begins a step; `Some`: it is done.
+    ///
+    /// # Errors
+    /// There is nothing that it could go to.
+    pub fn step(&mut self, step: Step) -> Result<Option<Reason>, String> {
+        if step == Step::Instruction
+            || self.symbols.function(self.address()).is_none() && step != Step::Out
+        {
+            let stopped = self.history.step();
+            return Ok(Some(self.ended(&stopped).unwrap_or(Reason::Step)));
+        }
+        let plan = self.plan(step)?;
+        self.follow(plan);
+        Ok(None)
+    }
+
+    fn follow(&mut self, plan: Plan) {
+        let words = plan
+            .stops
+            .iter()
+            .chain(&plan.calls)
+            .copied()
+            .chain(plan.returns)
+            .collect();
+        self.motion = Some(Motion::Step(plan));
+        self.arm(words);
+    }
+
+    fn arm(&mut self, mut words: BTreeSet<u32>) {
+        let addresses = self
+            .breakpoints
+            .iter()
+            .flat_map(|breakpoint| &breakpoint.addresses);
+        words.extend(addresses.map(|address| address / 2));
+        let watches = self.data.iter().map(DataBreakpoint::watchpoint).collect();
+        self.history.set_stops(words, watches);
+    }
+
+    fn address(&self) -> u32 {
+        2 * self.chip().cpu().program_counter()
+    }
+
+    fn plan(&self, step: Step) -> Result<Plan, String> {
+        let frames = self.symbols.frames(self.chip());
+        let Some(frame) = frames.first() else {
+            return Err("the program stands nowhere".into());
+        };
+        let mut plan = Plan {
+            cfa: frame.cfa,
+            returns: frames.get(1).map(|caller| caller.program_counter / 2),
+            ..Plan::default()
+        };
+        let at = self.address();
+        let Some(function) = self.symbols.function(at) else {
+            return Ok(plan);
+        };
+        let own = calls(function, at);
+        let line = self.symbols.lines.row(at);
+        let is_own = |row: &crate::symbols::Row| {
+            line.is_some_and(|line| (line.line, line.file) == (row.line, row.file))
+        };
+        for row in function
+            .ranges
+            .iter()
+            .flat_map(|range| self.symbols.lines.begins(range.clone()))
+        {
+            let there = calls(function, row.address);
+            let depth = own
+                .iter()
+                .zip(&there)
+                .take_while(|(own, there)| std::ptr::eq(**own, **there))
+                .count();
+            let goes = match step {
+                // In this or an outer of the inlined functions.
+                Step::Over => depth == there.len() && !is_own(&row),
+                Step::In => !is_own(&row) || there.len() > own.len(),
+                Step::Out | Step::Instruction => depth == there.len() && there.len() < own.len(),
+            };
+            if goes {
+                plan.stops.insert(row.address / 2);
+            }
+        }
+        if step == Step::In {
+            plan.calls = self.calls_in(function);
+        }
+        if step == Step::Out && plan.stops.is_empty() && plan.returns.is_none() {
+            return Err("nothing has called this function: there is no step out of it".into());
+        }
+        Ok(plan)
+    }
+
+    /// The words of a function at which it calls another, or jumps to it.
+    fn calls_in(&self, function: &Scope) -> BTreeSet<u32> {
+        let cpu = self.chip().cpu();
+        let words = function
+            .ranges
+            .iter()
+            .flat_map(|range| range.start / 2..range.end / 2);
+        let leads_out = |word: &u32| {
+            let op = cpu.operation(*word);
+            match op.code {
+                Code::Call | Code::Rcall | Code::Icall | Code::Eicall => true,
+                Code::Jmp | Code::Rjmp => !function.contains(2 * op.address()),
+                _ => false,
+            }
+        };
+        words.filter(leads_out).collect()
+    }
+
+    /// Runs for an interval; says why the program stands, if it does.
+    pub fn turn(&mut self) -> Option<Reason> {
+        self.motion.as_ref()?;
+        let stopped = self.history.go();
+        let reason = match stopped {
+            Stopped::Reached | Stopped::Output => {
+                self.history.now().is_over().then_some(Reason::Over)
+            }
+            Stopped::Watched { ref watchpoint, .. } => {
+                let hit = self
+                    .data
+                    .iter()
+                    .find(|data| data.watchpoint() == *watchpoint);
+                hit.map(|data| Reason::Data(data.id))
+            }
+            Stopped::Breakpoint => self.at_stop(),
+            Stopped::Ended(_) => self.ended(&stopped),
+        };
+        if reason.is_some() {
+            self.motion = None;
+            self.history.set_stops(BTreeSet::new(), Vec::new());
+        }
+        reason
+    }
+
+    fn ended(&self, stopped: &Stopped) -> Option<Reason> {
+        match stopped {
+            Stopped::Ended(verdict) => Some(Reason::Ended(verdict.to_string())),
+            _ if self.history.now().is_over() => Some(Reason::Over),
+            _ => None,
+        }
+    }
+
+    fn at_stop(&mut self) -> Option<Reason> {
+        let word = self.chip().cpu().program_counter();
+        // Breakpoints count also where a step ends.
+        let hit = self.hit(2 * word);
+        if let Some(Motion::Step(plan)) = self.motion.clone() {
+            if self.ends(&plan) {
+                return Some(if hit.is_empty() {
+                    Reason::Step
+                } else {
+                    Reason::Breakpoint(hit)
+                });
+            }
+            if hit.is_empty() && plan.calls.contains(&word) && self.is_in(plan.cfa) {
+                self.enter(plan);
+            }
+        }
+        (!hit.is_empty()).then_some(Reason::Breakpoint(hit))
+    }
+
+    /// Whether it stands in the frame with this CFA.
+    fn is_in(&self, cfa: Option<u16>) -> bool {
+        cfa.is_none() || self.symbols.cfa(self.chip()) == cfa
+    }
+
+    fn ends(&self, plan: &Plan) -> bool {
+        let cpu = self.chip().cpu();
+        let word = cpu.program_counter();
+        let returned =
+            plan.returns == Some(word) && plan.cfa.is_none_or(|cfa| cpu.stack_pointer() >= cfa);
+        returned || plan.stops.contains(&word) && self.is_in(plan.cfa)
+    }
+
+    /// Follows a call into a function with lines; over any other.
+    fn enter(&mut self, plan: Plan) {
+        let before = self.chip().cpu().program_counter();
+        self.history.step();
+        let entry = self.address();
+        let function = self
+            .symbols
+            .function(entry)
+            .filter(|function| function.entry == entry);
+        let body = function.map(|function| self.symbols.body(function));
+        let next = match body.filter(|_| entry / 2 != before) {
+            Some(body) => Plan {
+                stops: [body / 2].into(),
+                ..Plan::default()
+            },
+            None => plan,
+        };
+        self.follow(next);
+    }
+}
+
+/// The function and the functions inlined at an instruction, the outermost first.
+fn calls(function: &Scope, address: u32) -> Vec<&Scope> {
+    function
+        .chain(address)
+        .into_iter()
+        .filter(|scope| scope.kind != Kind::Block)
+        .collect()
+}

@@ -1,0 +1,379 @@
+//! The debugger as an editor drives it: requests of the Debug Adapter Protocol in, responses and events out, as bytes.
+//!
+//! The caller passes what the client sends to [`Adapter::receive`], calls [`Adapter::turn`] as long as the program runs,
+//! and sends what [`Adapter::take_output`] gives.
+
+mod breakpoints;
+mod disassembly;
+mod inspect;
+mod message;
+
+pub use message::Launch;
+
+use crate::control::{Debugger, Reason, Step};
+use inspect::Reference;
+use message::{Frames, Initialize, Request, Stepping, framed};
+use rumbo_emulator::gdb::World;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+/// The only thread.
+const THREAD: i64 = 1;
+
+/// Who prepares what a client launches.
+pub trait Host {
+    /// The kind of world.
+    type World: World;
+
+    /// The program in its world, standing at its start, and notes for the user.
+    ///
+    /// # Errors
+    /// What is wrong with the program or its setting, and what to do.
+    fn launch(&mut self, launch: &Launch) -> Result<(Debugger<Self::World>, Vec<String>), String>;
+}
+
+/// An adapter with its client.
+pub struct Adapter<H: Host> {
+    host: H,
+    frames: Frames,
+    debugger: Option<Debugger<H::World>>,
+    launch: Launch,
+    lines_start_at: i64,
+    /// What numbers of variables stand for, since the program stands.
+    references: Vec<Reference>,
+    /// Why it cannot go on.
+    exception: Option<String>,
+    next_breakpoint: u64,
+    seq: i64,
+    output: Vec<u8>,
+    /// What follows the response: an event, a stop.
+    later: Option<&'static str>,
+    stop: Option<Reason>,
+    /// It runs to its first line.
+    enters: bool,
+    is_done: bool,
+}
+
+impl<H: Host> Adapter<H> {
+    /// An adapter before the first request.
+    pub fn new(host: H) -> Self {
+        Adapter {
+            host,
+            frames: Frames::default(),
+            debugger: None,
+            launch: Launch::default(),
+            lines_start_at: 1,
+            references: Vec::new(),
+            exception: None,
+            next_breakpoint: 1,
+            seq: 0,
+            output: Vec::new(),
+            later: None,
+            stop: None,
+            enters: false,
+            is_done: false,
+        }
+    }
+
+    /// The session is over.
+    pub fn is_done(&self) -> bool {
+        self.is_done
+    }
+
+    /// The program runs: [`Adapter::turn`] is to be called.
+    pub fn is_running(&self) -> bool {
+        self.debugger.as_ref().is_some_and(Debugger::is_running)
+    }
+
+    /// Drains what is to be sent to the client.
+    pub fn take_output(&mut self) -> Vec<u8> {
+        std::mem::take(&mut self.output)
+    }
+
+    /// Takes bytes of the client.
+    ///
+    /// # Errors
+    /// They are not of the protocol: nothing more can be understood.
+    pub fn receive(&mut self, bytes: &[u8]) -> Result<(), String> {
+        self.frames.take(bytes);
+        while let Some(request) = self.frames.next()? {
+            let answer = self.answer(&request);
+            let mut response = json!({
+                "type": "response", "request_seq": request.seq, "command": request.command, "success": answer.is_ok(),
+            });
+            match answer {
+                Ok(Value::Null) => {}
+                Ok(body) => response["body"] = body,
+                Err(error) => {
+                    response["message"] = json!(error);
+                    response["body"] = json!({"error": {"id": 1, "format": "{text}", "variables": {"text": error}, "showUser": true}});
+                }
+            }
+            self.send(response);
+            self.tell();
+            if let Some(name) = self.later.take() {
+                self.event(name, json!({}));
+            }
+            if let Some(reason) = self.stop.take() {
+                self.stopped(&reason);
+            }
+        }
+        Ok(())
+    }
+
+    /// Lets the program run for an interval of its time, if it runs.
+    pub fn turn(&mut self) {
+        let Some(debugger) = &mut self.debugger else {
+            return;
+        };
+        let reason = debugger.turn();
+        self.tell();
+        if let Some(reason) = reason {
+            self.stopped(&reason);
+        }
+    }
+
+    fn send(&mut self, mut message: Value) {
+        self.seq += 1;
+        message["seq"] = json!(self.seq);
+        self.output.extend(framed(&message));
+    }
+
+    fn event(&mut self, name: &str, body: Value) {
+        self.send(json!({"type": "event", "event": name, "body": body}));
+    }
+
+    /// Shows what the program and breakpoints have written.
+    fn tell(&mut self) {
+        let Some(debugger) = &mut self.debugger else {
+            return;
+        };
+        let (serial, log) = (debugger.take_serial(), debugger.take_log());
+        if !serial.is_empty() {
+            let text = String::from_utf8_lossy(&serial).replace("\r\n", "\n");
+            self.event("output", json!({"category": "stdout", "output": text}));
+        }
+        for line in log {
+            self.event(
+                "output",
+                json!({"category": "console", "output": format!("{line}\n")}),
+            );
+        }
+    }
+
+    fn stopped(&mut self, reason: &Reason) {
+        self.references.clear();
+        self.exception = None;
+        let (word, text, ids) = match reason {
+            Reason::Step if std::mem::take(&mut self.enters) => {
+                ("entry", String::new(), Vec::new())
+            }
+            Reason::Breakpoint(ids) => ("breakpoint", String::new(), ids.clone()),
+            Reason::Data(id) => ("data breakpoint", String::new(), vec![*id]),
+            Reason::Step => ("step", String::new(), Vec::new()),
+            Reason::Pause => ("pause", String::new(), Vec::new()),
+            Reason::Start => (
+                "entry",
+                "At the beginning: there is nothing before".into(),
+                Vec::new(),
+            ),
+            Reason::Over => (
+                "pause",
+                "The scenario's time is over; step back, restart, or end it".into(),
+                Vec::new(),
+            ),
+            Reason::Ended(verdict) => {
+                self.exception = Some(verdict.clone());
+                (
+                    "exception",
+                    format!("The program cannot go on: {verdict}"),
+                    Vec::new(),
+                )
+            }
+        };
+        let mut body = json!({"reason": word, "threadId": THREAD, "allThreadsStopped": true});
+        if !text.is_empty() {
+            body["description"] = json!(text);
+            body["text"] = json!(text);
+        }
+        if matches!(reason, Reason::Over | Reason::Start | Reason::Ended(_)) {
+            self.event(
+                "output",
+                json!({"category": "console", "output": format!("{text}\n")}),
+            );
+        }
+        if !ids.is_empty() {
+            body["hitBreakpointIds"] = json!(ids);
+        }
+        self.event("stopped", body);
+    }
+
+    fn answer(&mut self, request: &Request) -> Result<Value, String> {
+        let arguments = &request.arguments;
+        match &*request.command {
+            "initialize" => {
+                let initialize: Initialize = read(arguments)?;
+                self.lines_start_at = i64::from(initialize.lines_start_at_1.unwrap_or(true));
+                Ok(capabilities())
+            }
+            "launch" | "attach" => self.launch(read(arguments)?),
+            "configurationDone" => self.start(),
+            "setExceptionBreakpoints" => Ok(json!({"breakpoints": []})),
+            "threads" => Ok(json!({"threads": [{"id": THREAD, "name": "main"}]})),
+            "disconnect" | "terminate" => {
+                self.debugger = None;
+                self.later = Some("terminated");
+                self.is_done = request.command == "disconnect";
+                Ok(Value::Null)
+            }
+            "restart" => {
+                self.debugger()?.restart();
+                self.start()
+            }
+            "pause" => {
+                self.debugger()?.pause();
+                self.stop = Some(Reason::Pause);
+                Ok(Value::Null)
+            }
+            "exceptionInfo" => Ok(json!({
+                "exceptionId": "ended", "description": self.exception, "breakMode": "always",
+            })),
+            "setBreakpoints" => self.set_breakpoints(&read(arguments)?),
+            "setFunctionBreakpoints" => self.set_function_breakpoints(&read(arguments)?),
+            "setInstructionBreakpoints" => self.set_instruction_breakpoints(&read(arguments)?),
+            "breakpointLocations" => self.breakpoint_locations(&read(arguments)?),
+            "dataBreakpointInfo" => self.data_breakpoint_info(&read(arguments)?),
+            "setDataBreakpoints" => self.set_data_breakpoints(&read(arguments)?),
+            command => match command {
+                "stackTrace" | "scopes" | "variables" | "setVariable" | "setExpression"
+                | "evaluate" | "disassemble" | "continue" | "next" | "stepIn" | "stepOut"
+                | "stepBack" | "reverseContinue" => self.standing(command, arguments),
+                _ => Err(format!("the request {command} is not supported")),
+            },
+        }
+    }
+
+    /// Requests that are for a program that stands.
+    fn standing(&mut self, command: &str, arguments: &Value) -> Result<Value, String> {
+        if self.debugger()?.is_running() {
+            return match (command, read::<message::Place>(arguments)?) {
+                // What is typed goes to a running program too.
+                ("evaluate", place)
+                    if place.context == "repl" && place.expression.starts_with('>') =>
+                {
+                    self.evaluate(&place)
+                }
+                _ => Err("the program runs; pause it first".into()),
+            };
+        }
+        let by_instruction = read::<Stepping>(arguments)?.granularity == "instruction";
+        let step = |step| {
+            if by_instruction {
+                Step::Instruction
+            } else {
+                step
+            }
+        };
+        match command {
+            "stackTrace" => self.stack_trace(&read(arguments)?),
+            "scopes" => self.scopes(&read(arguments)?),
+            "variables" => self.variables(&read(arguments)?),
+            "setVariable" => self.set_variable(&read(arguments)?),
+            "setExpression" => self.set_expression(&read(arguments)?),
+            "evaluate" => self.evaluate(&read(arguments)?),
+            "disassemble" => self.disassemble(&read(arguments)?),
+            "next" => self.step(step(Step::Over)),
+            "stepIn" => self.step(step(Step::In)),
+            "stepOut" => self.step(Step::Out),
+            "stepBack" => {
+                let reason = self.debugger()?.step_back(step(Step::Over));
+                self.stop = Some(reason);
+                Ok(Value::Null)
+            }
+            "reverseContinue" => {
+                let reason = self.debugger()?.go_back();
+                self.stop = Some(reason);
+                Ok(Value::Null)
+            }
+            _ => {
+                self.references.clear();
+                self.debugger()?.go();
+                Ok(json!({"allThreadsContinued": true}))
+            }
+        }
+    }
+
+    fn debugger(&mut self) -> Result<&mut Debugger<H::World>, String> {
+        self.debugger
+            .as_mut()
+            .ok_or_else(|| "nothing is being debugged; launch a program first".into())
+    }
+
+    fn launch(&mut self, launch: Launch) -> Result<Value, String> {
+        let (debugger, notes) = self.host.launch(&launch)?;
+        self.debugger = Some(debugger);
+        self.launch = launch;
+        for note in notes {
+            self.event(
+                "output",
+                json!({"category": "console", "output": format!("{note}\n")}),
+            );
+        }
+        self.later = Some("initialized");
+        Ok(Value::Null)
+    }
+
+    /// Lets the program run, or to its first line.
+    fn start(&mut self) -> Result<Value, String> {
+        self.enters = self.launch.stop_on_entry;
+        let enters = self.enters;
+        let debugger = self.debugger()?;
+        match enters {
+            true => debugger.go_to_entry(),
+            false => debugger.go(),
+        }
+        Ok(Value::Null)
+    }
+
+    fn step(&mut self, step: Step) -> Result<Value, String> {
+        self.references.clear();
+        if let Some(reason) = self.debugger()?.step(step)? {
+            self.stop = Some(reason);
+        }
+        Ok(Value::Null)
+    }
+}
+
+fn read<T: DeserializeOwned>(arguments: &Value) -> Result<T, String> {
+    let arguments = match arguments {
+        Value::Null => json!({}),
+        other => other.clone(),
+    };
+    serde_json::from_value(arguments).map_err(|error| format!("its arguments: {error}"))
+}
+
+fn capabilities() -> Value {
+    let able = [
+        "supportsConfigurationDoneRequest",
+        "supportsFunctionBreakpoints",
+        "supportsConditionalBreakpoints",
+        "supportsHitConditionalBreakpoints",
+        "supportsLogPoints",
+        "supportsEvaluateForHovers",
+        "supportsStepBack",
+        "supportsSetVariable",
+        "supportsSetExpression",
+        "supportsRestartRequest",
+        "supportsTerminateRequest",
+        "supportsExceptionInfoRequest",
+        "supportsDataBreakpoints",
+        "supportsDisassembleRequest",
+        "supportsSteppingGranularity",
+        "supportsInstructionBreakpoints",
+        "supportsBreakpointLocationsRequest",
+    ];
+    able.into_iter()
+        .map(|name| (name.to_owned(), json!(true)))
+        .collect::<serde_json::Map<_, _>>()
+        .into()
+}

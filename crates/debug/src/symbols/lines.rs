@@ -1,0 +1,213 @@
+//! The table of lines: which line of which file each instruction is of.
+
+use super::dies::{Bytes, Dwarf};
+use gimli::{ColumnType, Unit};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// A file that the program was compiled from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SourceFile {
+    /// As the compiler named it, relative to the folder that it ran in or whole.
+    pub name: String,
+    /// Where it is here, if it is found.
+    pub path: Option<PathBuf>,
+}
+
+/// A line begins at an address.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// Of its first instruction [bytes].
+    pub address: u32,
+    /// Its file, in [`Lines::files`].
+    pub file: usize,
+    /// From 1; 0 where nothing is known from here on.
+    pub line: u32,
+    /// From 1; 0: unknown.
+    pub column: u32,
+    /// A place to stop at.
+    pub is_stop: bool,
+}
+
+/// The table.
+#[derive(Clone, Debug, Default)]
+pub struct Lines {
+    /// The files.
+    pub files: Vec<SourceFile>,
+    /// By address.
+    rows: Vec<Row>,
+}
+
+impl Lines {
+    /// Reads the tables of all units; gives for each unit the files by the numbers that it uses.
+    pub(super) fn read(
+        dwarf: &Dwarf<'_>,
+        units: &[Unit<Bytes<'_>>],
+        find: &dyn Fn(&str) -> Option<PathBuf>,
+    ) -> gimli::Result<(Lines, Vec<HashMap<u64, usize>>)> {
+        let (mut lines, mut numbers) = (Lines::default(), Vec::new());
+        for unit in units {
+            let mut known = HashMap::new();
+            if let Some(program) = unit.line_program.clone() {
+                let mut rows = program.rows();
+                let mut sequence = Vec::new();
+                while let Some((header, row)) = rows.next_row()? {
+                    let file = match known.get(&row.file_index()) {
+                        Some(file) => *file,
+                        None => {
+                            let name = name(dwarf, unit, header, row.file_index())?;
+                            let file = lines.file(name, find);
+                            known.insert(row.file_index(), file);
+                            file
+                        }
+                    };
+                    let column = match row.column() {
+                        ColumnType::LeftEdge => 0,
+                        ColumnType::Column(column) => column.get() as u32,
+                    };
+                    let line = row.line().map_or(0, |line| line.get() as u32);
+                    sequence.push(Row {
+                        address: row.address() as u32,
+                        file,
+                        line: if row.end_sequence() { 0 } else { line },
+                        column,
+                        is_stop: row.is_stmt() && !row.end_sequence(),
+                    });
+                    if row.end_sequence() {
+                        // What the linker left out is at 0.
+                        let is_left_out = sequence.first().is_none_or(|row| row.address == 0);
+                        if !is_left_out {
+                            lines.rows.append(&mut sequence);
+                        }
+                        sequence.clear();
+                    }
+                }
+            }
+            numbers.push(known);
+        }
+        // An end comes before what begins there.
+        lines.rows.sort_by_key(|row| (row.address, row.line != 0));
+        Ok((lines, numbers))
+    }
+
+    fn file(&mut self, name: String, find: &dyn Fn(&str) -> Option<PathBuf>) -> usize {
+        let known = self.files.iter().position(|file| file.name == name);
+        known.unwrap_or_else(|| {
+            let path = find(&name);
+            self.files.push(SourceFile { name, path });
+            self.files.len() - 1
+        })
+    }
+
+    /// The row that an instruction is of: of several at one address the last.
+    pub fn row(&self, address: u32) -> Option<Row> {
+        let after = self.rows.partition_point(|row| row.address <= address);
+        let row = self.rows.get(after.checked_sub(1)?)?;
+        (row.line != 0).then_some(*row)
+    }
+
+    /// Rows in a range of addresses that begin a line: the row before is of another.
+    pub(crate) fn begins(&self, addresses: std::ops::Range<u32>) -> impl Iterator<Item = Row> {
+        let from = self
+            .rows
+            .partition_point(|row| row.address < addresses.start);
+        let to = self
+            .rows
+            .partition_point(|row| row.address < addresses.end)
+            .max(from);
+        (from..to).filter_map(|at| {
+            let row = self.rows[at];
+            let before = at.checked_sub(1).map(|before| self.rows[before]);
+            let continues =
+                before.is_some_and(|before| before.line == row.line && before.file == row.file);
+            let is_last = self
+                .rows
+                .get(at + 1)
+                .is_none_or(|next| next.address != row.address);
+            (row.line != 0 && row.is_stop && is_last && !continues).then_some(row)
+        })
+    }
+
+    /// The rows that begin in a range of addresses.
+    pub(crate) fn within(&self, addresses: std::ops::Range<u32>) -> &[Row] {
+        let from = self
+            .rows
+            .partition_point(|row| row.address < addresses.start);
+        let to = self
+            .rows
+            .partition_point(|row| row.address < addresses.end)
+            .max(from);
+        &self.rows[from..to]
+    }
+
+    /// The file that a user means: the one at the path, else the one that ends in most of the same names.
+    pub fn file_named(&self, path: &Path) -> Option<usize> {
+        let at = self
+            .files
+            .iter()
+            .position(|file| file.path.as_deref() == Some(path));
+        let common = |file: &SourceFile| {
+            let own = Path::new(&file.name).components().rev();
+            own.zip(path.components().rev())
+                .take_while(|(own, given)| own == given)
+                .count()
+        };
+        at.or_else(|| {
+            let files = self
+                .files
+                .iter()
+                .enumerate()
+                .map(|(number, file)| (common(file), number));
+            files
+                .filter(|(common, _)| *common > 0)
+                .max_by_key(|(common, number)| (*common, usize::MAX - number))
+                .map(|(_, number)| number)
+        })
+    }
+
+    /// The lines of a file that have code.
+    pub(crate) fn with_code(&self, file: usize) -> std::collections::BTreeSet<u32> {
+        self.rows
+            .iter()
+            .filter(|row| row.file == file && row.is_stop)
+            .map(|row| row.line)
+            .collect()
+    }
+
+    /// The rows of a line, or of the next one that has any, by address.
+    pub(crate) fn of_line(&self, file: usize, line: u32) -> Vec<Row> {
+        let in_file = || {
+            self.rows
+                .iter()
+                .filter(move |row| row.file == file && row.is_stop && row.line >= line.max(1))
+        };
+        let Some(first) = in_file().map(|row| row.line).min() else {
+            return Vec::new();
+        };
+        in_file().filter(|row| row.line == first).copied().collect()
+    }
+}
+
+/// The name of a file: in its folder, unless that is the one that the compiler ran in.
+fn name(
+    dwarf: &Dwarf<'_>,
+    unit: &Unit<Bytes<'_>>,
+    header: &gimli::LineProgramHeader<Bytes<'_>>,
+    number: u64,
+) -> gimli::Result<String> {
+    let Some(file) = header.file(number) else {
+        return Ok(String::new());
+    };
+    let text = |value| -> gimli::Result<String> {
+        Ok(dwarf
+            .attr_string(unit, value)?
+            .to_string_lossy()
+            .into_owned())
+    };
+    let name = text(file.path_name())?;
+    let folder = match file.directory(header) {
+        Some(folder) if file.directory_index() != 0 => text(folder)?,
+        _ => return Ok(name),
+    };
+    Ok(Path::new(&folder).join(name).to_string_lossy().into_owned())
+}

@@ -1,0 +1,235 @@
+//! What the source calls things: lines, functions with their scopes, variables and types, of an ELF file.
+//!
+//! All of it is read once, into tables of their own ([`dies`] is only the way there): the file may be forgotten.
+
+mod dies;
+mod lines;
+mod scopes;
+mod types;
+
+pub use lines::{Lines, Row, SourceFile};
+pub(crate) use scopes::Variable;
+pub use scopes::{Kind, Scope};
+pub(crate) use types::{Type, TypeId, Types};
+
+use crate::location::Place;
+use crate::unwind::Unwinder;
+use dies::{Bytes, Dies};
+use gimli::{EndianSlice, LittleEndian, SectionId, constants};
+use object::{Object, ObjectSection};
+use rumbo_emulator::image::Image;
+use std::fmt;
+use std::path::PathBuf;
+
+/// Why an image cannot be debugged.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SymbolError {
+    /// It is no ELF file, or a broken one.
+    Elf(String),
+    /// It has no lines.
+    NoDebugInformation,
+    /// They cannot be read.
+    Dwarf(String),
+}
+
+impl fmt::Display for SymbolError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SymbolError::Elf(what) => write!(f, "it is no ELF file ({what}); give the .elf that the linker made"),
+            SymbolError::NoDebugInformation => f.write_str(
+                "it has no debugging information; compile and link it with -gdwarf-4 -Og (plain -g of gcc-avr 5.4 writes an \
+                 older kind), or give the folder of the sketch",
+            ),
+            SymbolError::Dwarf(what) => write!(f, "its debugging information cannot be read: {what}"),
+        }
+    }
+}
+
+impl std::error::Error for SymbolError {}
+
+/// The symbols of a program.
+#[derive(Debug)]
+pub struct Symbols {
+    /// Lines.
+    pub lines: Lines,
+    /// Functions by their first address.
+    pub functions: Vec<Scope>,
+    pub(crate) globals: Vec<Variable>,
+    /// The chip's registers, as avr-libc names them.
+    pub(crate) registers: Vec<Variable>,
+    pub(crate) types: Types,
+    pub(crate) unwinder: Unwinder,
+    pub(crate) image: Image,
+}
+
+impl Symbols {
+    /// Reads an ELF file; `find` gives the path of a file that the compiler named.
+    ///
+    /// # Errors
+    /// It is none, or has no debugging information.
+    pub fn read(
+        elf: &[u8],
+        find: &dyn Fn(&str) -> Option<PathBuf>,
+    ) -> Result<Symbols, SymbolError> {
+        let file = object::File::parse(elf).map_err(|error| SymbolError::Elf(error.to_string()))?;
+        let section = |name: &str| {
+            let section = file.section_by_name(name);
+            section
+                .and_then(|section| section.data().ok())
+                .unwrap_or_default()
+        };
+        let image = Image::parse(elf).map_err(|error| SymbolError::Elf(error.to_string()))?;
+        let symbols = Symbols::of_sections(&section, image, find);
+        let symbols = symbols.map_err(|error| SymbolError::Dwarf(error.to_string()))?;
+        match symbols.functions.is_empty() {
+            true => Err(SymbolError::NoDebugInformation),
+            false => Ok(symbols),
+        }
+    }
+
+    fn of_sections<'a>(
+        section: &impl Fn(&str) -> &'a [u8],
+        image: Image,
+        find: &dyn Fn(&str) -> Option<PathBuf>,
+    ) -> gimli::Result<Symbols> {
+        let load = |id: SectionId| -> gimli::Result<Bytes<'a>> {
+            Ok(EndianSlice::new(section(id.name()), LittleEndian))
+        };
+        let dwarf = gimli::Dwarf::load(load)?;
+        let (mut units, mut headers) = (Vec::new(), dwarf.units());
+        while let Some(header) = headers.next()? {
+            units.push(dwarf.unit(header)?);
+        }
+        let (lines, files) = Lines::read(&dwarf, &units, find)?;
+        let dies = Dies::read(&dwarf, &units)?;
+        let mut types = Types::default();
+        let (functions, globals) = scopes::read(&dies, &mut types, &files);
+        // Those of the chip are in a unit of avr-libc's own, without a file.
+        let of_chip = |variable: &Variable| units[variable.unit].name.is_none();
+        let (mut registers, globals): (Vec<_>, _) = globals.into_iter().partition(of_chip);
+        registers.retain(|register| !register.name.starts_with("__"));
+        let unwinder = Unwinder::read(section(SectionId::DebugFrame.name()), image.flash())?;
+        Ok(Symbols {
+            lines,
+            functions,
+            globals,
+            registers,
+            types,
+            unwinder,
+            image,
+        })
+    }
+
+    /// The function at an address.
+    pub fn function(&self, address: u32) -> Option<&Scope> {
+        self.functions
+            .iter()
+            .find(|function| function.contains(address))
+    }
+
+    /// The functions of this name, with or without its classes and namespaces.
+    pub fn functions_named<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Scope> {
+        let name = name.trim_end_matches("()");
+        self.functions.iter().filter(move |function| {
+            function.name == name
+                || function
+                    .name
+                    .strip_suffix(name)
+                    .is_some_and(|rest| rest.ends_with("::"))
+        })
+    }
+
+    /// The globals to list: each name once, and not the constants of headers, which every file has.
+    pub(crate) fn listed(&self) -> impl Iterator<Item = &Variable> {
+        let is_first = |index: usize, name: &str| {
+            self.globals[..index]
+                .iter()
+                .all(|before| before.name != name)
+        };
+        let is_alone = |name: &str| {
+            self.globals
+                .iter()
+                .filter(|other| other.name == name)
+                .nth(1)
+                .is_none()
+        };
+        self.globals
+            .iter()
+            .enumerate()
+            .filter_map(move |(index, variable)| {
+                let is_constant = matches!(variable.place, Place::Constant(_));
+                (is_first(index, &variable.name) && (!is_constant || is_alone(&variable.name)))
+                    .then_some(variable)
+            })
+    }
+
+    /// Where the body of a function begins: at its second line, behind what saves registers, or the first behind what is inlined
+    /// there.
+    pub fn body(&self, function: &Scope) -> u32 {
+        let range = function.entry
+            ..function
+                .ranges
+                .first()
+                .map_or(function.entry, |range| range.end);
+        let is_inlined = |scope: &&Scope| matches!(scope.kind, Kind::Inlined { .. });
+        // Where a function begins, the one before ends.
+        let rows = self.lines.within(range).iter().filter(|row| row.line != 0);
+        let mut later = rows.skip(1).map(|row| row.address);
+        let found = later.find(|address| !function.chain(*address).iter().any(is_inlined));
+        found.unwrap_or(function.entry)
+    }
+
+    /// The addresses for a breakpoint at a line or the next with code, and which line that is: in each scope the first, and
+    /// where that is the beginning of a function, that of its body.
+    pub fn stops_of_line(&self, file: usize, line: u32) -> (Vec<u32>, Option<u32>) {
+        let rows = self.lines.of_line(file, line);
+        let mut seen: Vec<(*const Scope, u32)> = Vec::new();
+        for row in &rows {
+            let scope = self.function(row.address).map(|function| {
+                function
+                    .chain(row.address)
+                    .last()
+                    .copied()
+                    .unwrap_or(function)
+            });
+            let key = scope.map_or(std::ptr::null(), std::ptr::from_ref);
+            if !seen.iter().any(|(scope, _)| *scope == key) {
+                seen.push((key, row.address));
+            }
+        }
+        let stop = |address: u32| match self.function(address) {
+            Some(function) if function.entry == address => self.body(function),
+            _ => address,
+        };
+        (
+            seen.into_iter().map(|(_, address)| stop(address)).collect(),
+            rows.first().map(|row| row.line),
+        )
+    }
+}
+
+/// A name with those of its classes and namespaces.
+fn qualified(dies: &Dies, number: usize) -> String {
+    let mut declared = number;
+    while let Some(origin) = dies.all[declared].origin {
+        declared = origin;
+    }
+    let mut name = dies.all[declared].name.clone().unwrap_or_default();
+    let mut parent = dies.all[declared].parent;
+    while let Some(number) = parent {
+        let die = &dies.all[number];
+        match (die.tag(), &die.name) {
+            (constants::DW_TAG_namespace, None) => name = format!("(anonymous namespace)::{name}"),
+            (
+                constants::DW_TAG_namespace
+                | constants::DW_TAG_structure_type
+                | constants::DW_TAG_class_type
+                | constants::DW_TAG_union_type,
+                Some(outer),
+            ) => name = format!("{outer}::{name}"),
+            _ => {}
+        }
+        parent = die.parent;
+    }
+    name
+}

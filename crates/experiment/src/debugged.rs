@@ -1,0 +1,130 @@
+//! A robot of a scenario with a program image, as a debugger holds it: a clone is a snapshot, and nothing is recorded.
+
+use crate::files::{FileError, Setup};
+use crate::operator::Operator;
+use crate::run::of_seed;
+use rumbo_emulator::chip::Chip;
+use rumbo_emulator::cpu::Stopped;
+use rumbo_emulator::gdb::{Machine, World};
+use rumbo_sim::Sim;
+use rumbo_sim::mega::{Mega, USB};
+use rumbo_sim::trace::SAMPLE_US;
+use std::sync::Arc;
+
+/// A robot and what its scenario sends to it: step for step as in a run.
+#[derive(Clone)]
+pub struct Debugged {
+    sim: Sim,
+    operator: Operator<Arc<Setup>>,
+    /// End of the current sample [us].
+    sample_us: u64,
+    end_us: u64,
+}
+
+impl Debugged {
+    /// With the robot at its start.
+    ///
+    /// # Errors
+    /// There is no image in the robot, or several robots; the setup's values do not fit together.
+    pub fn new(setup: &Arc<Setup>, seed: u64) -> Result<Self, FileError> {
+        let name = &setup.scenario.name;
+        if setup.robots().len() > 1 {
+            return Err(FileError::Setting(format!(
+                "scenario {name} has several robots; debug in one with one robot"
+            )));
+        }
+        let setup = of_seed(setup, seed)?;
+        let mut sim = setup.sim(seed)?;
+        if sim.mega().is_none() {
+            return Err(FileError::Setting(
+                "there is no program image to debug".into(),
+            ));
+        }
+        let mut operator = Operator::new(setup.clone());
+        operator.brief(&mut sim)?;
+        let end_us = (setup.scenario.duration_s * 1e6) as u64;
+        Ok(Debugged {
+            sample_us: sim.now_us(),
+            sim,
+            operator,
+            end_us,
+        })
+    }
+
+    fn mega(&self) -> &Mega {
+        match self.sim.mega() {
+            Some(mega) => mega,
+            None => unreachable!("there was one at the beginning"),
+        }
+    }
+
+    fn mega_mut(&mut self) -> &mut Mega {
+        match self.sim.mega_mut() {
+            Some(mega) => mega,
+            None => unreachable!("there was one at the beginning"),
+        }
+    }
+}
+
+impl Machine for Debugged {
+    fn chip(&self) -> &Chip {
+        self.mega().chip()
+    }
+
+    fn chip_mut(&mut self) -> &mut Chip {
+        self.mega_mut().chip_mut()
+    }
+
+    fn go(&mut self) -> Stopped {
+        if self.sim.now_us() >= self.sample_us {
+            self.operator.step(&mut self.sim);
+            self.sample_us = (self.sim.now_us() + SAMPLE_US).min(self.end_us);
+        }
+        self.sim.advance(self.sample_us);
+        if let Some(stopped) = self.mega_mut().take_halt() {
+            return stopped;
+        }
+        match self.chip().cpu().verdict() {
+            Some(verdict) => Stopped::Ended(verdict.clone()),
+            None => Stopped::Reached,
+        }
+    }
+
+    fn step(&mut self) -> Stopped {
+        self.mega_mut().step();
+        self.go()
+    }
+
+    fn is_over(&self) -> bool {
+        self.sim.now_us() >= self.end_us || self.sim.verdict().is_some()
+    }
+}
+
+impl World for Debugged {
+    fn go_to(&mut self, cycle: u64) -> Stopped {
+        self.mega_mut().halt_at(Some(cycle));
+        let stopped = self.go();
+        self.mega_mut().halt_at(None);
+        stopped
+    }
+
+    fn now_us(&self) -> u64 {
+        self.sim.now_us()
+    }
+
+    fn take_serial(&mut self) -> Vec<u8> {
+        self.mega_mut().take_console(USB)
+    }
+
+    fn type_in(&mut self, bytes: &[u8]) {
+        self.mega_mut().type_in(USB, bytes);
+    }
+
+    fn pins(&self) -> Vec<(String, bool)> {
+        let devices = self.chip().devices();
+        let signals = self.mega().firmware().signals().into_iter();
+        signals
+            .map(|(name, pin)| (name, devices.level(pin)))
+            .collect()
+    }
+}
