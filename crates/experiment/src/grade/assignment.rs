@@ -15,6 +15,7 @@
 //! scenario = "mode1"           # built in, or the path of a file beside this one
 //! public_seeds = [1, 2]
 //! hidden_seeds = [101, 102]
+//! visibility = "after_due_date"    # on Gradescope
 //! [[criterion]]
 //! title = "Stops at 30 cm"
 //! metric = "step1.steady_error_m"
@@ -24,6 +25,7 @@
 //! advice = "Look at the dead zone of the motors."
 //! ```
 
+use super::visibility::Visibility;
 use crate::files::read::{Allowed, Placed, Source, Table};
 use crate::files::{FileError, Library, Overrides, Setup, bounded, did_you_mean, near};
 use crate::metrics::Metrics;
@@ -81,6 +83,8 @@ pub struct Test {
     pub wiring: Option<String>,
     /// How much it counts beside the others.
     pub weight: f64,
+    /// When students see what it earned, if the file says it.
+    pub visibility: Option<Visibility>,
     /// Public seeds.
     pub public: Vec<u64>,
     /// Hidden seeds.
@@ -111,6 +115,8 @@ pub struct Criterion {
     pub full: f64,
     /// The value that earns none.
     pub none: f64,
+    /// When students see what it earned, if the file says it; otherwise as its test.
+    pub visibility: Option<Visibility>,
 }
 
 impl Criterion {
@@ -199,6 +205,13 @@ impl Assignment {
         Ok(assignment)
     }
 
+    /// When students see a line: as its criterion says, else its test.
+    #[must_use]
+    pub fn visibility(&self, line: &super::Line) -> Visibility {
+        let own = self.criteria[line.criterion].visibility;
+        own.or(self.tests[line.test].visibility).unwrap_or_default()
+    }
+
     /// Runs of each hand-in.
     pub fn runs(&self) -> usize {
         self.tests.iter().map(|test| test.seeds().count()).sum()
@@ -272,6 +285,7 @@ fn read_test(table: &Table<'_, '_>, library: &Library) -> Option<Test> {
     let title = words(table, &spanish, "title", false);
     let weight = table.number("weight", WEIGHT).unwrap_or(1.0);
     let wiring = table.text("wiring");
+    let visibility = Visibility::read(table);
     let public = seeds(table, "public_seeds");
     let hidden = seeds(table, "hidden_seeds");
     if public.is_empty() && table.has("public_seeds") {
@@ -314,6 +328,7 @@ fn read_test(table: &Table<'_, '_>, library: &Library) -> Option<Test> {
         setup,
         wiring: wiring.map(|placed| placed.value),
         weight,
+        visibility,
         public,
         hidden,
     })
@@ -370,6 +385,7 @@ fn read_criterion(table: &Table<'_, '_>, tests: &[Test], known: &[Metrics]) -> C
         points: table.required_number("points", POINTS),
         full: table.required_number("full", VALUE),
         none: table.required_number("none", VALUE),
+        visibility: Visibility::read(table),
     };
     if criterion.full == criterion.none && table.has("full") && table.has("none") {
         table.complain_here("full and none are the same: nothing lies between");
@@ -414,6 +430,7 @@ mod tests {
             points: 1.0,
             full,
             none,
+            visibility: None,
         };
         let less_is_better = criterion(1.0, 3.0);
         let shares = [0.0, 1.0, 1.5, 3.0, 9.0].map(|value| less_is_better.share(Some(value)));

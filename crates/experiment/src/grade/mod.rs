@@ -12,7 +12,9 @@
 mod assignment;
 mod mark;
 mod runs;
+mod visibility;
 
 pub use assignment::{Assignment, Criterion, Test, Words};
 pub use mark::{Line, Mark};
 pub use runs::{HandIn, grade};
+pub use visibility::Visibility;
