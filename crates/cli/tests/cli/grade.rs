@@ -154,6 +154,9 @@ fn for_an_uno(bench: &Path) -> String {
         &[
             ("board = \"mega\"", "board = \"uno\""),
             ("wiring = \"mode_1\"", "wiring = \"uno\""),
+            // Another number of those and of these.
+            ("public_seeds = [1, 2, 3]", "public_seeds = [1, 2]"),
+            ("hidden_seeds = [4, 7, 12]", "hidden_seeds = [4]"),
         ],
     );
     fs::write(bench.join("assignment.toml"), file).unwrap();
@@ -205,6 +208,11 @@ fn hand_ins_for_an_uno_are_compiled_and_driven_on_one() {
     assert!(points("model") > 8.5, "{}", results["model"]);
     assert_eq!(points("lazy"), 0.0);
     // What students read there is in their language, whole.
+    let seeds = results["lazy"]["output"].as_str().unwrap();
+    assert!(
+        seeds.starts_with("Pruebas: 2 con semillas públicas y 1 con ocultas"),
+        "{seeds}"
+    );
     let lines = results["lazy"]["tests"].as_array().unwrap().iter();
     for line in lines.map(|line| line["output"].as_str().unwrap()) {
         assert!(
