@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use rumbo_experiment::grade::{Assignment, Mark};
 use rumbo_report::Stamp;
-use rumbo_report::grade::{earned_in_words, noted, of, seeds_in_words};
+use rumbo_report::grade::{earned_in_words, noted, of, place_in_words, seeds_in_words};
 use rumbo_report::text::Language;
 use serde_json::json;
 
@@ -26,6 +26,9 @@ pub(super) fn results(
                 false => of(language, &criterion.advice),
             };
             let earned = earned_in_words(assignment, line, language);
+            let place = place_in_words(line, language);
+            let mut said = vec![earned.as_str(), &place, advice];
+            said.retain(|line| !line.is_empty());
             json!({
                 "name": of(language, &criterion.title),
                 "score": cents(line.points),
@@ -33,7 +36,7 @@ pub(super) fn results(
                 "status": if line.is_full() { "passed" } else { "failed" },
                 "extra_data": { "metric": criterion.metric },
                 "visibility": assignment.visibility(line).name(),
-                "output": format!("{earned}\n{advice}").trim_end(),
+                "output": said.join("\n"),
             })
         })
         .collect();

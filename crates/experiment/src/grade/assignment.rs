@@ -25,6 +25,7 @@
 //! advice = "Look at the dead zone of the motors."
 //! ```
 
+use super::program;
 use super::visibility::Visibility;
 use crate::files::read::{Allowed, Placed, Source, Table};
 use crate::files::{FileError, Library, Overrides, Setup, bounded, did_you_mean, near};
@@ -157,7 +158,7 @@ impl Assignment {
         Self::parse(path, &text)
     }
 
-    fn parse(path: &str, text: &str) -> Result<Self, FileError> {
+    pub(super) fn parse(path: &str, text: &str) -> Result<Self, FileError> {
         let source = Source::new(path, text);
         let parsed = source.parse()?;
         let root = source.root(&parsed);
@@ -403,6 +404,9 @@ fn not_measured(criterion: &Criterion, known: &[Metrics]) -> Option<String> {
     let metric = criterion.metric.as_str();
     if metric == "telemetry_hz" || metric.contains("odometry") {
         return Some("is what the program says of itself; marks come from ground truth".into());
+    }
+    if program::is_of_program(metric) {
+        return program::unknown(metric);
     }
     let tests = known.iter().enumerate();
     let lacking = tests
