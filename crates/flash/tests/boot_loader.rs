@@ -279,7 +279,7 @@ fn a_byte_that_is_read_back_wrong_is_named_with_its_address() {
         return;
     };
     for at in [[9, 40], [PAGE - 2, PAGE - 1]] {
-        let error = damaged(&boot_loader, at);
+        let error = damaged(&boot_loader, at).expect("it is not written");
         let address = 2 * PAGE + at[0];
         let written = program(4 * PAGE)[address];
         assert_eq!(
@@ -295,8 +295,9 @@ fn a_byte_that_is_read_back_wrong_is_named_with_its_address() {
     }
 }
 
-/// Two bits flip on the way to the board, at these places of the third page: the XOR of the message stays.
-fn damaged(boot_loader: &Image, at: [usize; 2]) -> FlashError {
+/// Two bits flip on the way to the board, at these places of the third page: the XOR of the message stays. `None`: it
+/// is written all the same.
+fn damaged(boot_loader: &Image, at: [usize; 2]) -> Option<FlashError> {
     let mut board = Board::new(boot_loader, &[]);
     let mut programmer = programmer(&program(4 * PAGE));
     let (mut now_us, mut pages) = (0, 0);
@@ -314,12 +315,12 @@ fn damaged(boot_loader: &Image, at: [usize; 2]) -> FlashError {
                 now_us += STEP_US;
                 programmer.receive(&board.pass(STEP_US));
             }
-            Ok(Action::Done) => panic!("it is written"),
+            Ok(Action::Done) => return None,
             Err(error) => break error,
         }
     };
     assert_eq!(board.flash()[..PAGE], HALT.repeat(PAGE / 2));
-    error
+    Some(error)
 }
 
 #[test]
