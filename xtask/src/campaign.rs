@@ -6,6 +6,7 @@
 //! Runs and requirements are those of `rumbo_experiment::campaign`. Each program is built in release mode, and its
 //! output is printed as it comes.
 
+use crate::gradescope;
 use crate::project::{Project, shown};
 use crate::release;
 use crate::test::{Stop, tools, wheel};
@@ -17,7 +18,7 @@ type Part = (
     fn(&Project, Option<u32>) -> Result<bool, String>,
 );
 
-const PARTS: [Part; 13] = [
+const PARTS: [Part; 14] = [
     // Frames over a link with faults.
     ("link", |project, _| {
         let example = ["rumbo-session", "--example", "link_campaign"];
@@ -39,6 +40,11 @@ const PARTS: [Part; 13] = [
         tools::bubblewrap(project).map_err(said)?;
         let tests = made_longer(project, "grade::", "RUMBO_FULL", "1")?;
         Ok(tool(project, "grade", &[])? && tests)
+    }),
+    // Gradescope's autograder in a system like its container.
+    ("gradescope", |project, _| {
+        gradescope::try_it(project).map_err(said)?;
+        Ok(true)
     }),
     // Simulated robots with known parameters, driven and identified.
     ("identify", |project, seeds| {

@@ -15,6 +15,7 @@ mod fidelity;
 mod figures;
 mod firmware;
 mod fuzz;
+mod gradescope;
 mod lab;
 mod markdown;
 mod memoria;

@@ -5,6 +5,7 @@
 //! materials (CycloneDX); installers; checksums. `.github/workflows/release.yml` does it on each system.
 
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -374,10 +375,13 @@ pub(crate) fn clean_system(
     Ok(root)
 }
 
-/// Runs a command in such a system, without a network.
+/// Runs a command in such a system, without a network, among its own processes.
 pub(crate) fn inside(project: &Project, root: &Path, words: &[&str]) -> Result<(), String> {
+    let mut proc = OsString::from("--mount-proc=");
+    proc.push(root.join("proc"));
     let mut inside = project.command("unshare");
-    run_command(inside.args(["--net", "chroot"]).arg(root).args(words))
+    inside.args(["--net", "--pid", "--fork"]).arg(proc);
+    run_command(inside.arg("chroot").arg(root).args(words))
 }
 
 /// Has cargo pack the crates that others can use alone, and build them from what it packed.

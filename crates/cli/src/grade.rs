@@ -2,7 +2,9 @@
 //!
 //! The output does not depend on time, path or number of threads: the same hand-in gets the same bytes.
 
+mod autograder;
 mod exports;
+mod gradescope;
 mod hand_ins;
 mod likeness;
 
@@ -37,12 +39,21 @@ const SIMILAR: (&str, &str) = ("similar", "html");
 /// Most names said of what is no hand-in.
 const MOST_NAMED: usize = 20;
 
-/// Compiles, drives, marks, writes, and prints a line for each hand-in.
+/// Compiles, drives, marks, writes, and prints a line for each hand-in; or is Gradescope's autograder, or writes it.
 pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
+    match (&args.gradescope, &args.autograder, &args.folder) {
+        (Some(archive), _, _) => autograder::pack(args, archive),
+        (_, Some(place), _) => autograder::run(args, place),
+        (_, _, Some(folder)) => grade_class(args, folder),
+        (None, None, None) => Err(Failure::Input("give the folder with the hand-ins".into())),
+    }
+}
+
+fn grade_class(args: &GradeArgs, folder: &Path) -> Result<(), Failure> {
     let assignment = Assignment::read(&output::shown(&args.assignment))?;
     let stamp = check_places(args, &assignment)?;
     set_threads(args.threads)?;
-    let hand_ins::Class { found, others, .. } = &hand_ins::find(&args.folder)?;
+    let hand_ins::Class { found, others, .. } = &hand_ins::find(folder)?;
     let files = file_names(found.iter().map(hand_ins::Found::name));
     check_files(args, &assignment, &stamp, &files)?;
     if !others.is_empty() {
@@ -59,7 +70,12 @@ pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
     // Images need no compiler.
     let compiler = match sketches {
         0 => None,
-        _ => Some(compiler(args, &assignment)?),
+        _ => Some(compiler(&assignment, |toolchain, limits| {
+            match args.trust {
+                true => Ok(Sandbox::trusting(limits)),
+                false => Sandbox::walled(toolchain, limits),
+            }
+        })?),
     };
     let notes = class_notes(&assignment, compiler.as_ref());
     let progress = progress_bar(sketches, "{bar:40} {pos}/{len} compiled, {eta} left");
@@ -91,8 +107,11 @@ pub(crate) fn grade(args: &GradeArgs) -> Result<(), Failure> {
     report(args, &marks, &notes)
 }
 
-/// The compiler, in the sandbox unless the source is trusted.
-fn compiler(args: &GradeArgs, assignment: &Assignment) -> Result<Compiler, SketchError> {
+/// The compiler, in a sandbox.
+fn compiler(
+    assignment: &Assignment,
+    sandbox: impl FnOnce(&Toolchain, Limits) -> Result<Sandbox, SketchError>,
+) -> Result<Compiler, SketchError> {
     let robot = assignment.tests.first().map(|test| &test.setup.robot);
     let board = robot.map(|robot| robot.board).unwrap_or_default();
     let toolchain = Toolchain::find()?;
@@ -100,10 +119,7 @@ fn compiler(args: &GradeArgs, assignment: &Assignment) -> Result<Compiler, Sketc
         time: Duration::from_secs_f64(assignment.compile_s),
         ..Limits::default()
     };
-    let sandbox = match args.trust {
-        true => Sandbox::trusting(limits),
-        false => Sandbox::walled(&toolchain, limits)?,
-    };
+    let sandbox = sandbox(&toolchain, limits)?;
     let cache = rumbo_sketch::cache();
     Compiler::new(crate::sketch::target(board), toolchain, sandbox, cache)
 }
@@ -192,7 +208,7 @@ fn write(
     for (mark, file) in marks.iter().zip(files) {
         let page = student(assignment, mark, notes, language);
         place::write(&out(&inner(STUDENTS, file)), stamp.put_on(page))?;
-        let json = exports::gradescope(assignment, mark, notes, language, stamp)?;
+        let json = gradescope::results(assignment, mark, notes, language, stamp)?;
         place::write(&out(&inner(GRADESCOPE, file)), json)?;
     }
     let links: Vec<String> = files.iter().map(|file| inner(STUDENTS, file)).collect();

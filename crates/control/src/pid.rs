@@ -204,6 +204,15 @@ mod tests {
     }
 
     #[test]
+    fn a_transfer_knows_the_measurement_that_the_derivative_goes_on_from() {
+        let mut state = PidState::default();
+        PID.transfer(&mut state, 0.3, 0.2, 0.2, 0.0);
+        let output = PID.step(&mut state, 0.21, 0.21, 0.0, 0.01).unwrap();
+        // 0.1 s times 1/s.
+        assert!((output - 0.2).abs() < 1e-5, "{output}");
+    }
+
+    #[test]
     fn new_integral_and_derivative_gains_make_no_bump() {
         let mut state = PidState::default();
         run(&PID, &mut state, 0.1, 0.0, 50);

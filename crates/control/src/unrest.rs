@@ -103,6 +103,11 @@ mod tests {
         assert_eq!(unrest_after(spiking).1, Err(Fault::SonarFaulty));
         let rare = (0..600u16).map(|n| Range::Valid(if n % 20 == 0 { 0.2 } else { 0.5 }));
         assert_eq!(unrest_after(rare).1, Ok(()));
+        // What no sonar can answer weighs twice as much.
+        assert_eq!(unrest_after([Range::Faulty; 3]).1, Ok(()));
+        assert_eq!(unrest_after([Range::Faulty; 4]).1, Err(Fault::SonarFaulty));
+        assert_eq!(unrest_after([Range::Clear; 7]).1, Ok(()));
+        assert_eq!(unrest_after([Range::Clear; 8]).1, Err(Fault::SonarFaulty));
         let (unrest, end) = unrest_after([Range::Clear; 3]);
         assert_eq!(
             (end, unrest.cause(Fault::WallLost)),

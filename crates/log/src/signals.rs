@@ -254,4 +254,79 @@ mod tests {
         assert_eq!(json[column("range_front_m")], 0.3123);
         assert!(json[column("true_x_m")].is_null());
     }
+
+    #[test]
+    fn every_column_is_of_its_own_signal() {
+        let wheels = |left: f32| Wheels {
+            left,
+            right: left + 1.0,
+        };
+        // The number of its column everywhere.
+        let truth = |pose: f64, wheels: f64, ranges: f64, servo_rad: f64| Truth {
+            pose: MapPose {
+                x_m: pose,
+                y_m: pose + 1.0,
+                heading_rad: pose + 2.0,
+            },
+            wheel_rad_s: Wheels {
+                left: wheels,
+                right: wheels + 1.0,
+            },
+            range_m: [0.0, 1.0, 2.0].map(|sonar| Some(ranges + sonar)),
+            servo_rad,
+            contact: true,
+            battery_v: 99.0,
+        };
+        let range = |range_m| AgedRange {
+            range: Range::Valid(range_m),
+            age_ticks: 0,
+        };
+        let sample = Sample {
+            t_ms: 0,
+            mode: ModeId::default(),
+            reference: wheels(5.0),
+            heading_ref_rad: 14.0,
+            telemetry: Telemetry {
+                pose: rumbo_control::Pose {
+                    x_m: 7.0,
+                    y_m: 8.0,
+                    heading_rad: 9.0,
+                },
+                servo_rad: 18.0,
+                wheel_rad_s: [wheels(19.0), wheels(21.0)],
+                wheel_ref_rad_s: wheels(23.0),
+                ranges: [27.0, 28.0, 29.0].map(range),
+                ..Telemetry::default()
+            },
+            origin: MapPose {
+                x_m: 15.0,
+                y_m: 16.0,
+                heading_rad: 17.0,
+            },
+            spread: Spread {
+                x_m: 10.0,
+                y_m: 11.0,
+                correlation: 12.0,
+                heading_rad: 13.0,
+            },
+            truth: Some([truth(0.0, 33.0, 0.0, 0.0), truth(30.0, 35.0, 37.0, 40.0)]),
+            ghost: Some(truth(42.0, 45.0, 47.0, 0.0)),
+        };
+        for (column, signal) in SIGNALS.iter().enumerate() {
+            let is_number = ![
+                "t_s",
+                "mode",
+                "state",
+                "armed",
+                "faulted",
+                "left_pwm",
+                "right_pwm",
+                "contact",
+            ]
+            .contains(&signal.name);
+            if is_number {
+                assert_eq!((signal.value)(&sample), column as f32, "{}", signal.name);
+            }
+        }
+    }
 }

@@ -252,4 +252,18 @@ mod tests {
         );
         assert_eq!(arrivals.len(), 960 - 192);
     }
+
+    #[test]
+    fn each_direction_has_faults_of_its_own() {
+        let arrived = |direction| {
+            let params = LinkParams {
+                loss_rate: 0.5,
+                ..LinkParams::default()
+            };
+            let mut link = Link::new(params, Noise::new(1, 0), direction);
+            link.send(0, &(0..64).collect::<Vec<u8>>());
+            received(&mut link, u64::MAX)
+        };
+        assert_ne!(arrived(Direction::ToRobot), arrived(Direction::ToStation));
+    }
 }

@@ -114,7 +114,7 @@ fn of_image(line: &str) -> Option<Complaint> {
 }
 
 /// Notes beside a run or a hand-in, with names where values stand, and their names in `messages.md`.
-const NOTES: [(&str, &str); 11] = [
+const NOTES: [(&str, &str); 15] = [
     (
         "firmware {name}: it never drove a motor; are its pins those of wiring {wiring}? (docs/emulator.md)",
         "no-motor",
@@ -155,6 +155,22 @@ const NOTES: [(&str, &str); 11] = [
     (
         "it switches the robot's pins more than {most} times a second, which no motor follows; the run was ended",
         "too-many-edges",
+    ),
+    (
+        "it waits {count} times, the longest time in {function}",
+        "busy-waits",
+    ),
+    (
+        "interrupt {name} takes {cycles} cycles at most, in {count} calls",
+        "long-interrupt",
+    ),
+    (
+        "{function} is called by {caller}, {cycles} cycles in all",
+        "called-for-cycles",
+    ),
+    (
+        "{function} is called by {caller}, {calls} times in all",
+        "called-times",
     ),
 ];
 
@@ -265,6 +281,22 @@ mod tests {
             (
                 "it switches the robot's pins more than 25000 times a second, which no motor follows; the run was ended".into(),
                 "conmuta los pines del robot más de 25000 veces por segundo",
+            ),
+            (
+                "it waits 40 times, the longest time in delay".into(),
+                "espera 40 veces, la más larga en delay",
+            ),
+            (
+                "interrupt TIMER1_COMPA takes 900 cycles at most, in 12 calls".into(),
+                "la interrupción TIMER1_COMPA tarda 900 ciclos como máximo, en 12 llamadas",
+            ),
+            (
+                "__mulsf3 is called by filter, 900 cycles in all".into(),
+                "filter llama a __mulsf3, 900 ciclos en total",
+            ),
+            (
+                "malloc is called by loop, 9 times in all".into(),
+                "loop llama a malloc, 9 veces en total",
             ),
         ] {
             let spanish = complaint(Language::Spanish, &line);

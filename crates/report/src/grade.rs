@@ -13,7 +13,7 @@ use crate::metric_names::{Shown, shown};
 use crate::signals::{CM, Outcome, RPM};
 use crate::summary::{figure, heading, shell};
 use crate::table::{Cell, Tone, table};
-use crate::text::{Language, Text, escape, put, word};
+use crate::text::{Language, Text, capital, escape, put, word};
 use pulldown_cmark::{Event, Options, Parser, html};
 use rumbo_control::mode::ReferenceKind;
 use rumbo_control::rig::Rig;
@@ -102,6 +102,15 @@ pub fn earned_in_words(assignment: &Assignment, line: &Line, language: Language)
         .each_ref()
         .map(|(name, value)| (*name, value.as_str()));
     EARNED.with(language, &values)
+}
+
+/// What was seen in the program where a line of the rubric lost points, in a language; empty where it lost none.
+#[must_use]
+pub fn place_in_words(line: &Line, language: Language) -> String {
+    match &line.place {
+        Some(place) if !line.is_full() => noted(language, place),
+        _ => String::new(),
+    }
 }
 
 /// From where on a line has all points.
@@ -326,9 +335,20 @@ fn advice(assignment: &Assignment, mark: &Mark, language: Language) -> String {
             !of(language, &one.advice).is_empty() && own.any(|line| !line.is_full())
         });
     let items: String = lost
-        .map(|(_, one)| {
+        .map(|(number, one)| {
             let (title, advice) = (of(language, &one.title), of(language, &one.advice));
-            format!("<li><b>{}.</b> {}</li>\n", escape(title), escape(advice))
+            let own = mark.lines.iter().filter(|line| line.criterion == number);
+            let places = own.map(|line| place_in_words(line, language));
+            let place = places
+                .filter(|place| !place.is_empty())
+                .map(|place| place + ". ");
+            let place: String = place.take(1).collect();
+            format!(
+                "<li><b>{}.</b> {}{}</li>\n",
+                escape(title),
+                escape(&capital(&place)),
+                escape(advice)
+            )
         })
         .collect();
     match items.is_empty() {

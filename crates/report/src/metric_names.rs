@@ -104,8 +104,16 @@ const KNOWN: &[Known] = &[
     known("right_dead_zone_duty", word("right-wheel-starts"), PWM, ""),
     known("left_stop_duty", word("left-wheel-stops"), PWM, ""),
     known("right_stop_duty", word("right-wheel-stops"), PWM, ""),
+    known("wait_longest_s", word("longest-wait"), 1000.0, "ms"),
+    known("wait_share", word("time-spent-waiting"), 100.0, "%"),
+    known("turn_longest_s", word("longest-turn"), 1000.0, "ms"),
+    known("interrupt_longest_s", word("longest-interrupt"), 1e6, "µs"),
+    known("interrupt_float_s", word("float-in-interrupts"), 1e6, "µs"),
+    known("stack_bytes", word("depth-of-the-stack"), 1.0, "bytes"),
+    known("heap_calls", word("calls-of-the-heap"), 1.0, ""),
 ];
 
+const PROGRAM: Text = word("of-the-program");
 const STEP: Text = word("step-number");
 const GOAL: Text = word("goal-number");
 const TURN: Text = word("turn-number");
@@ -158,6 +166,8 @@ pub(crate) fn shown(language: Language, scenario: &ScenarioFile, key: &str) -> O
         )
     } else if prefix == "after_3_m" {
         (AFTER.of(language).to_owned(), stem)
+    } else if prefix == "program" {
+        (PROGRAM.of(language).to_owned(), stem)
     } else if prefix == "end" {
         (END.of(language).to_owned(), stem)
     } else if let Some(index) = turn.filter(|index| !index.is_empty()) {

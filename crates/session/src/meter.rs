@@ -59,4 +59,13 @@ mod tests {
         assert!((rate - 1_000.0).abs() < 20.0, "{rate}");
         assert_eq!(meter.per_second(8_000_000), 0.0);
     }
+
+    #[test]
+    fn the_first_bytes_are_no_burst() {
+        let mut meter = Meter::default();
+        meter.add(30, 1_000);
+        assert_eq!(meter.per_second(2_000), 120.0);
+        meter.add(30, 501_000);
+        assert_eq!(meter.per_second(501_000), 120.0);
+    }
 }

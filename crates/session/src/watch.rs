@@ -169,6 +169,10 @@ mod tests {
             slow.contains("240 bytes/s") && slow.contains("8 Hz"),
             "{slow}"
         );
+        // The least that is named is the least that is taken.
+        let refused = check_baud(939).unwrap_err().to_string();
+        assert!(refused.contains("at least 940"), "{refused}");
+        assert!(check_baud(940).is_ok());
         assert!(
             check_baud(300)
                 .unwrap_err()

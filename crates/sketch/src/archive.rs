@@ -1,12 +1,13 @@
 //! Zip archives of people whom nobody trusts, unpacked into a folder: regular files with plain names, bounded in number and
-//! size, and nothing else.
+//! size, and nothing else. And archives of ours.
 
 use crate::error::SketchError;
 use std::fs::{self, File, OpenOptions};
-use std::io::{ErrorKind, Read};
+use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
-use zip::ZipArchive;
 use zip::result::ZipError;
+use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
 
 /// What an archive may hold.
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +90,32 @@ pub fn unpack(archive: &Path, into: &Path, bounds: Bounds) -> Result<Vec<String>
     Ok(left_out)
 }
 
+/// A file in an archive of ours.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Its path in it.
+    pub name: String,
+    /// Its contents.
+    pub bytes: Vec<u8>,
+    /// It can be run.
+    pub runs: bool,
+}
+
+/// Writes an archive; the same files give the same bytes.
+///
+/// # Errors
+/// It cannot be written.
+pub fn pack(archive: &Path, entries: &[Entry]) -> std::io::Result<()> {
+    let mut zip = ZipWriter::new(File::create(archive)?);
+    for Entry { name, bytes, runs } in entries {
+        let mode = if *runs { 0o755 } else { 0o644 };
+        let options = SimpleFileOptions::default().unix_permissions(mode);
+        zip.start_file(name.as_str(), options)?;
+        zip.write_all(bytes)?;
+    }
+    zip.finish()?.sync_all()
+}
+
 fn shown(archive: &Path) -> String {
     let name = archive.file_name().unwrap_or_default();
     name.to_string_lossy().into_owned()
@@ -108,9 +135,7 @@ fn wrong(archive: &Path, error: &ZipError) -> SketchError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::{Cursor, Write};
-    use zip::ZipWriter;
-    use zip::write::SimpleFileOptions;
+    use std::io::Cursor;
 
     fn archive(entries: &[(&str, &[u8])]) -> Vec<u8> {
         let mut zip = ZipWriter::new(Cursor::new(Vec::new()));

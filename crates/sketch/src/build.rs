@@ -276,7 +276,14 @@ impl<'a> Build<'a> {
         let copy = |mut from: fs::File| {
             let folder = to.parent().unwrap_or(to);
             fs::create_dir_all(folder)?;
-            let mut file = tempfile::NamedTempFile::new_in(folder)?;
+            let mut part = tempfile::Builder::new();
+            #[cfg(unix)]
+            {
+                use std::os::unix::fs::PermissionsExt;
+                // As any new file: the next tool may be another user's.
+                part.permissions(fs::Permissions::from_mode(0o666));
+            }
+            let mut file = part.tempfile_in(folder)?;
             std::io::copy(&mut from, &mut file)?;
             file.persist(to).map_err(|error| error.error)
         };

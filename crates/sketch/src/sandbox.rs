@@ -4,7 +4,8 @@
 //! Every run is bounded in time, memory, processes, size of files and output, and is ended with all its children. For
 //! source that is not trusted, `bwrap` also takes away network, processes, and every file but the compiler, the core
 //! and the sketch. All of them are read-only: a run writes one file, which we have made, and its own bounded `/tmp`,
-//! which ends with it.
+//! which ends with it. Where a container allows no `bwrap` and is thrown away afterwards, root compiles as the user
+//! `nobody`: a run reads what everybody may, so that what it must not see is closed to others.
 
 use crate::census;
 use crate::diagnostics::plain;
@@ -25,12 +26,35 @@ const COUNT: u32 = 5;
 /// Path of the build in the sandbox.
 const INSIDE: &str = "/build";
 
+/// The user and the group `nobody`, and what makes a process theirs; it is of util-linux, which every Linux has.
+#[cfg(unix)]
+const NOBODY: u32 = 65_534;
+#[cfg(unix)]
+const AS_NOBODY: [&str; 6] = [
+    "setpriv",
+    "--reuid=65534",
+    "--regid=65534",
+    "--clear-groups",
+    "--no-new-privs",
+    "--",
+];
+
 /// How a compiler is run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sandbox {
-    /// `bwrap` with what it shows; `None` for source that is trusted.
-    walls: Option<Vec<OsString>>,
+    walls: Walls,
     limits: Limits,
+}
+
+/// What keeps a compiler from what is not its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Walls {
+    /// Nothing: the source is trusted.
+    None,
+    /// `bwrap` with what it shows.
+    Bwrap(Vec<OsString>),
+    /// It runs as `nobody`.
+    User,
 }
 
 /// A run of a program.
@@ -57,9 +81,21 @@ impl Sandbox {
     #[must_use]
     pub fn trusting(limits: Limits) -> Self {
         Self {
-            walls: None,
+            walls: Walls::None,
             limits,
         }
+    }
+
+    /// Without namespaces, as the user `nobody`: for root in a container that is thrown away.
+    ///
+    /// # Errors
+    /// If this process is not root's, or the compiler does not run for that user.
+    pub fn as_nobody(toolchain: &Toolchain, limits: Limits) -> Result<Self, SketchError> {
+        let sandbox = Self {
+            walls: Walls::User,
+            limits,
+        };
+        sandbox.probe(toolchain).map(|()| sandbox)
     }
 
     /// Isolated with `bwrap`.
@@ -74,7 +110,7 @@ impl Sandbox {
         }
         let walls = walls(bwrap, toolchain, limits)?;
         let sandbox = |more: &[&str]| Self {
-            walls: Some(
+            walls: Walls::Bwrap(
                 walls
                     .iter()
                     .cloned()
@@ -124,28 +160,17 @@ impl Sandbox {
         args: &[OsString],
         deadline: Instant,
     ) -> Result<Done, SketchError> {
-        let mut line: Vec<OsString> = Vec::new();
-        if let Some(walls) = &self.walls {
-            line.extend_from_slice(walls);
-            for path in task.reads {
-                line.extend(["--ro-bind".into(), path.into(), path.into()]);
-            }
-            line.extend(["--ro-bind".into(), task.build.into(), INSIDE.into()]);
-            if let Some(product) = task.writes {
-                let path = task.build.join(product);
-                File::create_new(&path).map_err(|error| SketchError::file(&path, error))?;
-                let inside = Path::new(INSIDE).join(product);
-                line.extend(["--bind".into(), path.into(), inside.into()]);
-            }
-            // The root of all of these, where it could make files without bound.
-            line.extend(["--remount-ro", "/"].map(OsString::from));
-            line.extend(["--chdir".into(), Path::new(INSIDE).join(task.inner).into()]);
-        }
+        let place = task.build.join(task.inner);
+        let mut line = match &self.walls {
+            Walls::None => Vec::new(),
+            Walls::Bwrap(walls) => shown(walls, task)?,
+            Walls::User => given_to_nobody(task)?,
+        };
         line.push(program.into());
         line.extend_from_slice(args);
         let mut command = self.limited(&line);
         command
-            .current_dir(task.build.join(task.inner))
+            .current_dir(place)
             .env("LC_ALL", "C")
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
@@ -234,6 +259,57 @@ impl Sandbox {
         }
         Ok(Done { status, output })
     }
+}
+
+/// `bwrap` with what it shows of a build.
+fn shown<'a>(
+    walls: &[OsString],
+    task: Task<'a, impl Iterator<Item = &'a Path>>,
+) -> Result<Vec<OsString>, SketchError> {
+    let mut line = walls.to_vec();
+    for path in task.reads {
+        line.extend(["--ro-bind".into(), path.into(), path.into()]);
+    }
+    line.extend(["--ro-bind".into(), task.build.into(), INSIDE.into()]);
+    if let Some(product) = task.writes {
+        let path = made(task.build, product)?;
+        let inside = Path::new(INSIDE).join(product);
+        line.extend(["--bind".into(), path.into(), inside.into()]);
+    }
+    // The root of all of these, where it could make files without bound.
+    line.extend(["--remount-ro", "/"].map(OsString::from));
+    line.extend(["--chdir".into(), Path::new(INSIDE).join(task.inner).into()]);
+    Ok(line)
+}
+
+/// What makes the next command `nobody`'s, who may read the build and write its product.
+#[cfg(unix)]
+fn given_to_nobody<R>(task: Task<'_, R>) -> Result<Vec<OsString>, SketchError> {
+    use std::os::unix::fs::{PermissionsExt, chown};
+    let build = task.build;
+    std::fs::set_permissions(build, std::fs::Permissions::from_mode(0o755))
+        .map_err(|error| SketchError::file(build, error))?;
+    if let Some(product) = task.writes {
+        let path = made(build, product)?;
+        chown(&path, Some(NOBODY), Some(NOBODY)).map_err(|error| {
+            SketchError::NoSandbox(format!("only root may compile as another user: {error}"))
+        })?;
+    }
+    Ok(AS_NOBODY.map(OsString::from).into())
+}
+
+#[cfg(not(unix))]
+fn given_to_nobody<R>(_: Task<'_, R>) -> Result<Vec<OsString>, SketchError> {
+    Err(SketchError::NoSandbox(
+        "this system has no user nobody".into(),
+    ))
+}
+
+/// The file that a run is to write, which it cannot make by itself.
+fn made(build: &Path, product: &Path) -> Result<PathBuf, SketchError> {
+    let path = build.join(product);
+    File::create_new(&path).map_err(|error| SketchError::file(&path, error))?;
+    Ok(path)
 }
 
 /// Kills a process and its children.

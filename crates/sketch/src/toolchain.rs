@@ -263,5 +263,11 @@ mod tests {
         assert_eq!(found.core_version, "1.8.10");
         assert_eq!(found.compiler, system.compiler);
         assert!(found.libraries[0].ends_with("Arduino/libraries"));
+        // Those that are named come before all that are installed.
+        let found = found.with_libraries(&["mine".into(), "yours".into()]);
+        let first = found.libraries[..2]
+            .iter()
+            .map(|path| path.to_str().unwrap());
+        assert!(first.eq(["mine", "yours"]));
     }
 }

@@ -342,6 +342,13 @@ mod tests {
             );
         }
         assert_eq!(guard.check_source(&HeaderMap::new()), Err(Denied::Host));
+        // Of two, nobody knows which one counts.
+        let (host, ours) = (header::HOST, "127.0.0.1:8360");
+        let twice = headers(&[(host.clone(), ours), (host.clone(), "evil.example")]);
+        assert_eq!(guard.check_source(&twice), Err(Denied::Host));
+        let (origin, ours) = (header::ORIGIN, "http://127.0.0.1:8360");
+        let twice = headers(&[(origin.clone(), ours), (origin, "http://evil.example")]);
+        assert_eq!(guard.check_origin(&twice), Err(Denied::Origin));
     }
 
     #[test]

@@ -87,6 +87,11 @@ pub(crate) fn debootstrap(project: &Project) -> Result<PathBuf, Stop> {
     program(project, "debootstrap", &["debootstrap"], "Debian only")
 }
 
+/// What unpacks a zip archive with the modes of its files.
+pub(crate) fn unzip(project: &Project) -> Result<PathBuf, Stop> {
+    program(project, "unzip", &["unzip"], "Debian's package")
+}
+
 /// The debugger that the tests attach to the emulated chip.
 pub(crate) fn avr_gdb(project: &Project) -> Result<PathBuf, Stop> {
     program(project, "avr-gdb", &["gdb-avr"], "GDB for the AVR")

@@ -150,6 +150,7 @@ Examples:
   rumbo grade examples/assignments/wall/assignment.toml handed_in
   rumbo grade assignment.toml handed_in --language es --out marks
   rumbo grade assignment.toml my_sketch
+  rumbo grade assignment.toml --gradescope autograder.zip
 
 Each folder or file in FOLDER is a hand-in: a sketch, an .ino, an .elf or a .hex. FOLDER may itself be the only one. Sketches are
 compiled in a sandbox (bwrap): no network, no files but their own, bounded time and memory.
@@ -162,8 +163,17 @@ pub(crate) struct GradeArgs {
     #[arg(value_name = "ASSIGNMENT.toml")]
     pub(crate) assignment: PathBuf,
     /// Folder with the hand-ins, or one hand-in
-    #[arg(value_name = "FOLDER")]
-    pub(crate) folder: PathBuf,
+    #[arg(value_name = "FOLDER", required_unless_present_any = ["gradescope", "autograder"])]
+    pub(crate) folder: Option<PathBuf>,
+    /// Grade nothing; write the autograder to upload to Gradescope
+    #[arg(long, value_name = "FILE.zip", conflicts_with_all = ["folder", "out", "trust", "threads"])]
+    pub(crate) gradescope: Option<PathBuf>,
+    /// The `rumbo` for Linux on x86-64 that it brings [default: this one]
+    #[arg(long, value_name = "FILE", requires = "gradescope")]
+    pub(crate) linux: Option<PathBuf>,
+    /// Be that autograder: grade `submission` in DIR into `results/results.json`
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["folder", "gradescope", "out", "trust"])]
+    pub(crate) autograder: Option<PathBuf>,
     /// Folder for pages and marks; made if need be
     #[arg(long, value_name = "DIR", default_value = "rumbo-marks")]
     pub(crate) out: PathBuf,

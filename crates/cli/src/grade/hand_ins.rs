@@ -52,6 +52,15 @@ impl Found {
     }
 }
 
+/// A folder that is one hand-in, whatever its name.
+pub(super) fn only(folder: &Path) -> Found {
+    Found {
+        name: super::name_of(folder),
+        is_late: false,
+        given: given(folder, false),
+    }
+}
+
 /// The hand-ins in a folder or an archive of a class, each a folder, a file or an archive. A file, or a folder that is
 /// itself a sketch, is the only one.
 pub(super) fn find(folder: &Path) -> Result<Class, Failure> {

@@ -154,6 +154,9 @@ fn for_an_uno(bench: &Path) -> String {
         &[
             ("board = \"mega\"", "board = \"uno\""),
             ("wiring = \"mode_1\"", "wiring = \"uno\""),
+            // Another number of those and of these.
+            ("public_seeds = [1, 2, 3]", "public_seeds = [1, 2]"),
+            ("hidden_seeds = [4, 7, 12]", "hidden_seeds = [4]"),
         ],
     );
     fs::write(bench.join("assignment.toml"), file).unwrap();
@@ -205,6 +208,11 @@ fn hand_ins_for_an_uno_are_compiled_and_driven_on_one() {
     assert!(points("model") > 8.5, "{}", results["model"]);
     assert_eq!(points("lazy"), 0.0);
     // What students read there is in their language, whole.
+    let seeds = results["lazy"]["output"].as_str().unwrap();
+    assert!(
+        seeds.starts_with("Pruebas: 2 con semillas públicas y 1 con ocultas"),
+        "{seeds}"
+    );
     let lines = results["lazy"]["tests"].as_array().unwrap().iter();
     for line in lines.map(|line| line["output"].as_str().unwrap()) {
         assert!(
@@ -472,6 +480,170 @@ fn grading_again_removes_and_replaces_nothing_but_its_own() {
         assert_eq!(fs::read_to_string(out.join(name)).unwrap(), "mine");
         fs::write(out.join(name), own).unwrap();
     }
+}
+
+/// What `is_for_linux` looks at of a program.
+fn program_for_linux() -> Vec<u8> {
+    let mut program = b"\x7fELF\x02\x01".to_vec();
+    program.resize(64, 0);
+    program[18] = 62;
+    program
+}
+
+#[test]
+fn the_archive_for_gradescope_has_its_scripts_and_all_that_the_assignment_names() {
+    let bench = folder().join("grade/archive");
+    let _ = fs::remove_dir_all(&bench);
+    fs::create_dir_all(&bench).unwrap();
+    fs::write(bench.join("rumbo"), program_for_linux()).unwrap();
+    fs::write(bench.join("rumbo.exe"), b"MZ").unwrap();
+    let pack = |name: &Path, command: &str| {
+        let mut pack = program();
+        pack.current_dir(&bench).arg("grade").arg(name);
+        pack.args(["--language", "es", "--gradescope", "autograder.zip"]);
+        pack.args(["--linux", command]).output().unwrap()
+    };
+    let output = pack(&assignment("box").join("assignment.toml"), "rumbo");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let file = fs::File::open(bench.join("autograder.zip")).unwrap();
+    let mut zip = zip::ZipArchive::new(file).unwrap();
+    let mut modes = BTreeMap::new();
+    for index in 0..zip.len() {
+        let entry = zip.by_index(index).unwrap();
+        let name = entry.name().unwrap().to_string();
+        modes.insert(name, entry.unix_mode().unwrap() & 0o777);
+    }
+    for name in ["setup.sh", "run_autograder", "rumbo"] {
+        assert_eq!(modes[name], 0o755, "{name}");
+    }
+    for name in ["assignment.toml", "scenario.toml", "world.toml"] {
+        assert_eq!(modes[&format!("assignment/{name}")], 0o644, "{name}");
+    }
+    let mut script = String::new();
+    let mut entry = zip.by_name("run_autograder").unwrap();
+    std::io::Read::read_to_string(&mut entry, &mut script).unwrap();
+    assert!(script.starts_with("#!/bin/sh\n") && script.contains("--language es\n"));
+
+    // A program for another system, and a scenario that would not be in the archive.
+    let output = pack(&assignment("box").join("assignment.toml"), "rumbo.exe");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("rumbo.exe: no program for Linux on x86-64"));
+    let text = fs::read_to_string(assignment("wall").join("assignment.toml")).unwrap();
+    fs::create_dir(bench.join("in")).unwrap();
+    let outside = text.replace("\"scenario.toml\"", "\"../scenario.toml\"");
+    fs::write(bench.join("in/outside.toml"), outside).unwrap();
+    fs::copy(
+        assignment("wall").join("scenario.toml"),
+        bench.join("scenario.toml"),
+    )
+    .unwrap();
+    fs::remove_file(bench.join("autograder.zip")).unwrap();
+    let output = pack(Path::new("in/outside.toml"), "rumbo");
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(
+        said.contains("what the assignment names must be in its folder"),
+        "{said}"
+    );
+    assert!(!bench.join("autograder.zip").exists());
+}
+
+#[test]
+fn gradescope_s_container_gets_results_as_it_wants_them() {
+    let Some(bench) = bench("container") else {
+        return;
+    };
+    let text = fs::read_to_string(assignment("wall").join("assignment.toml")).unwrap();
+    let text = text
+        .replace(
+            "public_seeds = [1, 2, 3]",
+            "public_seeds = [1]\nvisibility = \"after_published\"",
+        )
+        .replace("hidden_seeds = [4, 7, 12]", "hidden_seeds = [4]")
+        .replacen("[[criterion]]", "[[criterion]]\nvisibility = \"hidden\"", 1);
+    fs::write(bench.join("assignment.toml"), &text).unwrap();
+    fs::copy(
+        assignment("wall").join("scenario.toml"),
+        bench.join("scenario.toml"),
+    )
+    .unwrap();
+    let model = fs::read(assignment("wall").join("model/model.ino")).unwrap();
+    // Of any name, in a folder or not, with what it includes.
+    fs::create_dir_all(bench.join("submission/src")).unwrap();
+    fs::write(
+        bench.join("submission/robot.ino"),
+        [b"#include \"pins.h\"\n", &model[..]].concat(),
+    )
+    .unwrap();
+    fs::write(bench.join("submission/pins.h"), "\n").unwrap();
+    fs::create_dir(bench.join("results")).unwrap();
+    let grade = || {
+        let mut command = program();
+        command
+            .current_dir(&bench)
+            .args(["grade", "assignment.toml"]);
+        command.args(["--autograder", ".", "--language", "en"]);
+        command.env("RUMBO_CACHE", folder().join("sketches"));
+        command.output().unwrap()
+    };
+    let output = grade();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let read = || -> Value {
+        let text = fs::read_to_string(bench.join("results/results.json")).unwrap();
+        serde_json::from_str(&text).unwrap()
+    };
+    let results = read();
+    assert_eq!(results["score"], 10.0, "{results:#}");
+    assert_eq!(results["stdout_visibility"], "hidden");
+    assert!(
+        results["output"]
+            .as_str()
+            .unwrap()
+            .contains("1 with public seeds, 1 with hidden ones")
+    );
+    let tests = results["tests"].as_array().unwrap();
+    let of = |key: &str| {
+        tests
+            .iter()
+            .map(|test| test[key].clone())
+            .collect::<Vec<_>>()
+    };
+    let seen = [
+        "hidden",
+        "after_published",
+        "after_published",
+        "after_published",
+    ];
+    assert_eq!(of("visibility"), seen);
+    assert_eq!(of("max_score"), [3.0, 2.0, 2.0, 3.0]);
+    assert_eq!(of("score"), of("max_score"));
+
+    // What is no program is a result too.
+    fs::remove_dir_all(bench.join("submission")).unwrap();
+    fs::create_dir(bench.join("submission")).unwrap();
+    assert_eq!(grade().status.code(), Some(0));
+    let results = read();
+    assert_eq!(results["score"], 0.0);
+    assert!(
+        results["output"]
+            .as_str()
+            .unwrap()
+            .contains("no sketch here"),
+        "{results:#}"
+    );
+
+    fs::write(
+        bench.join("assignment.toml"),
+        text.replace("\"hidden\"", "\"secret\""),
+    )
+    .unwrap();
+    let said = stderr(&grade());
+    assert!(
+        said.contains(
+            "visibility = secret: must be one of visible, after_due_date, after_published, hidden"
+        ),
+        "{said}"
+    );
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod experiments;
 mod files;
 mod flash;
 mod grade;
+mod grade_program;
 mod hostile;
 mod identify;
 mod logs;

@@ -1,4 +1,4 @@
-//! Looking at a program while it runs: watchpoints, a trace of instructions, a profile, the stack's depth.
+//! Looking at a program while it runs: watchpoints, a trace of instructions, a profile, waits, the stack's depth.
 //!
 //! While nothing is enabled, the CPU runs as if this module did not exist. Else it goes from one instruction to
 //! the next, and what each is about to do is worked out from its operands ([`crate::cpu::touch`]): slower by an order of magnitude, and
@@ -8,6 +8,7 @@ pub mod profile;
 mod report;
 
 pub mod trace;
+pub mod wait;
 pub mod waveform;
 
 use crate::cpu::touch::{Touch, touch};
@@ -17,6 +18,7 @@ use crate::devices::Devices;
 use profile::Profile;
 use std::ops::Range;
 use trace::{Trace, Traced};
+use wait::Waits;
 
 pub use crate::watchpoint::Watchpoint;
 
@@ -36,6 +38,7 @@ pub struct Observers {
     watchpoints: Vec<Watchpoint>,
     trace: Option<Trace>,
     profile: Option<Box<Profile>>,
+    waits: Option<Box<Waits>>,
     lowest_stack_pointer: Option<u16>,
 }
 
@@ -77,6 +80,16 @@ impl Observers {
         self.profile.as_deref()
     }
 
+    /// Watches for busy waiting from here on.
+    pub fn wait(&mut self, waits: Waits) {
+        self.waits = Some(Box::new(waits));
+    }
+
+    /// The waits so far.
+    pub fn waited(&self) -> Option<&Waits> {
+        self.waits.as_deref()
+    }
+
     /// Notes how far down the stack comes from here on.
     pub fn measure_stack(&mut self) {
         self.lowest_stack_pointer = Some(u16::MAX);
@@ -92,6 +105,7 @@ impl Observers {
     fn span(&self, now: u64) -> (bool, u64) {
         let always = !self.watchpoints.is_empty()
             || self.profile.is_some()
+            || self.waits.is_some()
             || self.lowest_stack_pointer.is_some();
         match &self.trace {
             _ if always => (true, u64::MAX),
@@ -152,6 +166,9 @@ fn turn(
     }
     if let Some(profile) = &mut observers.profile {
         profile.note(cpu, &before, turn, |vector| devices.requested_since(vector));
+    }
+    if let Some(waits) = &mut observers.waits {
+        waits.note(cpu, &before, turn, touched.as_ref());
     }
     if let Some(lowest) = &mut observers.lowest_stack_pointer
         && touched.as_ref().is_some_and(|touch| touch.stack)

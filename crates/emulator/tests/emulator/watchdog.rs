@@ -71,6 +71,21 @@ fn without_the_timed_sequence_it_is_neither_slowed_nor_stopped() {
 }
 
 #[test]
+fn the_timed_sequence_is_open_for_four_cycles() {
+    let slowest = WDE | 0x21;
+    for (nops, written) in [(0, slowest), (2, slowest), (3, WDE)] {
+        let mut words = vec![ldi(16, WDCE | WDE), ldi(17, slowest)];
+        words.extend(sts(WDTCSR, 16));
+        words.extend(vec![0; nops]);
+        words.extend(sts(WDTCSR, 17));
+        words.push(0xCFFF);
+        let mut chip = chip_of(&words);
+        chip.run_until(100);
+        assert_eq!(read(&mut chip, WDTCSR), written, "{nops}");
+    }
+}
+
+#[test]
 fn a_program_that_calls_wdr_goes_on() {
     let mut words = vec![ldi(16, WDE)];
     words.extend(sts(WDTCSR, 16));

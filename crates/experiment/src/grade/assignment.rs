@@ -15,6 +15,7 @@
 //! scenario = "mode1"           # built in, or the path of a file beside this one
 //! public_seeds = [1, 2]
 //! hidden_seeds = [101, 102]
+//! visibility = "after_due_date"    # on Gradescope
 //! [[criterion]]
 //! title = "Stops at 30 cm"
 //! metric = "step1.steady_error_m"
@@ -24,6 +25,8 @@
 //! advice = "Look at the dead zone of the motors."
 //! ```
 
+use super::program;
+use super::visibility::Visibility;
 use crate::files::read::{Allowed, Placed, Source, Table};
 use crate::files::{FileError, Library, Overrides, Setup, bounded, did_you_mean, near};
 use crate::metrics::Metrics;
@@ -81,6 +84,8 @@ pub struct Test {
     pub wiring: Option<String>,
     /// How much it counts beside the others.
     pub weight: f64,
+    /// When students see what it earned, if the file says it.
+    pub visibility: Option<Visibility>,
     /// Public seeds.
     pub public: Vec<u64>,
     /// Hidden seeds.
@@ -111,6 +116,8 @@ pub struct Criterion {
     pub full: f64,
     /// The value that earns none.
     pub none: f64,
+    /// When students see what it earned, if the file says it; otherwise as its test.
+    pub visibility: Option<Visibility>,
 }
 
 impl Criterion {
@@ -151,7 +158,7 @@ impl Assignment {
         Self::parse(path, &text)
     }
 
-    fn parse(path: &str, text: &str) -> Result<Self, FileError> {
+    pub(super) fn parse(path: &str, text: &str) -> Result<Self, FileError> {
         let source = Source::new(path, text);
         let parsed = source.parse()?;
         let root = source.root(&parsed);
@@ -197,6 +204,13 @@ impl Assignment {
         root.finish();
         source.verdict()?;
         Ok(assignment)
+    }
+
+    /// When students see a line: as its criterion says, else its test.
+    #[must_use]
+    pub fn visibility(&self, line: &super::Line) -> Visibility {
+        let own = self.criteria[line.criterion].visibility;
+        own.or(self.tests[line.test].visibility).unwrap_or_default()
     }
 
     /// Runs of each hand-in.
@@ -272,6 +286,7 @@ fn read_test(table: &Table<'_, '_>, library: &Library) -> Option<Test> {
     let title = words(table, &spanish, "title", false);
     let weight = table.number("weight", WEIGHT).unwrap_or(1.0);
     let wiring = table.text("wiring");
+    let visibility = Visibility::read(table);
     let public = seeds(table, "public_seeds");
     let hidden = seeds(table, "hidden_seeds");
     if public.is_empty() && table.has("public_seeds") {
@@ -314,6 +329,7 @@ fn read_test(table: &Table<'_, '_>, library: &Library) -> Option<Test> {
         setup,
         wiring: wiring.map(|placed| placed.value),
         weight,
+        visibility,
         public,
         hidden,
     })
@@ -370,6 +386,7 @@ fn read_criterion(table: &Table<'_, '_>, tests: &[Test], known: &[Metrics]) -> C
         points: table.required_number("points", POINTS),
         full: table.required_number("full", VALUE),
         none: table.required_number("none", VALUE),
+        visibility: Visibility::read(table),
     };
     if criterion.full == criterion.none && table.has("full") && table.has("none") {
         table.complain_here("full and none are the same: nothing lies between");
@@ -387,6 +404,9 @@ fn not_measured(criterion: &Criterion, known: &[Metrics]) -> Option<String> {
     let metric = criterion.metric.as_str();
     if metric == "telemetry_hz" || metric.contains("odometry") {
         return Some("is what the program says of itself; marks come from ground truth".into());
+    }
+    if program::is_of_program(metric) {
+        return program::unknown(metric);
     }
     let tests = known.iter().enumerate();
     let lacking = tests
@@ -414,6 +434,7 @@ mod tests {
             points: 1.0,
             full,
             none,
+            visibility: None,
         };
         let less_is_better = criterion(1.0, 3.0);
         let shares = [0.0, 1.0, 1.5, 3.0, 9.0].map(|value| less_is_better.share(Some(value)));

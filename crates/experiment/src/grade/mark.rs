@@ -1,6 +1,7 @@
 //! The marks of a hand-in, line by line.
 
 use super::assignment::Assignment;
+use super::program::{Seen, is_of_program};
 use crate::files::FileError;
 use crate::run::RunResult;
 use serde::Serialize;
@@ -43,8 +44,11 @@ pub struct Line {
     pub criterion: usize,
     /// The test, by its place.
     pub test: usize,
-    /// What was measured, for each seed in order; none where it never happened.
+    /// What was measured, for each seed in order; none where it never happened. Of what a program does inside, with one
+    /// seed.
     pub values: Vec<Option<f64>>,
+    /// Where in the program that was, if it is about one.
+    pub place: Option<String>,
     /// The points earned.
     pub points: f64,
     /// The possible points.
@@ -95,6 +99,8 @@ pub(super) struct Run {
     pub(super) test: usize,
     /// `Err`: it could not be started.
     pub(super) result: Result<RunResult, RunError>,
+    /// What was seen of the program, if it was watched.
+    pub(super) seen: Option<Seen>,
 }
 
 impl Mark {
@@ -128,7 +134,7 @@ impl Mark {
             notes: Vec::new(),
             drawn: assignment.tests.iter().map(|_| None).collect(),
         };
-        for Run { test, result } in runs {
+        for Run { test, result, .. } in runs {
             match result {
                 Ok(result) => {
                     once(&mut mark.ended, result.ended.iter());
@@ -166,15 +172,19 @@ fn lines(assignment: &Assignment, runs: &[Run]) -> Vec<Line> {
                 None => criterion.points * worth(test),
             };
             let own = runs.iter().filter(|run| run.test == test);
+            let seen = own.clone().find_map(|run| run.seen.as_ref());
+            let place = seen.and_then(|seen| seen.places.get(criterion.metric.as_str()));
             let mut values: Vec<Option<f64>> =
                 own.map(|run| value(run, &criterion.metric)).collect();
-            values.resize(about.seeds().count(), None);
+            let watched = is_of_program(&criterion.metric);
+            values.resize(if watched { 1 } else { about.seeds().count() }, None);
             let shares: f64 = values.iter().map(|value| criterion.share(*value)).sum();
             let points = of * shares / values.len().max(1) as f64;
             lines.push(Line {
                 criterion: number,
                 test,
                 values,
+                place: place.cloned(),
                 points,
                 of,
             });
@@ -210,8 +220,11 @@ fn value(run: &Run, metric: &str) -> Option<f64> {
     if result.ended.is_some() || !result.trace.drove() {
         return None;
     }
-    result
-        .metrics
+    let metrics = match &run.seen {
+        Some(seen) if is_of_program(metric) => &seen.metrics,
+        _ => &result.metrics,
+    };
+    metrics
         .get(metric)
         .copied()
         .filter(|value| value.is_finite())
@@ -230,4 +243,59 @@ fn touches(run: &Run) -> bool {
 /// Hundredths of a point.
 fn cents(points: f64) -> f64 {
     (100.0 * points).round() / 100.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::run;
+
+    const TEXT: &str = r#"
+title = "T"
+statement = "S"
+points = 8
+contact_penalty = 4
+[[scenario]]
+scenario = "mode1"
+public_seeds = [1, 2]
+weight = 3
+[[scenario]]
+scenario = "mode5"
+public_seeds = [1, 2]
+[[criterion]]
+title = "C"
+metric = "control_period_s"
+points = 1
+full = 0
+none = 1
+"#;
+
+    #[test]
+    fn weights_contacts_and_medians_count_as_the_file_says() {
+        let assignment = Assignment::parse("a.toml", TEXT).unwrap();
+        let of = |test: usize, value: f64, contacts: f64| {
+            let mut result = run(&assignment.tests[test].setup, 1).unwrap();
+            result.metrics.insert("control_period_s".into(), value);
+            result.metrics.insert("contacts".into(), contacts);
+            Run {
+                test,
+                result: Ok(result),
+                seen: None,
+            }
+        };
+        let runs = vec![
+            of(0, 0.0, 0.0),
+            of(0, 0.5, 2.0),
+            of(1, 1.0, 0.0),
+            of(1, 1.0, 0.0),
+        ];
+        let mark = Mark::of(&assignment, "ana", runs);
+        assert_eq!([mark.lines[0].of, mark.lines[1].of], [6.0, 2.0]);
+        assert_eq!([mark.lines[0].points, mark.lines[1].points], [4.5, 0.0]);
+        // One run of four touched something.
+        assert_eq!((mark.penalty, mark.points), (1.0, 3.5));
+        assert!(!mark.pass);
+        // Of two, the worse one.
+        assert_eq!(mark.lines[0].median(&assignment), Some(0.5));
+    }
 }

@@ -6,13 +6,16 @@
 //!                     a run for each test and seed ─► metrics ─► Mark
 //! ```
 //!
-//! Metrics come from ground truth and from the pins; a program's own output is ignored. A value that never came
+//! Metrics come from ground truth, from the pins, and from what the emulator sees of the program; its own output is ignored. A value that never came
 //! about earns nothing. The same image gets the same mark.
 
 mod assignment;
 mod mark;
+mod program;
 mod runs;
+mod visibility;
 
 pub use assignment::{Assignment, Criterion, Test, Words};
 pub use mark::{Line, Mark};
 pub use runs::{HandIn, grade};
+pub use visibility::Visibility;

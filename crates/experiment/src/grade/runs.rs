@@ -2,6 +2,7 @@
 
 use super::assignment::Assignment;
 use super::mark::{Mark, Run, RunError};
+use super::program::{self, Seen};
 use crate::files::{FileError, Setup, firmware};
 use crate::run::{Run as Running, RunResult, run_by};
 use rayon::prelude::*;
@@ -41,19 +42,21 @@ pub fn grade(assignment: &Assignment, hand_ins: &[HandIn], done: impl Fn() + Syn
             jobs.extend(seeds.map(|seed| (index, test, setup, seed)));
         }
     }
+    let mut metrics = assignment.criteria.iter().map(|one| &one.metric);
+    let watched = metrics.any(|metric| program::is_of_program(metric));
     let results: Vec<(usize, Run)> = jobs
         .par_iter()
         .map(|(index, test, setup, seed)| {
             let drawn = assignment.tests[*test].public.first() == Some(seed);
-            let result = one(setup, *seed, drawn);
+            let mut seen = (drawn && watched).then(Seen::default);
+            let result = one(setup, *seed, drawn, &mut seen);
             done();
-            (
-                *index,
-                Run {
-                    test: *test,
-                    result,
-                },
-            )
+            let run = Run {
+                test: *test,
+                result,
+                seen,
+            };
+            (*index, run)
         })
         .collect();
     let mut runs: Vec<Vec<Run>> = hand_ins.iter().map(|_| Vec::new()).collect();
@@ -107,12 +110,24 @@ fn go_on(run: &mut Running<'_>) -> bool {
     false
 }
 
-/// One run; a failure affects no other. Samples are kept only for runs that are plotted.
-fn one(setup: &Setup, seed: u64, drawn: bool) -> Result<RunResult, RunError> {
+/// One run; a failure affects no other. Samples are kept only for runs that are plotted, and the program is watched where
+/// there is room for what is seen.
+fn one(
+    setup: &Setup,
+    seed: u64,
+    drawn: bool,
+    seen: &mut Option<Seen>,
+) -> Result<RunResult, RunError> {
     let mut is_too_much = false;
     let result = catch_unwind(AssertUnwindSafe(|| {
         run_by(setup, seed, |run| {
+            if let (Some(_), Some(mega)) = (&seen, run.sim().mega_mut()) {
+                program::watch(mega);
+            }
             is_too_much = go_on(run);
+            if let (Some(seen), Some(mega)) = (seen, run.sim().mega()) {
+                *seen = program::seen(mega);
+            }
             Ok::<(), FileError>(())
         })
     }));
