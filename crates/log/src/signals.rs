@@ -222,7 +222,7 @@ impl Sample {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rumbo_control::AgedRange;
+    use rumbo_control::{AgedRange, Wheels};
 
     #[test]
     fn nothing_in_reach_is_not_an_unknown_range() {
@@ -284,7 +284,7 @@ mod tests {
         let sample = Sample {
             t_ms: 0,
             mode: ModeId::default(),
-            reference: wheels(5.0),
+            reference: Reference::Wheels(wheels(5.0)),
             heading_ref_rad: 14.0,
             telemetry: Telemetry {
                 pose: rumbo_control::Pose {

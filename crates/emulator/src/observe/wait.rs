@@ -11,7 +11,7 @@
 //! shows at the end, so that each is watched as if it were the one.
 
 use super::Moment;
-use super::touch::Touch;
+use crate::cpu::touch::Touch;
 use crate::cpu::{Cpu, Turn};
 use crate::decode::Code;
 use crate::image::{Image, Symbol};

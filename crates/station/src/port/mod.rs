@@ -197,6 +197,9 @@ fn open(address: &str, baud: u32) -> io::Result<(Reader, Writer)> {
 /// If the system does not list them.
 pub fn serial_ports() -> io::Result<Vec<(String, String)>> {
     use serialport::SerialPortType;
+    // Where a container has no /sys, the library would panic.
+    #[cfg(target_os = "linux")]
+    std::fs::read_dir("/sys/class/tty")?;
     let ports = serialport::available_ports()?;
     let what = |kind: SerialPortType| match kind {
         SerialPortType::UsbPort(usb) => usb
