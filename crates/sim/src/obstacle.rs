@@ -3,7 +3,7 @@
 //! | | is | source |
 //! |---|---|---|
 //! | switch | an emitter, a receiver and a comparator (FC-51 and copies) | its sellers: 2 cm to 30 cm by a potentiometer, 35° wide |
-//! | voltage | Sharp GP2Y0A21YK | its data sheet (Sharp, 2006-12-01): output by distance, a reading each 38.3 ms |
+//! | voltage | Sharp GP2Y0A21YK | its data sheet: 0.4 V at 80 cm, 2.3 V at 10 cm, a reading each 38.3 ms; in between published fits |
 //!
 //! Neither is identified from recordings; colour and slant of what they see do not count.
 
@@ -18,7 +18,7 @@ const SWITCH_RAD: f64 = 0.305;
 const BEAM_RAD: f64 = 0.02;
 /// A reading of the voltage takes so long \[us\].
 const READING_US: u64 = 38_300;
-/// Distance \[m\] and voltage \[V\] of the data sheet's figure; nearer than 6 cm the voltage falls again.
+/// Distance \[m\] and voltage \[V\] of the sensor; nearer than 6 cm the voltage falls again.
 const VOLTS: [(f64, f64); 13] = [
     (0.00, 1.00),
     (0.06, 3.10),
