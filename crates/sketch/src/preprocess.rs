@@ -171,8 +171,9 @@ fn functions(text: &str) -> Vec<(usize, String)> {
                     ""
                 };
                 let begin = at - head.len();
-                if is_function(head.trim_end()) && !text[begin..at].contains("extern \"") {
-                    let words: Vec<&str> = head.split_whitespace().collect();
+                let declared = behind_attributes(head).trim_end();
+                if is_function(declared) && !text[begin..at].contains("extern \"") {
+                    let words: Vec<&str> = declared.split_whitespace().collect();
                     found.push((begin, words.join(" ")));
                 }
                 depth += 1;
@@ -190,9 +191,6 @@ fn functions(text: &str) -> Vec<(usize, String)> {
 
 /// `type name(arguments)`, and neither a class, an interrupt routine, an initialiser, a member nor a type.
 fn is_function(head: &str) -> bool {
-    let attribute = head.strip_prefix("__attribute__");
-    let behind = attribute.and_then(|rest| rest.split_once("))"));
-    let head = behind.map_or(head, |(_, head)| head);
     let name = head.split('(').next().unwrap_or_default();
     head.ends_with(')')
         && !head.starts_with("typedef")
@@ -201,6 +199,20 @@ fn is_function(head: &str) -> bool {
         && name.split_whitespace().count() >= 2
         && !head.contains('=')
         && !name.contains("::")
+}
+
+/// What follows the attributes at the beginning of a head; the definition has them.
+fn behind_attributes(mut head: &str) -> &str {
+    while let Some(rest) = head.strip_prefix("__attribute__") {
+        let mut depth = 0;
+        let end = rest.find(|character| {
+            depth += i32::from(character == '(') - i32::from(character == ')');
+            depth == 0 && character == ')'
+        });
+        let Some(end) = end else { break };
+        head = rest[end + 1..].trim_start();
+    }
+    head
 }
 
 /// The text with comments, strings and preprocessor lines made blank, each character in its place.
@@ -299,12 +311,12 @@ mod tests {
 
     #[test]
     fn an_attribute_and_a_raw_string_hide_no_function() {
-        let text = "#line 1 \"a.ino\"\nconst char page[] = R\"(say \"{ )\";\n__attribute__((noinline)) int f() { return 1; }\n\
+        let text = "#line 1 \"a.ino\"\nconst char page[] = R\"(say \"{ )\";\n\
+                    __attribute__((noinline)) __attribute__((optimize(\"O3\"))) int f() { return 1; }\n\
                     int g() { return 2; }\n";
         let made = with_declarations(text, None);
         assert!(
-            made.contains("\n__attribute__((noinline)) int f();\n")
-                && made.contains("\nint g();\n"),
+            made.contains("\nint f();\n") && made.contains("\nint g();\n"),
             "{made}"
         );
     }
