@@ -38,6 +38,7 @@ export const PROGRAM = {
   ', unless a jumper holds it: then write "high" in the wiring': ', salvo que lo sujete un puente: entonces escribe "high" en el cableado', '{} was never high{}': '{} nunca estuvo alto{}',
   '{} and {} were never high': '{} y {} nunca estuvieron altos', '{} and {} never differed while it was enabled': '{} y {} nunca fueron distintos mientras estuvo habilitado',
   '{} is on pin {}, which has no PWM on the {}: analogWrite() there only switches; PWM is on {}': '{} está en el pin {}, que no tiene PWM en el {}: analogWrite() ahí solo conmuta; hay PWM en {}',
+  'firmware {}: {} on pin {} closes to GND, and the program switches no pull-up on, so that open and closed read alike: use INPUT_PULLUP, or say what resistor there is, to = "5v" where pressed is HIGH, else to = "gnd"': 'firmware {}: {}, en el pin {}, cierra a GND y el programa no activa ningún pull-up, así que abierto y cerrado se leen igual: usa INPUT_PULLUP, o di qué resistencia hay, to = "5v" si pulsado es HIGH, si no to = "gnd"',
   // What of the robot was not identified.
   'motor driver: {}': 'driver de motores: {}', '{}, by {}, not identified': '{}, según {}, sin identificar', 'driver with a direction and a PWM input': 'driver con una entrada de dirección y una de PWM',
   'motor shield with L293D and 74HC595': 'shield de motores con L293D y 74HC595', 'motor shield with TB6612FNG and PCA9685': 'shield de motores con TB6612FNG y PCA9685',
@@ -45,6 +46,9 @@ export const PROGRAM = {
   'the data sheet of the L293D (TI SLRS008)': 'la hoja de datos del L293D (TI SLRS008)', 'the data sheet of the TB6612FNG': 'la hoja de datos del TB6612FNG',
   'line sensors: TCRT5000 modules by their data sheet, not identified': 'sensores de línea: módulos TCRT5000 según su hoja de datos, sin identificar',
   'accelerometer and gyroscope: MPU-6050 by its data sheet, not identified': 'acelerómetro y giróscopo: MPU-6050 según su hoja de datos, sin identificar',
+  'sensors for obstacles: by what their sellers and Sharp\'s data sheet say, not identified': 'sensores de obstáculos: según sus vendedores y la hoja de datos de Sharp, sin identificar',
+  'two BTS7960 a motor (IBT-2)': 'dos BTS7960 por motor (IBT-2)', 'its data sheet (Infineon, 2004-12-07)': 'su hoja de datos (Infineon, 2004-12-07)',
+  'its data sheet (ASIC L9110)': 'su hoja de datos (ASIC L9110)', 'the data sheet of the TC1508S': 'la hoja de datos del TC1508S',
   // The debugger.
   'the program stands at {}, and time with it': 'el programa está parado en {}, y el tiempo con él', 'the program goes on': 'el programa sigue', 'a debugger has come': 'ha entrado un depurador',
   'the debugger has left; the program goes on': 'el depurador se ha ido; el programa sigue', 'the debugger is gone with the run': 'el depurador se fue con la ejecución',
