@@ -199,7 +199,11 @@ pub fn serial_ports() -> io::Result<Vec<(String, String)>> {
     use serialport::SerialPortType;
     // Where a container has no /sys, the library would panic.
     #[cfg(target_os = "linux")]
-    std::fs::read_dir("/sys/class/tty")?;
+    if let Err(error) = std::fs::read_dir("/sys/class/tty") {
+        let why =
+            format!("the serial ports of this computer are not listed: /sys/class/tty: {error}");
+        return Err(io::Error::new(error.kind(), why));
+    }
     let ports = serialport::available_ports()?;
     let what = |kind: SerialPortType| match kind {
         SerialPortType::UsbPort(usb) => usb
