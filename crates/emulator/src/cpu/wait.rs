@@ -36,6 +36,8 @@ pub(super) struct Search {
     marked: bool,
     /// The program has come to one of them.
     arrived: bool,
+    /// Cycles of rounds that did not run.
+    left_out: u64,
 }
 
 /// A loop that has waited.
@@ -53,6 +55,7 @@ impl Default for Search {
             loops: Vec::new(),
             marked: true,
             arrived: false,
+            left_out: 0,
         }
     }
 }
@@ -157,6 +160,11 @@ impl Round {
 }
 
 impl Cpu {
+    /// Cycles so far that did not run, since they are rounds of a loop that waits.
+    pub fn cycles_left_out(&self) -> u64 {
+        self.search.left_out
+    }
+
     fn in_sram(&self, address: u16) -> Option<u8> {
         let index = usize::from(address.wrapping_sub(self.sram_start));
         self.sram.get(index).copied()
@@ -263,7 +271,9 @@ impl Cpu {
                 if round.is_closed(self) {
                     let period = self.cycle - round.cycle;
                     let limit = limit.min(round.steady_until);
-                    self.cycle += limit.saturating_sub(self.cycle) / period * period;
+                    let left_out = limit.saturating_sub(self.cycle) / period * period;
+                    self.cycle += left_out;
+                    self.search.left_out += left_out;
                     return Some(round.lowest);
                 }
                 round = Round::from(self);

@@ -146,13 +146,19 @@ fn sketches_do_the_same_one_by_one() {
         .iter()
         .filter_map(|folder| std::fs::read_dir(folder).ok());
     let ms = if is_full() { 5_000 } else { 120 };
+    let mut count = 0;
     for file in files.flatten() {
         let path = file.unwrap().path();
         if path.extension().is_some_and(|extension| extension == "elf") {
             let image = Image::parse(&std::fs::read(&path).unwrap()).unwrap();
             agrees(&image, ms, &path.display().to_string());
+            count += 1;
         }
     }
+    assert!(
+        count > 30 || std::env::var_os("CI").is_none(),
+        "{count} images"
+    );
 }
 
 /// LDS, a comparison of two bytes, PUSH, POP, LDI and MOV, STS, LDD and STD, sums and differences; then back.
@@ -261,5 +267,11 @@ fn a_loop_that_waits_ends_in_the_cycle_in_which_it_would() {
         }
     }
     assert!(pair.outputs > 1_000, "it goes from wait to wait");
+    let [fast, plain] = [&pair.fast, &pair.plain].map(|chip| chip.cpu().cycles_left_out());
+    assert!(
+        fast > 6_000_000,
+        "half of the time is left out, not {fast} cycles"
+    );
+    assert_eq!(plain, 0);
     pair.registers_agree("waiting");
 }
