@@ -21,7 +21,7 @@ arm = true
 const ASSIGNMENT: &str = r#"
 title = "T"
 statement = "S"
-points = 5
+points = 7
 [[scenario]]
 scenario = "scenario.toml"
 wiring = "mode_1"
@@ -33,6 +33,18 @@ points = 1
 full = 0.004
 none = 0.008
 advice = "Compare millis() with a time that you keep."
+[[criterion]]
+title = "Share"
+metric = "program.wait_share"
+points = 1
+full = 0.1
+none = 0.5
+[[criterion]]
+title = "Stack"
+metric = "program.stack_bytes"
+points = 1
+full = 300
+none = 600
 [[criterion]]
 title = "Turns"
 metric = "program.turn_longest_s"
@@ -63,7 +75,7 @@ const DRIVES: &str = "void setup() { pinMode(5, OUTPUT); pinMode(4, OUTPUT); dig
 const TIMER: &str = "void begin() { TCCR1A = 0; TCCR1B = 0x0B; OCR1A = 2499; TIMSK1 = 2; }\n";
 
 /// Sketches, the lines on which they lose points, and a word of where that was.
-const SKETCHES: [(&str, &str, &[&str], &str); 8] = [
+const SKETCHES: [(&str, &str, &[&str], &str); 9] = [
     (
         "polls",
         "unsigned long last; int duty; void begin() { last = millis(); }
@@ -76,28 +88,28 @@ const SKETCHES: [(&str, &str, &[&str], &str); 8] = [
         "void begin() {}
          #define A(x, y) x##y
          void loop() { analogWrite(5, 90); A(de, lay)(30); }",
-        &["Waits", "Turns"],
+        &["Waits", "Share", "Turns"],
         "it waits",
     ),
     (
         "own",
         "void begin() {}
          void loop() { analogWrite(5, 90); unsigned long since = millis(); while (millis() - since < 30) {} }",
-        &["Waits", "Turns"],
+        &["Waits", "Share", "Turns"],
         "it waits",
     ),
     (
         "counts",
         "void begin() {}
          void loop() { analogWrite(5, 90); for (volatile long i = 0; i < 20000; i++) {} }",
-        &["Waits", "Turns"],
+        &["Waits", "Share", "Turns"],
         "it waits",
     ),
     (
         "pin",
         "void begin() {}
          unsigned long us; void loop() { us = pulseIn(13, HIGH, 30000); analogWrite(5, 90); }",
-        &["Waits", "Turns"],
+        &["Waits", "Share", "Turns"],
         "it waits",
     ),
     (
@@ -115,6 +127,13 @@ const SKETCHES: [(&str, &str, &[&str], &str); 8] = [
          void loop() {}",
         &["Interrupts"],
         "interrupt TIMER1_COMPA takes",
+    ),
+    (
+        "deep",
+        "void begin() {}
+         void loop() { volatile byte read[700]; read[millis() % 700] = 1; analogWrite(5, 90 + read[0] % 2); }",
+        &["Stack"],
+        "",
     ),
     (
         "heap",

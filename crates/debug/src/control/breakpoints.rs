@@ -29,9 +29,9 @@ pub struct Breakpoint {
 pub struct DataBreakpoint {
     /// Its number.
     pub id: u64,
-    /// The first address, in the data space, and how many bytes.
+    /// The first address, in the data space.
     pub address: u16,
-    /// Bytes.
+    /// How many bytes from there on.
     pub bytes: u16,
     /// Reading stops it.
     pub reads: bool,

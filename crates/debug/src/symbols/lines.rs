@@ -108,14 +108,7 @@ impl Lines {
 
     /// Rows in a range of addresses that begin a line: the row before is of another.
     pub(crate) fn begins(&self, addresses: std::ops::Range<u32>) -> impl Iterator<Item = Row> {
-        let from = self
-            .rows
-            .partition_point(|row| row.address < addresses.start);
-        let to = self
-            .rows
-            .partition_point(|row| row.address < addresses.end)
-            .max(from);
-        (from..to).filter_map(|at| {
+        self.numbers(addresses).filter_map(|at| {
             let row = self.rows[at];
             let before = at.checked_sub(1).map(|before| self.rows[before]);
             let continues =
@@ -130,14 +123,13 @@ impl Lines {
 
     /// The rows that begin in a range of addresses.
     pub(crate) fn within(&self, addresses: std::ops::Range<u32>) -> &[Row] {
-        let from = self
-            .rows
-            .partition_point(|row| row.address < addresses.start);
-        let to = self
-            .rows
-            .partition_point(|row| row.address < addresses.end)
-            .max(from);
-        &self.rows[from..to]
+        &self.rows[self.numbers(addresses)]
+    }
+
+    fn numbers(&self, addresses: std::ops::Range<u32>) -> std::ops::Range<usize> {
+        let below = |end| self.rows.partition_point(|row| row.address < end);
+        let from = below(addresses.start);
+        from..below(addresses.end).max(from)
     }
 
     /// The file that a user means: the one at the path, else the one that ends in most of the same names.

@@ -79,17 +79,23 @@ pub(super) fn read_level(table: &Table<'_, '_>, key: &str) -> Option<bool> {
     Some(level.value == "high")
 }
 
+/// What sensors of a robot have: whether the output is analogue, its pin, and the place on the robot.
+pub(super) fn read_mounted(table: &Table<'_, '_>, wiring: &Wiring) -> (bool, Option<u8>, [f64; 2]) {
+    let analogue = table.flag("analogue").is_some_and(|flag| flag.value);
+    table.require("pin", "the pin of the sensor's output, e.g. 2 or \"A0\"");
+    let pin = read_pin(table, "pin", wiring.board, analogue);
+    let at_m = [
+        table.required_number("x_m", MOUNT),
+        table.number("y_m", MOUNT).unwrap_or(0.0),
+    ];
+    (analogue, pin, at_m)
+}
+
 /// Reads the line sensors into a wiring.
 pub(super) fn read_line_sensors(table: &Table<'_, '_>, wiring: &mut Wiring) {
     for key in table.keys() {
         let own = table.table(key.value);
-        let analogue = own.flag("analogue").is_some_and(|flag| flag.value);
-        own.require("pin", "the pin of the sensor's output, e.g. 2 or \"A0\"");
-        let pin = read_pin(&own, "pin", wiring.board, analogue);
-        let at_m = [
-            own.required_number("x_m", MOUNT),
-            own.number("y_m", MOUNT).unwrap_or(0.0),
-        ];
+        let (analogue, pin, at_m) = read_mounted(&own, wiring);
         let dark_high = read_level(&own, "dark").unwrap_or(true);
         own.finish();
         let Some(pin) = pin else { continue };

@@ -6,9 +6,8 @@
 //! front = { pin = "A0", x_m = 0.1, analogue = true }          # a voltage, Sharp GP2Y0A21YK
 //! ```
 
-use super::line::{MOUNT, read_level};
+use super::line::{read_level, read_mounted};
 use super::parts::is_free;
-use super::pin::read_pin;
 use super::read::{Allowed, Table};
 use rumbo_sim::obstacle::{ObstacleSensor, Sight};
 use rumbo_sim::wiring::Wiring;
@@ -24,13 +23,7 @@ const REACH_M: f64 = 0.15;
 pub(super) fn read_obstacle_sensors(table: &Table<'_, '_>, wiring: &mut Wiring) {
     for key in table.keys() {
         let own = table.table(key.value);
-        let analogue = own.flag("analogue").is_some_and(|flag| flag.value);
-        own.require("pin", "the pin of the sensor's output, e.g. 2 or \"A0\"");
-        let pin = read_pin(&own, "pin", wiring.board, analogue);
-        let at_m = [
-            own.required_number("x_m", MOUNT),
-            own.number("y_m", MOUNT).unwrap_or(0.0),
-        ];
+        let (analogue, pin, at_m) = read_mounted(&own, wiring);
         let angle_deg = own.number("angle_deg", ANGLE).unwrap_or(0.0);
         let sight = match analogue {
             true => Sight::Volts,
