@@ -6,6 +6,9 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
+/// The compiler with clippy's lints.
+const CLIPPY: &str = "clippy-driver";
+
 /// The checkout that the chores work on.
 pub(crate) struct Project {
     /// Folder of the root `Cargo.toml`.
@@ -58,7 +61,23 @@ impl Project {
     /// A command of cargo that builds libraries, programs and tests in one go, which share all crates: any part of it by
     /// itself has other features, and with them other crates.
     pub(crate) fn build_all(&self) -> Command {
-        self.cargo(&["build", "--workspace", "--all-targets", "--locked"])
+        self.linted(&["build", "--workspace", "--all-targets", "--locked"])
+    }
+
+    /// A command of cargo in whose builds clippy's compiler takes the place of rustc for the project's own crates, where
+    /// it is installed: it finds what clippy finds while it compiles, so that nothing is read a second time for the lints.
+    pub(crate) fn linted(&self, args: &[&str]) -> Command {
+        let mut command = self.cargo(args);
+        if self.builds_lint() {
+            command.env("RUSTC_WORKSPACE_WRAPPER", CLIPPY);
+        }
+        command
+    }
+
+    /// Whether [`Self::linted`] builds find what clippy finds. Not on Windows, which keeps the file of a running program:
+    /// this one is built again too.
+    pub(crate) fn builds_lint(&self) -> bool {
+        cfg!(not(windows)) && find_program(CLIPPY).is_some()
     }
 
     /// Builds a program of the workspace beside the tests, and returns its path.

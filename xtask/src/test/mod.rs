@@ -2,10 +2,10 @@
 //! Each prints its result, its time and the processor's, and a summary closes the list.
 //!
 //! A step that lacks a tool installs it where it can (Debian packages as root, Node packages with `npm ci`), else it
-//! is skipped with the remedy; with `CI=true` that is a failure. The gate builds everything once: tests, browser, logs,
-//! README, lessons and the Python package share the development profile's artefacts. What samples do not show, and what
-//! needs another build of the same sources, is in the full check. CI builds in two lanes where the steps allow it
-//! ([`beside`]).
+//! is skipped with the remedy; with `CI=true` that is a failure. The gate builds everything once, with clippy as the
+//! compiler: tests, browser, logs, README, lessons and the Python package share the development profile's artefacts.
+//! What samples do not show, and what needs another build of the same sources, is in the full check. CI builds in two
+//! lanes where the steps allow it ([`beside`]).
 
 mod beside;
 mod cost;
@@ -21,6 +21,10 @@ use beside::Beside;
 use cost::Clock;
 pub(crate) use cost::Cost;
 pub(crate) use tools::installed_chromium;
+
+use std::collections::BTreeSet;
+
+use serde_json::Value;
 
 use crate::project::{Project, output, run as run_command};
 use crate::tidy::{
@@ -91,6 +95,12 @@ const STEPS: [Step; 22] = [
         check: dependencies,
     },
     Step {
+        name: "build",
+        what: "libraries, programs and tests of all crates compile",
+        part_of: Check::Gate,
+        check: build,
+    },
+    Step {
         name: "clippy",
         what: "no warning from the compiler or clippy",
         part_of: Check::Gate,
@@ -119,12 +129,6 @@ const STEPS: [Step; 22] = [
         what: "simulator, experiments, report, session, logs and lab compile for a browser",
         part_of: Check::Gate,
         check: wasm,
-    },
-    Step {
-        name: "build",
-        what: "libraries, programs and tests of all crates compile",
-        part_of: Check::Gate,
-        check: build,
     },
     Step {
         name: "test",
@@ -208,7 +212,7 @@ const STEPS: [Step; 22] = [
 
 /// Steps that run beside another one with `CI=true`: they build into folders of their own, and have long phases of a
 /// single thread, as the compiler has.
-const BESIDE: (&str, [&str; 3]) = ("clippy", ["sketches", "firmware", "wasm"]);
+const BESIDE: (&str, [&str; 3]) = ("build", ["sketches", "firmware", "wasm"]);
 
 /// Text of `cargo xtask test --help`.
 pub(crate) fn help() -> String {
@@ -335,12 +339,24 @@ fn found_nothing(nothing: bool) -> Result<(), Stop> {
     }
 }
 
-/// The robot's crates are checked a second time as the firmware uses them, without their host-only features.
+/// What the compiler said while it built all, which cargo repeats. The robot's crates are checked a second time as the
+/// firmware uses them, without their host-only features.
 fn clippy(project: &Project) -> Result<(), Stop> {
     tools::component(project, "clippy", "clippy")?;
     const DENY: [&str; 3] = ["--", "-D", "warnings"];
-    let whole = ["clippy", "--workspace", "--all-targets", "--locked"];
-    run_command(&mut project.cargo(&[&whole[..], &DENY].concat()))?;
+    if project.builds_lint() {
+        let messages = output(
+            project
+                .build_all()
+                .args(["--quiet", "--message-format=json"]),
+        )?;
+        let warnings = warnings(&messages);
+        warnings.iter().for_each(|warning| println!("{warning}"));
+        found_nothing(warnings.is_empty())?;
+    } else {
+        let whole = ["clippy", "--workspace", "--all-targets", "--locked"];
+        run_command(&mut project.cargo(&[&whole[..], &DENY].concat()))?;
+    }
     let robot = [
         "clippy",
         "-p",
@@ -356,6 +372,18 @@ fn clippy(project: &Project) -> Result<(), Stop> {
     )?)
 }
 
+/// What is wrong by the messages of cargo, each once.
+fn warnings(messages: &str) -> Vec<String> {
+    let of = |line: &str| {
+        let message = serde_json::from_str::<Value>(line).ok()?;
+        (message["reason"] == "compiler-message").then_some(())?;
+        let rendered = message["message"]["rendered"].as_str()?;
+        Some(rendered.to_owned())
+    };
+    let found: BTreeSet<_> = messages.lines().filter_map(of).collect();
+    found.into_iter().collect()
+}
+
 fn doc(project: &Project) -> Result<(), Stop> {
     let mut doc = project.cargo(&["doc", "--workspace", "--no-deps", "--locked"]);
     Ok(run_command(doc.env("RUSTDOCFLAGS", "-D warnings"))?)
@@ -363,6 +391,8 @@ fn doc(project: &Project) -> Result<(), Stop> {
 
 /// Compiles all that the steps after it run; what that takes is separate from what they take themselves.
 fn build(project: &Project) -> Result<(), Stop> {
+    // Without clippy it builds too, and that step says what is missing.
+    let _ = tools::component(project, "clippy", "clippy");
     let messages = output(
         project
             .build_all()
@@ -382,7 +412,7 @@ fn build(project: &Project) -> Result<(), Stop> {
 /// Where simavr or avr-gdb is missing, the tests that need it skip themselves, so this step is incomplete.
 fn tests(project: &Project) -> Result<(), Stop> {
     let tools = [tools::simavr(project), tools::avr_gdb(project)];
-    let mut test = project.cargo(&["test", "--workspace", "--locked", "--no-fail-fast"]);
+    let mut test = project.linted(&["test", "--workspace", "--locked", "--no-fail-fast"]);
     if project.full {
         test.env(FULL, "1");
     }
@@ -429,6 +459,15 @@ mod tests {
             judge(missing(), true),
             Outcome::Failed("not checked: install it".to_owned())
         );
+    }
+
+    #[test]
+    fn a_warning_of_any_unit_is_found_once() {
+        let warning = r#"{"reason":"compiler-message","message":{"level":"warning","rendered":"warning: unused\n"}}"#;
+        let artifact = r#"{"reason":"compiler-artifact","fresh":true}"#;
+        let messages = [artifact, warning, warning, "no JSON"].join("\n");
+        assert_eq!(warnings(&messages), ["warning: unused\n"]);
+        assert!(warnings(artifact).is_empty());
     }
 
     /// Else they would be left out.
