@@ -15,10 +15,10 @@ static INPUT: Byte = Byte::new(NONE);
 /// Result of the conversion of analogue input `input` (0..=15) begun by the last call, 0..=1023; begins the next one.
 /// `None` if that one was of another input, or there was none.
 pub fn sample(input: u8) -> Option<u16> {
-    let last = (INPUT.get() == input).then(|| get!(converter().adc()));
+    let last = (INPUT.get() == input).then(|| get!(converter().adc));
     INPUT.set(input);
-    put!(converter().admux(), SUPPLY | input & 7);
-    put!(converter().adcsrb(), input & 8);
-    put!(converter().adcsra(), BEGIN);
+    put!(converter().admux, SUPPLY | input & 7);
+    put!(converter().adcsrb, input & 8);
+    put!(converter().adcsra, BEGIN);
     last
 }

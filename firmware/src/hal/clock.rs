@@ -26,14 +26,14 @@ static TICK: Word = Word::new(0);
 /// Now. Only for interrupt handlers: the timer's halves are read through a latch that the handlers share.
 #[inline(always)]
 pub(super) fn now(_: CriticalSection<'_>) -> u16 {
-    get!(timer_1().tcnt1())
+    get!(timer_1().tcnt1)
 }
 
 /// Makes compare C interrupt after `counts`, and not before: clears a pending interrupt.
 #[inline(always)]
 pub(super) fn trigger_again_in(counts: u16, section: CriticalSection<'_>) {
-    put!(timer_1().ocr1c(), now(section).wrapping_add(counts));
-    put!(timer_1().tifr1(), COMPARE_C);
+    put!(timer_1().ocr1c, now(section).wrapping_add(counts));
+    put!(timer_1().tifr1, COMPARE_C);
 }
 
 /// Ticks so far, wrapping.
@@ -49,19 +49,19 @@ pub fn last_tick() -> (u8, Stamp) {
 
 /// Free running, clock / 8; compare A, B and C interrupt.
 pub(super) fn start() {
-    put!(timer_1().tccr1a(), 0);
-    put!(timer_1().ocr1a(), TICK_COUNTS);
-    put!(timer_1().ocr1b(), OUTPUT_COUNTS);
-    put!(timer_1().ocr1c(), OUTPUT_COUNTS);
-    put!(timer_1().timsk1(), 0b1110);
-    put!(timer_1().tccr1b(), 0b010);
+    put!(timer_1().tccr1a, 0);
+    put!(timer_1().ocr1a, TICK_COUNTS);
+    put!(timer_1().ocr1b, OUTPUT_COUNTS);
+    put!(timer_1().ocr1c, OUTPUT_COUNTS);
+    put!(timer_1().timsk1, 0b1110);
+    put!(timer_1().tccr1b, 0b010);
 }
 
 handler! { __vector_17, "TIMER1_COMPA", |section| {
-    let tick = get!(timer_1().ocr1a());
-    put!(timer_1().ocr1a(), tick.wrapping_add(TICK_COUNTS));
-    put!(timer_1().ocr1b(), tick.wrapping_add(OUTPUT_COUNTS));
-    put!(timer_1().ocr1c(), tick.wrapping_add(OUTPUT_COUNTS));
+    let tick = get!(timer_1().ocr1a);
+    put!(timer_1().ocr1a, tick.wrapping_add(TICK_COUNTS));
+    put!(timer_1().ocr1b, tick.wrapping_add(OUTPUT_COUNTS));
+    put!(timer_1().ocr1c, tick.wrapping_add(OUTPUT_COUNTS));
     TICK.set(tick, section);
     encoder::latch();
     TICKS.set(TICKS.get().wrapping_add(1));

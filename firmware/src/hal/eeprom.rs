@@ -10,14 +10,14 @@ const ALLOW: u8 = 1 << 2;
 
 /// The last write is done.
 pub fn is_ready() -> bool {
-    get!(eeprom().eecr()) & WRITE == 0
+    get!(eeprom().eecr) & WRITE == 0
 }
 
 /// A byte, while [`is_ready`].
 pub fn read(address: u16) -> u8 {
-    put!(eeprom().eear(), address);
-    put!(eeprom().eecr(), READ);
-    get!(eeprom().eedr())
+    put!(eeprom().eear, address);
+    put!(eeprom().eecr, READ);
+    get!(eeprom().eedr)
 }
 
 /// Begins to write a byte, while [`is_ready`]; an equal byte is not rewritten, since cells wear out.
@@ -25,10 +25,10 @@ pub fn write(cell: Cell) {
     if read(cell.address) == cell.value {
         return;
     }
-    put!(eeprom().eedr(), cell.value);
+    put!(eeprom().eedr, cell.value);
     // The write must begin within four cycles of being allowed.
     avr_device::interrupt::free(|_| {
-        put!(eeprom().eecr(), ALLOW);
-        put!(eeprom().eecr(), ALLOW | WRITE);
+        put!(eeprom().eecr, ALLOW);
+        put!(eeprom().eecr, ALLOW | WRITE);
     });
 }

@@ -50,12 +50,12 @@ static RIGHT: Ring = Ring::new();
 /// Both edges of INT0 and INT1.
 pub(super) fn start() {
     // Any edge interrupts, on INT0 to INT3 (encoders and side echoes).
-    put!(external().eicra(), 0b0101_0101);
+    put!(external().eicra, 0b0101_0101);
     // And on INT5 (front echo).
-    put!(external().eicrb(), 0b0000_0100);
+    put!(external().eicrb, 0b0000_0100);
     // Clears flags raised by this setup.
-    put!(external().eifr(), 0b0010_1111);
-    put!(external().eimsk(), 0b0010_1111);
+    put!(external().eifr, 0b0010_1111);
+    put!(external().eimsk, 0b0010_1111);
 }
 
 /// At the tick: later edges belong to the next one.

@@ -59,10 +59,10 @@ static SENDING: Ring = Ring::new();
 
 /// 8 data bits, no parity, one stop bit, which is what the register holds after a reset.
 pub(super) fn start() {
-    put!(usart_2().ubrr2(), DIVIDER);
-    put!(usart_2().ucsr2a(), 1 << 1);
+    put!(usart_2().ubrr2, DIVIDER);
+    put!(usart_2().ucsr2a, 1 << 1);
     // Receiver and transmitter on; a received byte interrupts.
-    put!(usart_2().ucsr2b(), 0b1001_1000);
+    put!(usart_2().ucsr2b, 0b1001_1000);
 }
 
 /// The next byte that arrived.
@@ -80,14 +80,14 @@ pub fn send(byte: u8) {
     SENDING.push(byte);
     // An empty data register interrupts again. The handlers of this register come between only whole instructions.
     avr_device::interrupt::free(|_| {
-        change!(usart_2().ucsr2b(), set 1 << 5, clear 0);
+        change!(usart_2().ucsr2b, set 1 << 5, clear 0);
     });
 }
 
 handler! { __vector_51, "USART2_RX", |_section| {
     // A frame error is a break or noise, not a byte.
-    let broken = get!(usart_2().ucsr2a()) & 1 << 4 != 0;
-    let byte = get!(usart_2().udr2());
+    let broken = get!(usart_2().ucsr2a) & 1 << 4 != 0;
+    let byte = get!(usart_2().udr2);
     if !broken && RECEIVED.len() < RING {
         RECEIVED.push(byte);
     }
@@ -95,7 +95,7 @@ handler! { __vector_51, "USART2_RX", |_section| {
 
 handler! { __vector_52, "USART2_UDRE", |_section| {
     match SENDING.pop() {
-        Some(byte) => put!(usart_2().udr2(), byte),
-        None => change!(usart_2().ucsr2b(), set 0, clear 1 << 5),
+        Some(byte) => put!(usart_2().udr2, byte),
+        None => change!(usart_2().ucsr2b, set 0, clear 1 << 5),
     };
 } }

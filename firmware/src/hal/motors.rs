@@ -25,7 +25,7 @@ macro_rules! enable {
 
             #[inline(always)]
             fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
-                put!($timer().$compare(), duty);
+                put!($timer().$compare, duty);
                 Ok(())
             }
         }
@@ -71,9 +71,9 @@ impl Bridge {
     /// Writes the pins; for interrupt handlers.
     #[inline(always)]
     pub(super) fn write(self) {
-        change!(port_h().porth(), set self.left, clear LEFT_DIRECTIONS);
-        change!(port_e().porte(), set self.right_e, clear pins::RIGHT_BACKWARD.mask());
-        change!(port_g().portg(), set self.right_g, clear pins::RIGHT_FORWARD.mask());
+        change!(port_h().porth, set self.left, clear LEFT_DIRECTIONS);
+        change!(port_e().porte, set self.right_e, clear pins::RIGHT_BACKWARD.mask());
+        change!(port_g().portg, set self.right_g, clear pins::RIGHT_FORWARD.mask());
         let Ok(()) = LeftEnable.set_duty_cycle(u16::from(self.left_pwm));
         let Ok(()) = RightEnable.set_duty_cycle(u16::from(self.right_pwm));
     }
@@ -81,12 +81,12 @@ impl Bridge {
 
 /// Released, PWM running at zero.
 pub(super) fn start() {
-    change!(port_h().ddrh(), set LEFT_DIRECTIONS | pins::LEFT_ENABLE.mask(), clear 0);
-    change!(port_e().ddre(), set pins::RIGHT_BACKWARD.mask() | pins::RIGHT_ENABLE.mask(), clear 0);
-    change!(port_g().ddrg(), set pins::RIGHT_FORWARD.mask(), clear 0);
+    change!(port_h().ddrh, set LEFT_DIRECTIONS | pins::LEFT_ENABLE.mask(), clear 0);
+    change!(port_e().ddre, set pins::RIGHT_BACKWARD.mask() | pins::RIGHT_ENABLE.mask(), clear 0);
+    change!(port_g().ddrg, set pins::RIGHT_FORWARD.mask(), clear 0);
     // Mode 1, clear on match counting up; clock / 64: 16 MHz / (64 * 510) = 490 Hz.
-    put!(timer_3().tccr3a(), 0b1000_0001);
-    put!(timer_3().tccr3b(), 0b011);
-    put!(timer_4().tccr4a(), 0b1000_0001);
-    put!(timer_4().tccr4b(), 0b011);
+    put!(timer_3().tccr3a, 0b1000_0001);
+    put!(timer_3().tccr3b, 0b011);
+    put!(timer_4().tccr4a, 0b1000_0001);
+    put!(timer_4().tccr4b, 0b011);
 }

@@ -10,8 +10,8 @@ const ON: u8 = 0b0000_1011;
 
 /// The reset cause; reading clears the flags.
 pub fn reset_cause() -> ResetCause {
-    let flags = get!(cpu().mcusr());
-    put!(cpu().mcusr(), 0);
+    let flags = get!(cpu().mcusr);
+    put!(cpu().mcusr, 0);
     if flags & 1 << 3 != 0 {
         ResetCause::Watchdog
     } else if flags & 1 << 0 != 0 {
@@ -28,8 +28,8 @@ pub fn reset_cause() -> ResetCause {
 pub fn start_watchdog() {
     feed_watchdog();
     // The second write must follow the first within four cycles.
-    put!(watchdog().wdtcsr(), CHANGE);
-    put!(watchdog().wdtcsr(), ON);
+    put!(watchdog().wdtcsr, CHANGE);
+    put!(watchdog().wdtcsr, ON);
 }
 
 /// Resets the watchdog.
@@ -41,7 +41,7 @@ pub fn feed_watchdog() {
 /// Sleeps until a tick other than the one numbered `tick`; interrupts are served meanwhile.
 pub fn sleep_after(tick: u8) {
     // Idle mode, enabled.
-    put!(cpu().smcr(), 1);
+    put!(cpu().smcr, 1);
     loop {
         avr_device::interrupt::disable();
         if clock::ticks() != tick {

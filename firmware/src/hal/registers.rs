@@ -37,8 +37,12 @@ blocks! {
 /// Writes a register whole.
 macro_rules! put {
     ($register:expr, $value:expr) => {
-        // SAFETY: the datasheet defines every value of this register, and none of them affects memory.
-        $register.write(|to| unsafe { to.bits($value) })
+        $register.write(|to| {
+            #[allow(unused_unsafe, reason = "of some registers every value is known to be defined")]
+            // SAFETY: the datasheet defines every value of this register, and none of them affects memory.
+            let to = unsafe { to.bits($value) };
+            to
+        })
     };
 }
 
@@ -52,8 +56,12 @@ macro_rules! get {
 /// Sets some bits of a register and clears others; only where no interrupt can come between.
 macro_rules! change {
     ($register:expr, set $set:expr, clear $clear:expr) => {
-        // SAFETY: as for `put`.
-        $register.modify(|was, to| unsafe { to.bits((was.bits() & !$clear) | $set) })
+        $register.modify(|was, to| {
+            #[allow(unused_unsafe, reason = "as for `put`")]
+            // SAFETY: as for `put`.
+            let to = unsafe { to.bits((was.bits() & !$clear) | $set) };
+            to
+        })
     };
 }
 

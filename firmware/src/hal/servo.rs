@@ -49,13 +49,13 @@ pub(super) fn point(counts: u16, section: CriticalSection<'_>) {
 }
 
 pub(super) fn start() {
-    change!(port_h().ddrh(), set pins::SERVO.mask(), clear 0);
-    put!(timer_2().tccr2a(), CLEAR);
-    put!(timer_2().ocr2a(), 128);
+    change!(port_h().ddrh, set pins::SERVO.mask(), clear 0);
+    put!(timer_2().tccr2a, CLEAR);
+    put!(timer_2().ocr2a, 128);
     // Overflow and compare A interrupt.
-    put!(timer_2().timsk2(), 0b011);
+    put!(timer_2().timsk2, 0b011);
     // Clock / 64.
-    put!(timer_2().tccr2b(), 0b100);
+    put!(timer_2().tccr2b, 0b100);
 }
 
 /// Half a wrap of the timer has passed. `odd` is 1 for the second half; it is passed in rather than counted, since of
@@ -64,15 +64,15 @@ pub(super) fn start() {
 fn half(odd: u8, section: CriticalSection<'_>) {
     let half = (HALF.get() & !1) | odd;
     if half == 0 {
-        put!(timer_2().ocr2b(), (START % 256) as u8);
-        put!(timer_2().tccr2a(), SET);
+        put!(timer_2().ocr2b, (START % 256) as u8);
+        put!(timer_2().tccr2a, SET);
         // The fall, in counts from the start of this wrap, is set up by the last half wrap 64 counts before it.
         let fall = START + LENGTH.get(section);
         FALL_HALF.set(((fall - 64) >> 7) as u8);
         FALL_COUNT.set((fall & 0xFF) as u8);
     } else if half == FALL_HALF.get() {
-        put!(timer_2().ocr2b(), FALL_COUNT.get());
-        put!(timer_2().tccr2a(), CLEAR);
+        put!(timer_2().ocr2b, FALL_COUNT.get());
+        put!(timer_2().tccr2a, CLEAR);
     }
     HALF.set(if half + 1 == HALVES { 0 } else { half + 1 });
 }

@@ -47,8 +47,8 @@ fn edge(line: &SharedLine, high: bool, section: CriticalSection<'_>) {
 
 /// Triggers low; echoes are inputs from reset on.
 pub(super) fn start() {
-    change!(port_j().ddrj(), set TRIGGERS_J, clear 0);
-    change!(port_b().ddrb(), set TRIGGERS_B, clear 0);
+    change!(port_j().ddrj, set TRIGGERS_J, clear 0);
+    change!(port_b().ddrb, set TRIGGERS_B, clear 0);
 }
 
 /// Requests a ping at the next compare C; discards that sonar's previous answer.
@@ -71,9 +71,9 @@ impl OutputPin for Trigger<'_> {
     #[inline(always)]
     fn set_high(&mut self) -> Result<(), Infallible> {
         match self.0 {
-            SonarId::Left => change!(port_j().portj(), set pins::LEFT_TRIGGER.mask(), clear 0),
-            SonarId::Right => change!(port_b().portb(), set pins::RIGHT_TRIGGER.mask(), clear 0),
-            SonarId::Front => change!(port_j().portj(), set pins::FRONT_TRIGGER.mask(), clear 0),
+            SonarId::Left => change!(port_j().portj, set pins::LEFT_TRIGGER.mask(), clear 0),
+            SonarId::Right => change!(port_b().portb, set pins::RIGHT_TRIGGER.mask(), clear 0),
+            SonarId::Front => change!(port_j().portj, set pins::FRONT_TRIGGER.mask(), clear 0),
         };
         Ok(())
     }
@@ -81,9 +81,9 @@ impl OutputPin for Trigger<'_> {
     #[inline(always)]
     fn set_low(&mut self) -> Result<(), Infallible> {
         match self.0 {
-            SonarId::Left => change!(port_j().portj(), set 0, clear pins::LEFT_TRIGGER.mask()),
-            SonarId::Right => change!(port_b().portb(), set 0, clear pins::RIGHT_TRIGGER.mask()),
-            SonarId::Front => change!(port_j().portj(), set 0, clear pins::FRONT_TRIGGER.mask()),
+            SonarId::Left => change!(port_j().portj, set 0, clear pins::LEFT_TRIGGER.mask()),
+            SonarId::Right => change!(port_b().portb, set 0, clear pins::RIGHT_TRIGGER.mask()),
+            SonarId::Front => change!(port_j().portj, set 0, clear pins::FRONT_TRIGGER.mask()),
         };
         Ok(())
     }
@@ -115,15 +115,15 @@ fn raise(line: &SharedLine, mut trigger: Trigger<'_>) {
 }
 
 handler! { __vector_3, "INT2", |section| {
-    edge(&LEFT, get!(port_d().pind()) & pins::LEFT_ECHO.mask() != 0, section);
+    edge(&LEFT, get!(port_d().pind) & pins::LEFT_ECHO.mask() != 0, section);
 } }
 
 handler! { __vector_4, "INT3", |section| {
-    edge(&RIGHT, get!(port_d().pind()) & pins::RIGHT_ECHO.mask() != 0, section);
+    edge(&RIGHT, get!(port_d().pind) & pins::RIGHT_ECHO.mask() != 0, section);
 } }
 
 handler! { __vector_6, "INT5", |section| {
-    edge(&FRONT, get!(port_e().pine()) & pins::FRONT_ECHO.mask() != 0, section);
+    edge(&FRONT, get!(port_e().pine) & pins::FRONT_ECHO.mask() != 0, section);
 } }
 
 const _: () = assert!(ECHOES_D == 0b1100 && pins::FRONT_ECHO.bit == 5);
