@@ -1,11 +1,14 @@
-//! The experiments on the shipped image: the chip passes wherever the native robot passes.
+//! The experiments on the shipped image: the chip passes wherever the native robot passes, and no tick is late.
 //!
 //! One seed of each here; `cargo xtask campaign --only medians` runs twenty and compares the metrics.
 
 use crate::board::image_path;
+use crate::in_time::timed;
+use crate::is_full;
+use rayon::prelude::*;
 use rumbo_experiment::files::firmware::beside;
-use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup};
-use rumbo_experiment::run::{RunResult, run_all};
+use rumbo_experiment::files::{Kind, Library, Overrides, Setup};
+use rumbo_experiment::run::run;
 use std::sync::Arc;
 
 /// The robot of each run. Which way it takes around boxes may depend on a few cycles, and now and then the longer one
@@ -34,7 +37,11 @@ const OF_EACH_MODE: [&str; 13] = [
     "mode8-lane",
 ];
 
-/// Runs each once natively, then those that passed on the image; returns their names, with their rigs.
+/// One in so many modes and rigs is tried in the gate; all in the full check.
+const SAMPLE: usize = 3;
+
+/// Runs each once natively, then those that passed on the image, where no tick may be late either; returns their names,
+/// with their rigs.
 fn what_passes_natively_passes(setups: Vec<Setup>) -> Vec<(String, String)> {
     let Some(image) = image_path() else {
         return Vec::new();
@@ -44,40 +51,24 @@ fn what_passes_natively_passes(setups: Vec<Setup>) -> Vec<(String, String)> {
         ..Overrides::default()
     };
     let firmware = Library::new().setup("free", &firmware).unwrap().firmware;
-    let natively = all(&setups);
     let mut passed: Vec<Setup> = setups
-        .into_iter()
-        .zip(natively)
-        .filter_map(|(setup, result)| result.pass.then_some(setup))
+        .into_par_iter()
+        .filter(|setup| run(setup, seed(&setup.scenario.name)).unwrap().pass)
         .collect();
     for setup in &mut passed {
         let image = firmware.as_deref().unwrap().clone();
         let with_policy = beside(image, setup.policy.as_ref()).unwrap();
         setup.firmware = Some(Arc::new(with_policy));
     }
-    let failed: Vec<_> = all(&passed)
-        .into_iter()
-        .zip(&passed)
-        .filter(|(result, _)| !result.pass)
-        .map(|(result, setup)| (result.scenario, &setup.scenario.rig, result.failures))
-        .collect();
+    let failed = passed.par_iter().filter_map(|setup| {
+        let (result, longest) = timed(setup, seed(&setup.scenario.name));
+        let rig = &setup.scenario.rig;
+        (!result.pass || !longest.is_in_time()).then_some((result, longest, rig))
+    });
+    let failed: Vec<_> = failed.collect();
     assert!(failed.is_empty(), "{failed:#?}");
     let name = |setup: Setup| (setup.scenario.name, setup.scenario.rig);
     passed.into_iter().map(name).collect()
-}
-
-fn all(setups: &[Setup]) -> Vec<RunResult> {
-    let jobs: Vec<_> = setups
-        .iter()
-        .map(|setup| (setup, seed(&setup.scenario.name)))
-        .collect();
-    let mut results = Vec::new();
-    run_all(&jobs, |_, result| {
-        results.push(result);
-        Ok::<(), FileError>(())
-    })
-    .unwrap();
-    results
 }
 
 #[test]
@@ -107,8 +98,10 @@ fn every_mode_keeps_its_limits_in_every_rig_that_can_do_it() {
     let setups = OF_EACH_MODE
         .iter()
         .flat_map(|name| rigs.iter().filter_map(|rig| in_rig(name, rig)));
-    let passed = what_passes_natively_passes(setups.collect());
+    let every = if is_full() { 1 } else { SAMPLE };
+    let passed = what_passes_natively_passes(setups.step_by(every).collect());
     println!("{passed:?}");
     // Driving by the wheels alone is possible in all five rigs, by sonars where they look the right way.
-    assert!(passed.is_empty() || passed.len() >= 24, "{}", passed.len());
+    let few = passed.len() * every < 24;
+    assert!(passed.is_empty() || !few, "{}", passed.len());
 }

@@ -197,6 +197,8 @@ fn cargo(project: &Project, command: &str, words: &[&str]) -> Result<(), Stop> {
         "--package=rumbo-browser",
         "--package=rumbo-report",
         "-Zbuild-std=std,panic_abort",
+        // No backtraces: there are none in a browser.
+        "-Zbuild-std-features=",
     ]);
     build.args(words).args(["--target", TARGET]);
     build.arg("--target-dir").arg(&target);

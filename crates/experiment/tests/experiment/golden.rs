@@ -5,7 +5,7 @@
 
 #![cfg(test)]
 
-use crate::closed_loop::fifty;
+use crate::closed_loop::driven;
 use rumbo_experiment::MODEL;
 use rumbo_experiment::files::{Kind, Library};
 use std::fmt::Write as _;
@@ -19,7 +19,7 @@ fn metrics_are_those_of_the_golden_files() {
     let mut wrong = Vec::new();
     for name in library.list(Kind::Scenario) {
         let mut text = String::new();
-        for run in &fifty(&name)[..3] {
+        for run in &driven(&name)[..3] {
             writeln!(text, "[seed.{}]", run.seed).unwrap();
             for (metric, value) in &run.metrics {
                 writeln!(text, "\"{metric}\" = {value:.4}").unwrap();
