@@ -6,6 +6,7 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rumbo_experiment::files::FileError;
+use rumbo_experiment::note::Note;
 use rumbo_experiment::run::{RunResult, run_all_on};
 use rumbo_sim::trace::Sample;
 
@@ -75,8 +76,9 @@ fn in_python(py: Python<'_>, result: RunResult, trace: bool) -> PyResult<Bound<'
         metrics.set_item(name, value)?;
     }
     run.set_item("metrics", metrics)?;
-    run.set_item("failures", &result.failures)?;
-    run.set_item("notes", &result.notes)?;
+    let lines = |notes: &[Note]| notes.iter().map(Note::to_string).collect::<Vec<_>>();
+    run.set_item("failures", lines(&result.failures))?;
+    run.set_item("notes", lines(&result.notes))?;
     if trace && result.robots.is_empty() {
         run.set_item("trace", columns(py, &result.trace.samples)?)?;
     }

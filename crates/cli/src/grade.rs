@@ -18,6 +18,7 @@ use crate::run::set_threads;
 use indicatif::{ProgressBar, ProgressStyle};
 use likeness::Likeness;
 use rumbo_experiment::grade::{Assignment, Mark, grade as grade_all};
+use rumbo_experiment::note::Note;
 use rumbo_report::Stamp;
 use rumbo_report::grade::{class, student};
 use rumbo_report::text::Language;
@@ -125,15 +126,13 @@ fn compiler(
 }
 
 /// Deviations from the assignment's compiler and core.
-fn class_notes(assignment: &Assignment, compiler: Option<&Compiler>) -> Vec<String> {
+fn class_notes(assignment: &Assignment, compiler: Option<&Compiler>) -> Vec<Note> {
     let Some(toolchain) = compiler.map(Compiler::toolchain) else {
         return Vec::new();
     };
-    let differs = |what: &str, wanted: &Option<String>, is: &str| {
-        let wanted = wanted.as_ref().filter(|wanted| *wanted != is)?;
-        Some(format!(
-            "compiled with {what} {is}; the assignment's marks are for {wanted}"
-        ))
+    let differs = |what, wanted: &Option<String>, is: &String| {
+        let (wanted, is) = (wanted.clone().filter(|wanted| wanted != is)?, is.clone());
+        Some(Note::OtherCompiler { what, is, wanted })
     };
     [
         differs("avr-gcc", &assignment.compiler, &toolchain.compiler),
@@ -193,7 +192,7 @@ fn write(
     args: &GradeArgs,
     assignment: &Assignment,
     (marks, files): (&[Mark], &[String]),
-    notes: &[String],
+    notes: &[Note],
     likeness: &Likeness,
     stamp: &Stamp,
 ) -> Result<(), Failure> {
@@ -256,7 +255,7 @@ fn file_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
         .collect()
 }
 
-fn report(args: &GradeArgs, marks: &[Mark], notes: &[String]) -> Result<(), Failure> {
+fn report(args: &GradeArgs, marks: &[Mark], notes: &[Note]) -> Result<(), Failure> {
     let rows: Vec<Vec<String>> = marks
         .iter()
         .map(|mark| {
@@ -265,12 +264,14 @@ fn report(args: &GradeArgs, marks: &[Mark], notes: &[String]) -> Result<(), Fail
                 format!("{:.2} / {}", mark.points, output::figure(mark.of)),
                 if mark.pass { "ok" } else { "MISSED" }.to_owned(),
             ];
-            row.extend(mark.refused.iter().chain(&mark.ended).next().cloned());
+            row.extend(mark.why_not());
             row
         })
         .collect();
     output::table(&rows)?;
-    notes.iter().for_each(|note| output::note(note));
+    notes
+        .iter()
+        .for_each(|note| output::note(&note.to_string()));
     output::line(&output::shown(&args.out.join(PAGE)))?;
     match marks.iter().all(|mark| mark.pass) {
         true => Ok(()),

@@ -238,6 +238,7 @@ fn report(setup: &Setup, results: &[RunResult]) -> Result<(), Failure> {
         }
         for note in &result.notes {
             // What a display shows has lines of its own.
+            let note = note.to_string();
             let mut lines = note.lines();
             let first = lines.next().unwrap_or_default();
             output::line(&format!("  note, seed {}: {first}", result.seed))?;

@@ -483,3 +483,10 @@ impl Fault {
         }
     }
 }
+
+#[cfg(feature = "names")]
+impl core::fmt::Display for Fault {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.explanation())
+    }
+}

@@ -56,7 +56,7 @@ pub fn run_calibration(setup: &Setup, seed: u64) -> Result<CalibrationRun, FileE
         failures: found
             .as_ref()
             .err()
-            .map(ToString::to_string)
+            .map(|error| error.to_string().into())
             .into_iter()
             .collect(),
         trace,

@@ -17,6 +17,7 @@ pub mod files;
 #[cfg(feature = "host")]
 pub mod grade;
 pub mod metrics;
+pub mod note;
 pub mod observe;
 mod operator;
 pub mod quantise;

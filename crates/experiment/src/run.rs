@@ -16,6 +16,7 @@ pub use batch::{in_order, run_all, run_all_on, run_each};
 use crate::calibrate::calibrate_simulated;
 use crate::files::{Calibrated, FileError, Setup, did_you_mean, near, unknown};
 use crate::metrics::{self, Metrics};
+use crate::note::Note;
 use crate::operator::Operator;
 use rumbo_control::params::{ParamId, Params};
 use rumbo_emulator::observe::waveform::Waveform;
@@ -53,13 +54,13 @@ pub struct RunResult {
     pub metrics: Metrics,
     /// Why it did not pass, a line each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub failures: Vec<String>,
+    pub failures: Vec<Note>,
     /// Notes for the reader, a line each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// How the program ended, if it could not go on.
     #[serde(skip)]
-    pub ended: Option<String>,
+    pub ended: Option<Note>,
     /// Ground truth; of several robots each has its own.
     #[serde(skip)]
     pub trace: Trace,
@@ -239,12 +240,13 @@ fn judged(setup: &Setup, mut whole: RunResult) -> RunResult {
     }
     let own = scenario.has_mode && setup.firmware.is_some() && !setup.takes_parameters();
     if own && whole.failures.len() > MANY {
-        whole.notes.push(format!(
+        let text = format!(
             "scenario {} judges mode {}; a sketch that does something else runs in a scenario without mode and limits, \
              for instance `rumbo run free`",
             scenario.name,
             scenario.mode.name()
-        ));
+        );
+        whole.notes.push(text.into());
     }
     whole.pass = whole.failures.is_empty();
     whole
@@ -276,10 +278,19 @@ impl<S: Deref<Target = Setup> + Clone> Member<S> {
         self.trace.messages = self.operator.received;
         self.trace.link.append(&mut sim.take_tapped());
         let mut failures = self.operator.complaints;
-        let ended = sim.verdict();
-        failures.extend(ended.clone());
         let mut notes = self.operator.notes;
-        notes.extend(sim.mega().map(Mega::notes).into_iter().flatten());
+        let mut ended = None;
+        if let Some(mega) = sim.mega() {
+            let name = mega.firmware().name();
+            let of_program = |note| Note::Program {
+                name: name.to_owned(),
+                note,
+            };
+            ended = mega.verdict().map(of_program);
+            notes.extend(mega.notes().into_iter().map(of_program));
+            notes.extend(mega.data_sheet().map(Note::from));
+        }
+        failures.extend(ended.clone());
         RunResult {
             scenario: self.setup.scenario.name.clone(),
             seed,
@@ -295,12 +306,14 @@ impl<S: Deref<Target = Setup> + Clone> Member<S> {
 
 /// The result of several robots: with the metrics of each and of each pair after their names, and of all.
 fn together(fleet: &Fleet, robots: Vec<RunResult>) -> RunResult {
-    let all = |what: fn(&RunResult) -> &[String]| -> Vec<String> {
-        let robots = robots.iter();
-        let named = robots.flat_map(|robot| what(robot).iter().map(move |text| (robot, text)));
-        named
-            .map(|(robot, text)| format!("{}: {text}", robot.scenario))
-            .collect()
+    let all = |what: fn(&RunResult) -> &[Note]| -> Vec<Note> {
+        let named = robots.iter().flat_map(|robot| {
+            what(robot).iter().map(|note| Note::Robot {
+                name: robot.scenario.clone(),
+                note: Box::new(note.clone()),
+            })
+        });
+        named.collect()
     };
     let own = robots.iter();
     let own: Vec<_> = own
@@ -317,26 +330,28 @@ fn together(fleet: &Fleet, robots: Vec<RunResult>) -> RunResult {
     }
 }
 
-/// The limits that a result misses, a line each.
-fn missed(setup: &Setup, result: &RunResult) -> Vec<String> {
+/// The limits that a result misses.
+fn missed(setup: &Setup, result: &RunResult) -> Vec<Note> {
     let metrics = &result.metrics;
     let mut failures = Vec::new();
     for (name, bounds) in &setup.scenario.limits {
-        match metrics.get(name) {
-            Some(value) if bounds.admit(*value) => {}
-            Some(value) if value.is_finite() => {
-                failures.push(format!("{name} = {value:.4}: limit {bounds}"));
-            }
+        let why = match metrics.get(name) {
+            Some(value) if bounds.admit(*value) => continue,
+            Some(value) if value.is_finite() => format!(" = {value:.4}: limit {bounds}"),
             // The measured event did not happen.
-            Some(_) => failures.push(format!("{name} = never: limit {bounds}")),
-            None if !result.drove() => failures.push(format!(
-                "{name} = never: limit {bounds}; the robot was not armed, or its program drove no wheel"
-            )),
-            None => failures.push(format!(
-                "{name}: this scenario has no such metric; {}",
+            Some(_) => format!(" = never: limit {bounds}"),
+            None if !result.drove() => format!(
+                " = never: limit {bounds}; the robot was not armed, or its program drove no wheel"
+            ),
+            None => format!(
+                ": this scenario has no such metric; {}",
                 instead(name, metrics)
-            )),
-        }
+            ),
+        };
+        failures.push(Note::Limit {
+            metric: name.clone(),
+            why,
+        });
     }
     failures
 }

@@ -2,6 +2,7 @@
 
 use rumbo_control::params::Params;
 use rumbo_experiment::files::{FileError, Setup};
+use rumbo_experiment::note::Note;
 use rumbo_experiment::run::{Player, RunResult, parameters};
 use rumbo_log::{Burst, ExperimentPhase, ExperimentState, LimitState};
 use rumbo_sim::Sim;
@@ -106,10 +107,10 @@ fn verdict(state: &ExperimentState, result: &RunResult) -> ExperimentState {
     };
     for limit in &mut state.limits {
         limit.value = result.metrics.get(&limit.name).copied();
-        let missed = format!("{} = ", limit.name);
-        limit.kept =
-            limit.value.is_some() && !result.failures.iter().any(|line| line.starts_with(&missed));
+        let is_missed =
+            |note: &Note| matches!(note, Note::Limit { metric, .. } if *metric == limit.name);
+        limit.kept = limit.value.is_some() && !result.failures.iter().any(is_missed);
     }
-    state.failures.clone_from(&result.failures);
+    state.failures = result.failures.iter().map(Note::to_string).collect();
     state
 }

@@ -302,7 +302,12 @@ impl Target for SimulatedRobot {
         if !self.ended {
             let ended = self.sim.verdict().map(LinkNews::Ended);
             let stands = || {
-                let why = self.sim.mega()?.standstill()?;
+                let mega = self.sim.mega()?;
+                let why = format!(
+                    "firmware {}: {}",
+                    mega.firmware().name(),
+                    mega.standstill()?
+                );
                 Some(LinkNews::Program(Level::Warning, why))
             };
             let end = ended.or_else(stands);

@@ -4,6 +4,7 @@ use crate::{manifest, others, scene};
 use rumbo_control::Wheels;
 use rumbo_experiment::batch::Robot;
 use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
+use rumbo_experiment::note::Note;
 use rumbo_experiment::run::RunResult;
 use rumbo_log::{
     Burst, Choice, Kind, Manifest, MapPose, Other, Outcome, Said, Scene, Source as Origin, Truth,
@@ -152,7 +153,7 @@ impl<'a> Records<'a> {
             outcome: Some(Outcome {
                 pass: result.pass,
                 metrics: result.metrics.clone().into_iter().collect(),
-                failures: result.failures.clone(),
+                failures: result.failures.iter().map(Note::to_string).collect(),
             }),
         }
     }

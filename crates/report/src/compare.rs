@@ -39,9 +39,6 @@ pub fn page(
             seeds.first().map(ToString::to_string).unwrap_or_default(),
         ),
     ];
-    let values = values
-        .each_ref()
-        .map(|(name, value)| (*name, value.as_str()));
     let mut body = format!("<p>{}</p>\n", escape(&FACTS.with(language, &values)));
     let rows: Vec<Vec<Cell>> = variants
         .iter()

@@ -18,6 +18,7 @@ use pulldown_cmark::{Event, Options, Parser, html};
 use rumbo_control::mode::ReferenceKind;
 use rumbo_control::rig::Rig;
 use rumbo_experiment::grade::{Assignment, Line, Mark, Test, Words};
+use rumbo_experiment::note::Note;
 use rumbo_plot::{Curve, Ink, Panel, Plot, Points};
 use rumbo_wire::Command;
 
@@ -65,8 +66,8 @@ pub fn of(language: Language, words: &Words) -> &str {
 
 /// What is noted of a hand-in or of how its program ended, in a language.
 #[must_use]
-pub fn noted(language: Language, line: &str) -> String {
-    complaint(language, line).text()
+pub fn noted(language: Language, note: &Note) -> String {
+    complaint(language, note).text()
 }
 
 /// With how many seeds a hand-in is driven, and how many of them nobody knows, in a language.
@@ -98,9 +99,6 @@ pub fn earned_in_words(assignment: &Assignment, line: &Line, language: Language)
         ("full", full(language, assignment, line)),
         ("none", in_words(criterion.none)),
     ];
-    let values = values
-        .each_ref()
-        .map(|(name, value)| (*name, value.as_str()));
     EARNED.with(language, &values)
 }
 
@@ -129,12 +127,7 @@ fn full(language: Language, assignment: &Assignment, line: &Line) -> String {
 
 /// The page of one hand-in.
 #[must_use]
-pub fn student(
-    assignment: &Assignment,
-    mark: &Mark,
-    notes: &[String],
-    language: Language,
-) -> String {
+pub fn student(assignment: &Assignment, mark: &Mark, notes: &[Note], language: Language) -> String {
     let mut body = verdict(mark, language);
     let seeds = escape(&seeds_in_words(assignment, language));
     put(&mut body, format_args!("<p>{seeds}</p>\n"));
@@ -165,7 +158,7 @@ pub fn student(
 pub fn class(
     assignment: &Assignment,
     marks: &[Mark],
-    notes: &[String],
+    notes: &[Note],
     language: Language,
     links: &[String],
     alike: &[(String, String)],
@@ -224,13 +217,13 @@ pub fn class(
     )
 }
 
-fn list(language: Language, title: Text, lines: &[String]) -> String {
-    if lines.is_empty() {
+fn list(language: Language, title: Text, notes: &[Note]) -> String {
+    if notes.is_empty() {
         return String::new();
     }
-    let items = lines
+    let items = notes
         .iter()
-        .map(|line| format!("<li>{}</li>\n", complaint(language, line).html()));
+        .map(|note| format!("<li>{}</li>\n", complaint(language, note).html()));
     let items: String = items.collect();
     format!(
         "<div class=\"note\"><p>{}</p><ul>\n{items}</ul></div>\n",
@@ -302,7 +295,6 @@ fn points(assignment: &Assignment, mark: &Mark, language: Language) -> String {
             ("count", mark.touching.to_string()),
             ("of", mark.runs.to_string()),
         ];
-        let runs = runs.each_ref().map(|(name, value)| (*name, value.as_str()));
         let lost = language.number(-mark.penalty, 2);
         let mut row = vec![
             Cell::text(&CONTACT.with(language, &runs)),
@@ -516,9 +508,6 @@ fn distribution(assignment: &Assignment, marks: &[Mark], language: Language) -> 
         ("median", language.number(median, 2)),
         ("pass", pass.to_string()),
     ];
-    let facts = facts
-        .each_ref()
-        .map(|(name, value)| (*name, value.as_str()));
     let facts = CLASS_FACTS.with(language, &facts);
     format!("<p>{}</p>\n{}", escape(&facts), figure(&svg, &facts))
 }

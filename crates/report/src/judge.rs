@@ -6,6 +6,7 @@ use crate::signals::Outcome;
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, escape, with, with_unit, word};
 use rumbo_experiment::files::Bounds;
+use rumbo_experiment::note::Note;
 
 /// A value that is no metric, already in its unit.
 pub(crate) const fn plain(unit: &'static str) -> Shown {
@@ -142,15 +143,8 @@ fn rows(language: Language, outcome: &Outcome) -> Vec<Vec<Cell>> {
 
 /// Failures of the robot or the program besides missed limits.
 fn complaints(language: Language, outcome: &Outcome) -> String {
-    let is_limit = |line: &str| {
-        let of = |key: &String| {
-            line.strip_prefix(key.as_str())
-                .is_some_and(|rest| rest.starts_with([' ', ':']))
-        };
-        outcome.setup.scenario.limits.keys().any(of)
-    };
-    let complaint = |line: &String| {
-        let said = complaints::complaint(language, line).html();
+    let complaint = |note: &Note| {
+        let said = complaints::complaint(language, note).html();
         let name = name_of(&outcome.result.scenario);
         let message = with(
             &escape(MESSAGE.of(language)),
@@ -160,7 +154,7 @@ fn complaints(language: Language, outcome: &Outcome) -> String {
     };
     let failures = outcome.result.failures.iter();
     failures
-        .filter(|line| !is_limit(line))
+        .filter(|note| !matches!(note, Note::Limit { .. }))
         .map(complaint)
         .collect()
 }

@@ -105,9 +105,6 @@ impl Page<'_> {
             ("seed", plan.seed.to_string()),
             ("pass", passed.to_string()),
         ];
-        let values = values
-            .each_ref()
-            .map(|(name, value)| (*name, value.as_str()));
         let mut body = format!("<p>{}</p>\n", escape(&RESULT.with(language, &values)));
         if sweep.rows.len() < plan.len() {
             let [done, all] = [sweep.rows.len(), plan.len()].map(|count| count.to_string());

@@ -42,16 +42,16 @@ impl Text {
     }
 
     /// The text in one language, with values at its places `{{name}}`.
-    pub(crate) fn with(self, language: Language, values: &[(&str, &str)]) -> String {
+    pub(crate) fn with(self, language: Language, values: &[(&str, impl AsRef<str>)]) -> String {
         with(self.of(language), values)
     }
 }
 
 /// A text with values at its places `{{name}}`.
-pub(crate) fn with(text: &str, values: &[(&str, &str)]) -> String {
+pub(crate) fn with(text: &str, values: &[(&str, impl AsRef<str>)]) -> String {
     let mut text = text.to_owned();
     for (name, value) in values {
-        text = text.replace(&format!("{{{{{name}}}}}"), value);
+        text = text.replace(&format!("{{{{{name}}}}}"), value.as_ref());
     }
     text
 }

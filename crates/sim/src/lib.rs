@@ -16,6 +16,7 @@ pub mod fleet;
 pub mod floor;
 mod instruments;
 pub mod mega;
+mod notes;
 pub mod obstacle;
 pub mod remote;
 mod sim;

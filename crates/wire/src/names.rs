@@ -3,6 +3,7 @@
 use rumbo_control::Fault;
 
 use crate::message::{EventKind, Recalled, Refusal, ResetCause};
+use core::fmt;
 
 impl Refusal {
     /// Why the command was refused and what to do.
@@ -39,6 +40,12 @@ impl Refusal {
                 "the robot's sonars do not sit where this mode needs them; mount them so and set the parameter `rig`"
             }
         }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.explanation())
     }
 }
 

@@ -25,8 +25,7 @@ pub(super) fn csv(assignment: &Assignment, marks: &[Mark]) -> String {
             format!("{:.2}", own.map(|line| line.points).sum::<f64>())
         }));
         row.push(format!("{:.2}", mark.penalty));
-        let note = mark.refused.iter().chain(&mark.ended).next();
-        row.push(note.cloned().unwrap_or_default());
+        row.push(mark.why_not().unwrap_or_default());
         rows.push(row);
     }
     let line = |row: &Vec<String>| {

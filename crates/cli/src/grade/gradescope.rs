@@ -3,6 +3,7 @@
 
 use crate::failure::Failure;
 use rumbo_experiment::grade::{Assignment, Mark};
+use rumbo_experiment::note::Note;
 use rumbo_report::Stamp;
 use rumbo_report::grade::{earned_in_words, noted, of, place_in_words, seeds_in_words};
 use rumbo_report::text::Language;
@@ -12,7 +13,7 @@ use serde_json::json;
 pub(super) fn results(
     assignment: &Assignment,
     mark: &Mark,
-    notes: &[String],
+    notes: &[Note],
     language: Language,
     stamp: &Stamp,
 ) -> Result<String, Failure> {
@@ -40,10 +41,11 @@ pub(super) fn results(
             })
         })
         .collect();
-    let text = [notes, &mark.notes, &mark.refused, &mark.ended].concat();
-    let text = text.iter().map(|line| noted(language, line));
-    let seeds = std::iter::once(seeds_in_words(assignment, language));
-    let text: Vec<_> = seeds.chain(text).collect();
+    let mut text = vec![seeds_in_words(assignment, language)];
+    let said = |note: &Note| noted(language, note);
+    text.extend(notes.iter().chain(&mark.notes).map(said));
+    text.extend(mark.refused.iter().cloned());
+    text.extend(mark.ended.iter().map(said));
     let results = json!({
         "extra_data": { "made_by": stamp.text() },
         "score": mark.points,

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use rayon::prelude::*;
 use rumbo_experiment::files::firmware;
 use rumbo_experiment::grade::HandIn;
+use rumbo_experiment::note::Note;
 use rumbo_sketch::archive::{Bounds, unpack};
 use rumbo_sketch::similar::text_of;
 use rumbo_sketch::{Compiler, Given, SketchError, given};
@@ -238,10 +239,10 @@ pub(super) fn compile(
             }
             let mut notes = Vec::new();
             if matches!(one.given, Ok(Given::Image(_))) {
-                notes.push("handed in as an image: its compiler is not known".into());
+                notes.push(Note::HandedInAsImage {});
             }
             if one.is_late {
-                notes.push("handed in late, as its name says".into());
+                notes.push(Note::HandedInLate {});
             }
             HandIn {
                 name: one.name.clone(),

@@ -154,7 +154,7 @@ impl Robot {
 
     /// How its program ended, if it could not go on: what, where, when.
     pub fn ended(&self) -> Option<String> {
-        self.sim.mega()?.verdict()
+        self.sim.verdict()
     }
 
     /// The goal of its world as seen from its start: ahead, left [m].

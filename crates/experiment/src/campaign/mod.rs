@@ -153,8 +153,8 @@ fn judge_limits(setup: &Setup, results: &[RunResult]) -> Finding {
         }
     }
     if let Some(failed) = results.iter().find(|result| !result.pass) {
-        let why = failed.failures.first().map_or("", String::as_str);
-        measured += &format!("; first failure seed {}: {why}", failed.seed);
+        measured += &format!("; first failure seed {}: ", failed.seed);
+        measured.extend(failed.failures.first().map(ToString::to_string));
     }
     let met = passed as f64 >= PASS * results.len() as f64 && !(untouched && touched > 0);
     Finding::new(setup.scenario.name.clone(), required, measured, met)

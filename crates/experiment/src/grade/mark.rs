@@ -3,6 +3,7 @@
 use super::assignment::Assignment;
 use super::program::{Seen, is_of_program};
 use crate::files::FileError;
+use crate::note::Note;
 use crate::run::RunResult;
 use serde::Serialize;
 use std::fmt;
@@ -29,9 +30,9 @@ pub struct Mark {
     /// Runs in all.
     pub runs: usize,
     /// Why the program stopped early, each reason once.
-    pub ended: Vec<String>,
+    pub ended: Vec<Note>,
     /// Further notes for the reader.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// For each test the run with its first public seed, for the plot.
     #[serde(skip)]
     pub drawn: Vec<Option<RunResult>>,
@@ -48,7 +49,7 @@ pub struct Line {
     /// seed.
     pub values: Vec<Option<f64>>,
     /// Where in the program that was, if it is about one.
-    pub place: Option<String>,
+    pub place: Option<Note>,
     /// The points earned.
     pub points: f64,
     /// The possible points.
@@ -104,6 +105,12 @@ pub(super) struct Run {
 }
 
 impl Mark {
+    /// Why nothing of it was driven, or why its program stopped early, if it did: the first reason.
+    pub fn why_not(&self) -> Option<String> {
+        let ended = self.ended.iter().map(ToString::to_string);
+        self.refused.iter().cloned().chain(ended).next()
+    }
+
     /// The mark of a hand-in that could not be driven.
     pub(super) fn refused(assignment: &Assignment, name: &str, why: Vec<String>) -> Self {
         Self {
@@ -147,7 +154,7 @@ impl Mark {
                         mark.drawn[test] = Some(result);
                     }
                 }
-                Err(why) => once(&mut mark.ended, [why.to_string()].iter()),
+                Err(why) => once(&mut mark.ended, [why.to_string().into()].iter()),
             }
         }
         mark
@@ -203,13 +210,13 @@ fn lines(assignment: &Assignment, runs: &[Run]) -> Vec<Line> {
     lines
 }
 
-/// Texts kept of one kind.
-const MOST_TEXTS: usize = 5;
+/// Notes kept of one kind.
+const MOST_NOTES: usize = 5;
 
-fn once<'a>(texts: &mut Vec<String>, more: impl Iterator<Item = &'a String>) {
-    for text in more {
-        if texts.len() < MOST_TEXTS && !texts.contains(text) {
-            texts.push(text.clone());
+fn once<'a>(notes: &mut Vec<Note>, more: impl Iterator<Item = &'a Note>) {
+    for note in more {
+        if notes.len() < MOST_NOTES && !notes.contains(note) {
+            notes.push(note.clone());
         }
     }
 }

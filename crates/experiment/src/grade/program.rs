@@ -3,6 +3,7 @@
 
 use crate::files::{did_you_mean, near};
 use crate::metrics::Metrics;
+use crate::note::Note;
 use rumbo_emulator::image::Image;
 use rumbo_emulator::observe::profile::{InterruptUse, Profile};
 use rumbo_emulator::observe::wait::{Waited, Waits};
@@ -47,7 +48,7 @@ pub(super) fn unknown(metric: &str) -> Option<String> {
 #[derive(Debug, Default)]
 pub(super) struct Seen {
     pub(super) metrics: Metrics,
-    pub(super) places: BTreeMap<&'static str, String>,
+    pub(super) places: BTreeMap<&'static str, Note>,
 }
 
 /// Begins to watch.
@@ -83,7 +84,7 @@ pub(super) fn seen(mega: &Mega) -> Seen {
 }
 
 impl Seen {
-    fn put(&mut self, metric: &'static str, value: f64, place: Option<String>) {
+    fn put(&mut self, metric: &'static str, value: f64, place: Option<Note>) {
         self.metrics.insert(metric.to_owned(), value);
         if let Some(place) = place {
             self.places.insert(metric, place);
@@ -98,10 +99,8 @@ impl Seen {
     fn waits(&mut self, waited: &Waited) {
         let all = waited.cycles.max(1) as f64;
         let place = waited.function.as_ref().map(|function| {
-            format!(
-                "it waits {} times, the longest time in {function}",
-                waited.count
-            )
+            let (count, function) = (waited.count, function.to_string());
+            Note::BusyWaits { count, function }
         });
         self.put(WAIT, seconds(waited.longest), place.clone());
         self.put(WAITING, waited.total as f64 / all, place);
@@ -113,13 +112,10 @@ impl Seen {
     fn interrupts(&mut self, profile: &Profile) {
         let interrupts = profile.interrupts();
         let longest = interrupts.iter().max_by_key(|one| one.longest);
-        let place = longest.map(|one: &InterruptUse| {
-            format!(
-                "interrupt {} takes {} cycles at most, in {} calls",
-                profile.vector_name(one.vector),
-                one.longest,
-                one.count
-            )
+        let place = longest.map(|one: &InterruptUse| Note::LongInterrupt {
+            name: profile.vector_name(one.vector).to_string(),
+            cycles: one.longest,
+            count: one.count,
         });
         self.put(
             INTERRUPT,
@@ -141,7 +137,12 @@ impl Seen {
             }
         }
         let place = most.1.map(|[caller, function]| {
-            format!("{function} is called by {caller}, {cycles} cycles in all")
+            let (function, caller) = (function.into(), caller.into());
+            Note::CalledForCycles {
+                function,
+                caller,
+                cycles,
+            }
         });
         self.put(FLOAT, seconds(cycles), place);
     }
@@ -155,7 +156,12 @@ impl Seen {
         let mut callers = chains.iter();
         let caller = callers.find_map(|chain| chain.before(|name| ALLOCATORS.contains(&name)));
         let place = caller.map(|[caller, function]| {
-            format!("{function} is called by {caller}, {calls} times in all")
+            let (function, caller) = (function.into(), caller.into());
+            Note::CalledTimes {
+                function,
+                caller,
+                calls,
+            }
         });
         self.put(HEAP, calls as f64, place);
     }

@@ -4,6 +4,7 @@ use super::assignment::Assignment;
 use super::mark::{Mark, Run, RunError};
 use super::program::{self, Seen};
 use crate::files::{FileError, Setup, firmware};
+use crate::note::Note;
 use crate::run::{Run as Running, RunResult, run_by};
 use rayon::prelude::*;
 use rumbo_emulator::image::Image;
@@ -23,7 +24,7 @@ pub struct HandIn {
     /// The program, or why there is none, a line each.
     pub program: Result<Vec<u8>, Vec<String>>,
     /// Further notes for the reader.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// A hand-in whose program can be driven: the setup of each test with it.
@@ -136,9 +137,7 @@ fn one(
         .map_err(RunError::Setup)?;
     if is_too_much {
         let most = TOIL_PER_S / ACT as f64;
-        result.ended = Some(format!(
-            "it switches the robot's pins more than {most} times a second, which no motor follows; the run was ended"
-        ));
+        result.ended = Some(Note::TooManyEdges { most });
     }
     let samples = std::mem::take(&mut result.trace.samples);
     let drove = samples.iter().find(|sample| sample.duty != [0; 2]).copied();

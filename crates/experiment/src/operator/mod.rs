@@ -13,6 +13,7 @@ mod goal;
 mod text;
 
 use crate::files::{FileError, Port, Setup};
+use crate::note::Note;
 use rumbo_control::mode::ModeId;
 use rumbo_sim::Sim;
 use rumbo_sim::mega::{PARTS, USB};
@@ -63,9 +64,9 @@ pub(crate) struct Operator<S> {
     decoder: Decoder<LINE>,
     buffer: Vec<u8>,
     /// Refusals and faults of the robot.
-    pub(crate) complaints: Vec<String>,
+    pub(crate) complaints: Vec<Note>,
     /// Notes for readers of the result.
-    pub(crate) notes: Vec<String>,
+    pub(crate) notes: Vec<Note>,
     /// Telemetry, status, events and heading references received.
     pub(crate) received: Vec<TimedMessage>,
 }
@@ -225,7 +226,7 @@ impl<S: Deref<Target = Setup>> Operator<S> {
                 (Port::Link, _) => None,
             };
             let odd = odd.map(|odd: String| format!("at {} s `{}`: {odd}", timed.at_s, timed.text));
-            self.notes.extend(odd);
+            self.notes.extend(odd.map(Note::from));
             if timed.port == Port::Link {
                 sim.send(&timed.bytes());
             }
@@ -243,7 +244,8 @@ impl<S: Deref<Target = Setup>> Operator<S> {
         self.reached |= terminal.watch(sim, &mut self.received);
         while let Some(command) = self.due(sim.now_us()) {
             if let Speech::Text(terminal) = &mut self.speech {
-                self.notes.extend(terminal.write(sim, command));
+                self.notes
+                    .extend(terminal.write(sim, command).map(Note::from));
             }
         }
     }
@@ -314,18 +316,17 @@ impl<S: Deref<Target = Setup>> Operator<S> {
             match message {
                 Ok(FromRobot::Ack(ack)) if ack.number == self.number => {
                     if let (Some((command, ..)), Err(refusal)) = (self.pending.take(), ack.result) {
-                        let now_s = sim.now_us() as f64 * 1e-6;
-                        let why = refusal.explanation();
-                        let what = command.in_words(self.setup.scenario.mode);
-                        self.complaints
-                            .push(format!("at {now_s:.2} s {what} was refused: {why}"));
+                        self.complaints.push(Note::Refused {
+                            at_s: sim.now_us() as f64 * 1e-6,
+                            command: command.in_words(self.setup.scenario.mode).to_string(),
+                            why: refusal,
+                        });
                     }
                 }
                 Ok(FromRobot::Event(event)) => {
                     if let EventKind::Faulted(fault) = event.kind {
-                        let now_s = sim.now_us() as f64 * 1e-6;
-                        self.complaints
-                            .push(format!("at {now_s:.2} s fault: {}", fault.explanation()));
+                        let at_s = sim.now_us() as f64 * 1e-6;
+                        self.complaints.push(Note::Fault { at_s, fault });
                     }
                 }
                 Ok(_) | Err(_) => {}

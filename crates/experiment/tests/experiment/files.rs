@@ -5,6 +5,7 @@ use rumbo_control::params::ParamId;
 use rumbo_experiment::files::{
     Kind, Library, Overrides, PolicyFile, RobotFile, ScenarioFile, WorldFile,
 };
+use rumbo_experiment::note::Note;
 use rumbo_wire::message::{Command, Level};
 
 #[test]
@@ -98,7 +99,8 @@ fn a_wire_that_fails_stops_the_native_robot_too() {
         setup.scenario.wire_faults = parsed.wire_faults;
         let result = rumbo_experiment::run::run(&setup, 1).unwrap();
         assert_eq!(result.metrics["contacts"], 0.0);
-        result.failures.join("; ")
+        let said: Vec<_> = result.failures.iter().map(Note::to_string).collect();
+        said.join("; ")
     };
     for level in ["high", "low"] {
         let said = faults("front_echo", level);

@@ -3,6 +3,7 @@
 use crate::bench::Bench;
 use rumbo_control::params::ParamId;
 use rumbo_experiment::files::{Library, Overrides};
+use rumbo_experiment::note::Note;
 use rumbo_experiment::run;
 use rumbo_log::{ExperimentPhase, ExperimentState};
 use rumbo_session::Order;
@@ -44,7 +45,8 @@ fn an_experiment_has_the_numbers_of_the_run_of_the_command_line() {
             "{scenario}: {:?}",
             state.failures
         );
-        assert_eq!(state.failures, result.failures, "{scenario}");
+        let failures: Vec<_> = result.failures.iter().map(Note::to_string).collect();
+        assert_eq!(state.failures, failures, "{scenario}");
         assert_eq!(state.parameters, overrides.parameters, "{scenario}");
         assert!(!state.limits.is_empty(), "{scenario}");
         for limit in &state.limits {
@@ -57,10 +59,7 @@ fn an_experiment_has_the_numbers_of_the_run_of_the_command_line() {
             );
             assert_eq!(
                 limit.kept,
-                !result
-                    .failures
-                    .iter()
-                    .any(|line| line.starts_with(&limit.name)),
+                !failures.iter().any(|line| line.starts_with(&limit.name)),
                 "{scenario}: {}",
                 limit.name
             );

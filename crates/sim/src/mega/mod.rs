@@ -50,6 +50,8 @@ mod servo;
 mod uart;
 mod wheels;
 
+pub use notes::Note;
+
 use crate::bus::Bus;
 use crate::obstacle::Seen;
 use crate::remote::Remote;
@@ -294,11 +296,14 @@ impl Mega {
     }
 
     /// How the program ended, if it could not go on: what, where, when.
-    pub fn verdict(&self) -> Option<String> {
+    pub fn verdict(&self) -> Option<Note> {
         let verdict = self.verdict.as_ref()?;
-        let name = self.firmware.name();
-        let verdict = verdict.describe(self.firmware.image());
-        Some(format!("firmware {name}: {verdict}"))
+        let detail = verdict.describe(self.firmware.image());
+        Some(match verdict {
+            Verdict::ErasedFlash { .. } => Note::ErasedFlash { detail },
+            Verdict::IllegalInstruction { .. } => Note::IllegalInstruction { detail },
+            Verdict::StackOverflow { .. } => Note::StackOverflow { detail },
+        })
     }
 
     /// The chip's cycle at time 0 of the simulation.

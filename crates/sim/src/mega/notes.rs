@@ -23,6 +23,29 @@ pub(super) struct Oddities {
     link_baud: Option<[f64; 2]>,
 }
 
+crate::notes! {
+    /// How a program ended, or what is odd about it.
+    Note {
+        ErasedFlash { detail: String } "{detail}";
+        IllegalInstruction { detail: String } "{detail}";
+        StackOverflow { detail: String } "{detail}";
+        ShortTrigger { us: String } "a trigger of a sonar was high for {us} us; the HC-SR04's data sheet asks for 10 us, and some modules do not answer a shorter one";
+        BrownOuts { times: u32 } "the supply fell too low and reset the chip {times} times; start the motors more gently, or charge the battery";
+        WatchdogResets { times: u32 } "the watchdog reset the chip {times} times; call wdt_reset() in time, or wdt_disable() at the start of setup()";
+        LinkRate { sent: f64, own: f64 } "it sends over the Bluetooth link at {sent} baud; the module is set to {own}, and what it passes on is garbage: give begin() that rate";
+        NoMotor { wiring: String } "it never drove a motor; are its pins those of wiring {wiring}? (docs/emulator.md)";
+        NoLink { link: &'static str, wiring: String } "nothing came over the Bluetooth link, {link} in wiring {wiring}, on no other either";
+        OtherLink { link: &'static str, wiring: String, others: String } "nothing came over the Bluetooth link, {link} in wiring {wiring}, but on {others}";
+        Other { text: String } "{text}";
+    }
+}
+
+impl From<String> for Note {
+    fn from(text: String) -> Self {
+        Self::Other { text }
+    }
+}
+
 /// Resets by one cause that are more than a program's own way to restart.
 const RESETS: u32 = 2;
 
@@ -48,29 +71,19 @@ impl Oddities {
         }
     }
 
-    fn told(&self, name: &str) -> impl Iterator<Item = String> {
-        let short = self.short_trigger.map(|high| {
-            let us = high as f64 / CYCLES_PER_US as f64;
-            format!(
-                "firmware {name}: a trigger of a sonar was high for {us:.1} us; the HC-SR04's data sheet asks for 10 us, and some modules do not answer a shorter one"
-            )
+    fn notes(&self) -> impl Iterator<Item = Note> {
+        let short = self.short_trigger.map(|high| Note::ShortTrigger {
+            us: format!("{:.1}", high as f64 / CYCLES_PER_US as f64),
         });
-        let browned = (self.brown_outs >= RESETS).then(|| {
-            format!(
-                "firmware {name}: the supply fell too low and reset the chip {} times; start the motors more gently, or charge the battery",
-                self.brown_outs
-            )
+        let browned = (self.brown_outs >= RESETS).then_some(Note::BrownOuts {
+            times: self.brown_outs,
         });
-        let watched = (self.watchdog_resets >= RESETS).then(|| {
-            format!(
-                "firmware {name}: the watchdog reset the chip {} times; call wdt_reset() in time, or wdt_disable() at the start of setup()",
-                self.watchdog_resets
-            )
+        let watched = (self.watchdog_resets >= RESETS).then_some(Note::WatchdogResets {
+            times: self.watchdog_resets,
         });
-        let garbled = self.link_baud.map(|[baud, own]| {
-            format!(
-                "firmware {name}: it sends over the Bluetooth link at {baud:.0} baud; the module is set to {own:.0}, and what it passes on is garbage: give begin() that rate"
-            )
+        let garbled = self.link_baud.map(|[sent, own]| Note::LinkRate {
+            sent: sent.round(),
+            own: own.round(),
         });
         [short, browned, watched, garbled].into_iter().flatten()
     }
@@ -78,28 +91,23 @@ impl Oddities {
 
 impl Mega {
     /// Registers that the emulator does not model, and what a program for this robot would have done.
-    pub fn notes(&self) -> Vec<String> {
+    pub fn notes(&self) -> Vec<Note> {
         let image = self.firmware.image();
         let line = |access: &Unmodelled| {
             let done = if access.written { "written" } else { "read" };
             format!(
-                "firmware {}: register 0x{:03x}, {done} at {}, is not modelled",
-                self.firmware.name(),
+                "register 0x{:03x}, {done} at {}, is not modelled",
                 access.address,
                 image.place(access.program_counter)
             )
         };
         let strange = self.chip.unmodelled().iter().map(line);
-        let notes = strange.chain(self.standstill()).chain(self.restarted());
-        let notes = notes.chain(self.unsent());
-        let notes = notes.chain(self.misframed()).chain(self.floating());
-        let notes = notes.chain(self.oddities.told(self.firmware.name()));
-        let bus = self.bus.notes().into_iter();
-        let bus = bus.map(|note| format!("firmware {}: {note}", self.firmware.name()));
+        let strange = strange.chain(self.standstill()).chain(self.restarted());
+        let strange = strange.chain(self.unsent()).chain(self.misframed());
+        let strange = strange.chain(self.floating()).map(Note::from);
+        let notes = strange.chain(self.oddities.notes()).chain(self.silence());
         notes
-            .chain(self.silence())
-            .chain(bus)
-            .chain(self.data_sheet())
+            .chain(self.bus.notes().into_iter().map(Note::from))
             .collect()
     }
 
@@ -129,17 +137,16 @@ impl Mega {
     /// Why the program has halted for good, if it has.
     pub fn standstill(&self) -> Option<String> {
         let still = self.chip.cpu().standstill()?;
-        let (name, image) = (self.firmware.name(), self.firmware.image());
-        let place = image.place(self.chip.cpu().program_counter());
+        let place = (self.firmware.image()).place(self.chip.cpu().program_counter());
         Some(match still {
             Standstill::Asleep => format!(
-                "firmware {name}: it sleeps with interrupts off, before {place}: nothing wakes it; call sei() before sleep_cpu()"
+                "it sleeps with interrupts off, before {place}: nothing wakes it; call sei() before sleep_cpu()"
             ),
             Standstill::End => format!(
-                "firmware {name}: it has ended at {place}: main() returned, or exit() was called, or it stops itself with cli() and an empty loop; main() needs a loop that never ends"
+                "it has ended at {place}: main() returned, or exit() was called, or it stops itself with cli() and an empty loop; main() needs a loop that never ends"
             ),
             Standstill::Loop => format!(
-                "firmware {name}: it stands in a loop of one instruction at {place} with interrupts off: only a reset leads on"
+                "it stands in a loop of one instruction at {place} with interrupts off: only a reset leads on"
             ),
         })
     }
@@ -150,7 +157,7 @@ impl Mega {
         const BAD_INTERRUPT: [u8; 4] = [0x0C, 0x94, 0, 0];
         let begun = self.chip.cpu().restarts();
         let (times, at) = begun.filter(|(times, _)| *times > RESETS)?;
-        let (name, place) = (self.firmware.name(), self.firmware.image().place(at));
+        let place = self.firmware.image().place(at);
         let here = self.chip.cpu().flash().get(2 * at as usize..);
         let why = match here.is_some_and(|here| here.starts_with(&BAD_INTERRUPT)) {
             true => "an interrupt was on that no function handles",
@@ -160,30 +167,30 @@ impl Mega {
             }
         };
         Some(format!(
-            "firmware {name}: it restarted {times} times without a reset, the last time from {place}: {why}"
+            "it restarted {times} times without a reset, the last time from {place}: {why}"
         ))
     }
 
     /// What the module could not read on a pin that is no USART's.
     fn misframed(&self) -> Option<String> {
-        let (name, baud) = (self.firmware.name(), self.firmware.link_baud());
+        let baud = self.firmware.link_baud();
         self.module.misframed().then(|| {
             format!(
-                "firmware {name}: what it sends to the Bluetooth module is not at {baud} baud, and what that passes on is garbage: give begin() that rate, or the wiring link_baud"
+                "what it sends to the Bluetooth module is not at {baud} baud, and what that passes on is garbage: give begin() that rate, or the wiring link_baud"
             )
         })
     }
 
     /// A button at a pin that floats while it is open.
     fn floating(&self) -> impl Iterator<Item = String> {
-        let (name, board) = (self.firmware.name(), self.firmware.board());
+        let board = self.firmware.board();
         self.parts().filter_map(move |(part, _)| {
             let switches = matches!(part.kind, PartKind::Button | PartKind::Switch);
             let pin = board.pin(part.pin).filter(|_| switches && part.resistor.is_none())?;
             let floats = self.chip.devices().drive(pin) == Drive::Floating;
             floats.then(|| {
                 format!(
-                    "firmware {name}: {} on pin {} closes to GND, and the program switches no pull-up on, so that open and closed read alike: use INPUT_PULLUP, or say what resistor there is, to = \"5v\" where pressed is HIGH, else to = \"gnd\"",
+                    "{} on pin {} closes to GND, and the program switches no pull-up on, so that open and closed read alike: use INPUT_PULLUP, or say what resistor there is, to = \"5v\" where pressed is HIGH, else to = \"gnd\"",
                     part.name,
                     board.shown(part.pin)
                 )
@@ -193,30 +200,30 @@ impl Mega {
 
     /// Bytes that could not leave.
     fn unsent(&self) -> impl Iterator<Item = String> {
-        let (name, image) = (self.firmware.name(), self.firmware.image());
+        let image = self.firmware.image();
         let devices = self.chip.devices();
         (0..4).filter_map(move |usart| {
             let place = image.place(devices.unsent_at(usart)?);
             Some(format!(
-                "firmware {name}: UDR{usart} was written at {place} while the transmitter of {} was off: nothing was sent; set TXEN{usart} in UCSR{usart}B, or call begin()",
+                "UDR{usart} was written at {place} while the transmitter of {} was off: nothing was sent; set TXEN{usart} in UCSR{usart}B, or call begin()",
                 NAMES[usize::from(usart)]
             ))
         })
     }
 
     /// What a program for another wiring, or for no robot at all, does not do.
-    fn silence(&self) -> Vec<String> {
-        let (name, wiring) = (self.firmware.name(), self.firmware.wiring());
+    fn silence(&self) -> Vec<Note> {
+        let wiring = self.firmware.wiring();
         let mut silence = Vec::new();
         if self.firmware.language() == Language::Frames || self.verdict.is_some() {
             return silence;
         }
         if self.is_idle() {
-            silence.push(format!(
-                "firmware {name}: it never drove a motor; are its pins those of wiring {wiring}? (docs/emulator.md)"
-            ));
+            silence.push(Note::NoMotor {
+                wiring: wiring.into(),
+            });
         }
-        silence.extend(self.of_wheels());
+        silence.extend(self.of_wheels().into_iter().map(Note::from));
         let spoke = |usart: usize| self.consoles.get(usart).is_some_and(Console::has_spoken);
         if let Some(link) = self.firmware.link_usart().map(usize::from)
             && !spoke(link)
@@ -225,15 +232,15 @@ impl Mega {
                 .filter(|usart| spoke(*usart))
                 .map(|usart| NAMES[usart])
                 .collect();
-            let others = if others.is_empty() {
-                "on no other either".to_owned()
-            } else {
-                format!("but on {}", others.join(", "))
-            };
-            silence.push(format!(
-                "firmware {name}: nothing came over the Bluetooth link, {} in wiring {wiring}, {others}",
-                NAMES[link % NAMES.len()]
-            ));
+            let (link, wiring) = (NAMES[link % NAMES.len()], wiring.into());
+            silence.push(match &others.join(", ")[..] {
+                "" => Note::NoLink { link, wiring },
+                others => Note::OtherLink {
+                    link,
+                    wiring,
+                    others: others.into(),
+                },
+            });
         }
         silence
     }

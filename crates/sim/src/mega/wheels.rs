@@ -60,21 +60,18 @@ impl Mega {
 
     /// What is odd about the motors, a line each.
     pub(super) fn of_wheels(&self) -> Vec<String> {
-        let name = self.firmware.name();
         let mut odd = Vec::new();
         for (wheel, side) in SIDES.into_iter().enumerate() {
             if let (false, Some(why)) = (self.driven_ways.ever[wheel], self.why_still(wheel)) {
-                odd.push(format!(
-                    "firmware {name}: it never drove the {side} motor: {why}"
-                ));
+                odd.push(format!("it never drove the {side} motor: {why}"));
             }
             if let (true, Some(what)) = (self.driven_ways.ever[wheel], self.only_switched(wheel)) {
-                odd.push(format!("firmware {name}: {what}"));
+                odd.push(what);
             }
         }
         if self.driven_ways.turned(self.chip.cycle()) {
             odd.push(format!(
-                "firmware {name}: it drove the wheels against each other all the time; if it was to drive straight, exchange forward and backward of the wheel that turns the wrong way, in the wiring {} or at the motor",
+                "it drove the wheels against each other all the time; if it was to drive straight, exchange forward and backward of the wheel that turns the wrong way, in the wiring {} or at the motor",
                 self.firmware.wiring()
             ));
         }

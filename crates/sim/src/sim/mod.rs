@@ -503,7 +503,9 @@ impl Sim {
 
     /// How the program at the pins ended, if it could not go on.
     pub fn verdict(&self) -> Option<String> {
-        self.mega().and_then(Mega::verdict)
+        let mega = self.mega()?;
+        let verdict = mega.verdict()?;
+        Some(format!("firmware {}: {verdict}", mega.firmware().name()))
     }
 
     /// Restarts the clock with the robot back at its start, at rest; the program runs on unaware. For a program that

@@ -4,6 +4,7 @@ use super::{Person, fault, seeds, setup, twenty, worst};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Fault, SonarId};
 use rumbo_experiment::files::Setup;
+use rumbo_experiment::note::Note;
 use rumbo_experiment::run::RunResult;
 use rumbo_plant::world::Wall;
 use rumbo_sim::Sim;
@@ -264,11 +265,8 @@ fn without_a_wall_beside_it_or_on_a_rig_that_looks_ahead_only_it_does_not_start(
     for setup in [&mut alone, &mut ahead] {
         setup.scenario.duration_s = 3.0;
         for run in seeds(setup, 1..4) {
-            assert!(
-                run.failures
-                    .iter()
-                    .any(|failure| failure.contains("refused"))
-            );
+            let is_refused = |note: &Note| matches!(note, Note::Refused { .. });
+            assert!(run.failures.iter().any(is_refused));
             assert!(run.trace.samples.iter().all(|sample| sample.duty == [0; 2]));
         }
     }

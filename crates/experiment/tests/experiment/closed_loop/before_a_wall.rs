@@ -4,9 +4,10 @@ use super::{Person, fault, seeds, setup, twenty, worst};
 use rumbo_control::mode::ModeId;
 use rumbo_control::{Fault, SonarId};
 use rumbo_experiment::files::Setup;
+use rumbo_experiment::note::Note;
 use rumbo_plant::world::Block;
 use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
-use rumbo_wire::{Command, FromRobot, Message, ToRobot};
+use rumbo_wire::{Command, FromRobot, Message, Refusal, ToRobot};
 
 const TWO_DEGREES: f64 = 0.0349;
 
@@ -219,7 +220,7 @@ fn on_a_rig_without_its_sonars_a_mode_is_refused_with_the_reason() {
         setup.scenario.duration_s = 3.0;
         let run = &seeds(&setup, 1..2)[0];
         let mentions_rig =
-            |failure: &String| failure.contains("refused") && failure.contains("rig");
+            |note: &Note| matches!(note, Note::Refused { why, .. } if *why == Refusal::WrongRig);
         assert!(
             run.failures.iter().any(mentions_rig),
             "{scenario} on {rig}: {:?}",

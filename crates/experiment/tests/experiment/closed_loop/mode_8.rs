@@ -6,6 +6,7 @@ use rumbo_control::params::ParamId;
 use rumbo_control::{Fault, SonarId};
 use rumbo_experiment::campaign::judge;
 use rumbo_experiment::files::Setup;
+use rumbo_experiment::note::Note;
 use rumbo_experiment::run::{RunResult, run};
 use rumbo_plant::world::Wall;
 use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
@@ -60,7 +61,8 @@ fn a_robot_whose_time_is_over_says_after_how_long_and_has_failed_if_there_was_a_
         [1.0, 1.0, 0.0]
     );
     assert!(
-        !run.pass && run.failures[0].starts_with("given_up_wrongly"),
+        !run.pass
+            && matches!(&run.failures[0], Note::Limit { metric, .. } if metric == "given_up_wrongly"),
         "{:?}",
         run.failures
     );

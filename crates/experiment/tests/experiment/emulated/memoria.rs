@@ -36,7 +36,7 @@ fn both(scenario: &str, sketch: &str, duration_s: f64) -> Option<[RunResult; 2]>
     let strange = results[0]
         .notes
         .iter()
-        .find(|note| note.contains("register"));
+        .find(|note| note.to_string().contains("register"));
     assert_eq!(strange, None);
     Some(results)
 }

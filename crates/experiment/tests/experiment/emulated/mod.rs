@@ -8,6 +8,7 @@ mod runs;
 
 use rig::Person;
 use rumbo_control::SonarId;
+use rumbo_sim::mega::Note;
 use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
 
 /// Edges of a Hall sensor per wheel turn.
@@ -37,7 +38,13 @@ fn a_chip_at_another_rate_than_the_module_is_not_understood() {
     let console = String::from_utf8_lossy(&mega.take_console(2)).into_owned();
     assert!(!console.contains("rate"), "{console}");
     let notes = mega.notes();
-    let told = |note: &String| note.contains("at 38462 baud; the module is set to 9600");
+    let told = |note: &Note| {
+        *note
+            == Note::LinkRate {
+                sent: 38462.0,
+                own: 9600.0,
+            }
+    };
     assert!(notes.iter().any(told), "{notes:?}");
     // And the program cannot decode what the module sends.
     assert!(!person.ask("COUNT").contains("COUNT"));

@@ -2,6 +2,7 @@
 
 use super::rig::{image, setup};
 use rumbo_experiment::files::{FileError, Library, Overrides, Port, TimedText};
+use rumbo_experiment::note::Note;
 use rumbo_experiment::run::run;
 use rumbo_wire::LineEnding;
 use std::path::PathBuf;
@@ -90,7 +91,9 @@ fn a_program_that_runs_into_erased_flash_ends_the_run_with_that_verdict() {
         panic!("{:?}", result.failures);
     };
     assert!(
-        verdict.starts_with("firmware bench.elf: ran into erased flash at 0x10000"),
+        verdict
+            .to_string()
+            .starts_with("firmware bench.elf: ran into erased flash at 0x10000"),
         "{verdict}"
     );
     assert!(result.trace.samples.last().unwrap().t_s < 1.1);
@@ -158,8 +161,9 @@ fn a_short_trigger_fires_and_it_and_resets_over_and_over_are_told() {
     let ranges_cm: Vec<&str> = ranges_cm.lines().collect();
     assert!(ranges_cm.len() > 20, "{ranges_cm:?}");
     assert!(!ranges_cm.contains(&"0"), "{ranges_cm:?}");
-    let [trigger, watchdog, ..] = &result.notes[..] else {
-        panic!("{:?}", result.notes);
+    let notes: Vec<_> = result.notes.iter().map(Note::to_string).collect();
+    let [trigger, watchdog, ..] = &notes[..] else {
+        panic!("{notes:?}");
     };
     assert!(trigger.contains("high for 9.1 us"), "{trigger}");
     assert!(
@@ -196,6 +200,7 @@ fn a_program_that_is_not_for_this_robot_gets_a_list_of_what_it_never_did() {
     };
     setup.scenario.duration_s = 1.0;
     let notes = run(&setup, 1).unwrap().notes;
+    let notes: Vec<_> = notes.iter().map(Note::to_string).collect();
     let [motors, left, right, link, scenario] = &notes[..] else {
         panic!("{notes:?}");
     };
