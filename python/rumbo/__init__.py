@@ -1,8 +1,8 @@
 """Rumbo's simulator of a small differential-drive robot.
 
 `run` repeats a scenario with many seeds, `sweep` over its parameters, `compare` as variants, `tune` searches for
-values, `Sim`, `Batch` and `Fleet` step robots by hand, `Sim` also one that an Arduino sketch drives, with its pins and
-ports; `read_log` reads what was recorded, `identify` finds a robot's parameters in it; `rumbo.envs` has environments
+values, `Sim` and `Batch` step robots by hand, `Sim` also one that an Arduino sketch drives, with its pins and ports;
+`read_log` reads what was recorded, `identify` finds a robot's parameters in it; `rumbo.envs` has environments
 for Gymnasium and PettingZoo, `rumbo.ray` clusters for sweeps, `rumbo.pytest_plugin` a fixture for tests of sketches.
 Units are SI and stand in the names: ``range_m``, ``speed_rad_s``. x is forward, y to the left, angles
 counter-clockwise.
@@ -15,7 +15,6 @@ from typing import Any, Literal
 
 from . import _rumbo
 from ._board import ExpectationError, Pin, Serial
-from ._fleet import Fleet, FleetSnapshot
 from ._identify import Identification, Identified, identify
 from ._log import Log, read_log
 from ._policy import Policy, export_policy
@@ -47,8 +46,6 @@ __all__ = [
     "Comparison",
     "Difference",
     "ExpectationError",
-    "Fleet",
-    "FleetSnapshot",
     "Identification",
     "Identified",
     "Interrupted",

@@ -34,24 +34,37 @@ OBSERVED: tuple[str, ...] = tuple(_rumbo.OBSERVED)
 #: Names of the ground truth, in the order of the columns of `Batch.truth_rows`.
 TRUE: tuple[str, ...] = tuple(_rumbo.TRUE)
 
-Driver = Literal["scenario", "caller"]
+Driver = Literal["scenario", "caller"] | Sequence[str]
 #: How long a button is pressed [s].
 PRESSED_S = 0.2
 
 
-def _is_caller(driver: str) -> bool:
-    if driver not in ("scenario", "caller"):
-        raise ValueError(f'driver = {driver!r}: must be "scenario" or "caller"')
-    return driver == "caller"
+def _callers(driver: Driver, names: Sequence[str]) -> list[bool]:
+    """Which of the robots of a world the caller drives."""
+    if driver in ("scenario", "caller"):
+        return [driver == "caller"] * len(names)
+    if isinstance(driver, str):
+        raise ValueError(f'driver = {driver!r}: must be "scenario", "caller", or names of robots in a list')
+    for name in driver:
+        if name not in names:
+            raise ValueError(f"driver: no robot {name!r}; the scenario has {', '.join(names)}")
+    return [name in driver for name in names]
 
 
 class Batch:
-    """Robots of one setup, a seed for each, stepped together on all cores.
+    """Robots of one setup, a seed for each world, stepped together on all cores.
 
     Driven by the scenario (``driver="scenario"``), each robot is bit for bit the one that `rumbo.run` simulates for its
     seed. Driven by the caller, it has no link: it starts disarmed in the scenario's mode, with the parameters of the
-    files (a scenario's calibration is left out), gets commands at once, and never misses its heartbeat. A robot is the
+    files (a scenario's calibration is left out), gets commands at once, and never misses its heartbeat. A world is the
     same in every batch and on any number of threads.
+
+    A scenario with ``[[fleet]]`` has several robots in each world: robot 0 to n - 1 are those of the first seed, in the
+    order of `names`, and so on. Each goes for its world's goal, else for the first one of its commands.
+
+    >>> batch = rumbo.Batch("examples/fleet/corners.toml", seeds=7)
+    >>> batch.step(10)
+    >>> batch.truth()["x_m"]
 
     Where the scenario has the robots calibrate themselves (all that drive by odometry do, such as ``mode8-random``),
     each is calibrated as it is made: some 30 ms of one core for each robot, a hundred times what it takes without, or
@@ -63,8 +76,9 @@ class Batch:
 
     Args:
         scenario, robot, world, policy, rig, parameters, program, firmware, randomize: As for `rumbo.run`.
-        seeds: A robot for each.
-        driver: Who commands the robots.
+        seeds: A robot for each, or the robots of the scenario.
+        driver: Who commands the robots: ``"scenario"``, ``"caller"``, or the caller those of these names and the
+            scenario the others.
         threads: One on each core by default.
         progress: ``True`` shows the share of the robots that are made on stderr, and the time left; a function is
             called with it, 0 to 1.
@@ -94,7 +108,6 @@ class Batch:
         threads: int | None = None,
         progress: bool | Callable[[float], object] = False,
     ) -> None:
-        caller = _is_caller(driver)
         setup = make_setup(
             scenario,
             robot=robot,
@@ -108,15 +121,18 @@ class Batch:
         )
         #: How long the scenario lasts [s]; the robots can be stepped beyond.
         self.duration_s: float = setup.duration_s
+        #: The names of the robots of a world, in the order of the rows of all arrays.
+        self.names: tuple[str, ...] = tuple(setup.robots)
+        self._callers = _callers(driver, self.names)
         numbers = make_seeds(seeds)
         with shown(progress, " of the robots") as show:
-            self._batch = _rumbo.Batch(setup, numbers, caller=caller, threads=threads, progress=show)
-        self._caller = caller
+            self._batch = _rumbo.Batch(setup, numbers, callers=self._callers, threads=threads, progress=show)
         self._is_known = program == "rumbo" and firmware is None
         self._name = setup.name
 
     def __repr__(self) -> str:
-        driver = "the caller" if self._caller else "the scenario"
+        callers = [name for name, caller in zip(self.names, self._callers) if caller]
+        driver = "the scenario" if not callers else "the caller" if all(self._callers) else ", ".join(callers)
         return f"<{len(self)} robots of {self._name}, driven by {driver}>"
 
     def __copy__(self) -> Batch:
@@ -140,23 +156,24 @@ class Batch:
     def drive(
         self, actions: ArrayLike, duration_s: float = 0.1, *, active: ArrayLike | None = None, pwm: bool = False
     ) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
-        """Sets wheel speeds and servo of every robot, advances them, and gives what `rows` does.
+        """Sets wheel speeds and servo of the robots that the caller drives, advances all, and gives what `rows` does.
 
-        The robots must be driven by the caller, in mode ``wheel_speed`` and armed: see `begin_wheel_speed`.
+        They must be in mode ``wheel_speed`` and armed: see `begin_wheel_speed`. Rows of the scenario's robots are of no
+        effect.
 
         Args:
             actions: Shape (robots, 3): left and right wheel [rad/s, -20 to 20], servo [rad, -pi/2 to pi/2, left is
                 positive].
             duration_s: A multiple of 0.01 s.
-            active: Shape (robots,); robots of which it is false stand still in time.
+            active: Shape (robots,); a world stands still in time where it is false for all that the caller drives. In
+                one that goes on, those of which it is false are disarmed: their wheels roll out, and stay so.
             pwm: The first two columns are shares of the full PWM, -1 to 1, which the motors get as they are, in place
                 of the robot's own control of the wheel speeds.
 
         Raises:
             ValueError: A wrong shape, or a value that is out of range or not a number, with its index.
         """
-        if not self._caller:
-            raise ValueError('the scenario commands these robots; make the batch with driver="caller"')
+        self._check_caller()
         rows = np.ascontiguousarray(actions, dtype=np.float32)
         if rows.shape != (len(self), 3):
             raise ValueError(f"actions has the shape {rows.shape}: must be ({len(self)}, 3)")
@@ -168,23 +185,22 @@ class Batch:
         return known, truth
 
     def begin_wheel_speed(self, indices: Sequence[int] | None = None, duration_s: float = 0.5) -> None:
-        """Selects mode ``wheel_speed`` and arms these robots, all by default.
+        """Selects mode ``wheel_speed`` and arms these robots, all by default, that the caller drives.
 
-        They then stand for `duration_s` [s], so that every sonar has answered.
+        Their worlds then go on for `duration_s` [s], in which they stand, so that every sonar has answered.
         """
-        if not self._caller:
-            raise ValueError('the scenario commands these robots; make the batch with driver="caller"')
+        self._check_caller()
         self._batch.begin(self._numbers(indices), to_ticks(duration_s))
 
     def renew(self, indices: Sequence[int], seeds: Iterable[int]) -> None:
-        """Puts new robots of these seeds, at their start, in place of those of these numbers.
+        """Puts new worlds of these seeds, their robots at their start, in place of those of these numbers.
 
         Each takes the memory of the one before. Ctrl-C or an error leaves some of them new and others as they were.
         """
-        numbers = self._numbers(indices)
+        numbers = [make_index(index, len(self) // len(self.names)) for index in indices]
         of_them = make_seeds(seeds) if numbers else []
         if len(of_them) != len(numbers):
-            raise ValueError(f"{len(numbers)} robots need as many seeds, not {len(of_them)}")
+            raise ValueError(f"{len(numbers)} worlds need as many seeds, not {len(of_them)}")
         self._batch.renew(numbers, of_them)
 
     def command(self, index: int, **keys: Any) -> None:
@@ -284,6 +300,10 @@ class Batch:
         self._batch.observe(known, truth)
         return known, truth
 
+    def _check_caller(self) -> None:
+        if not any(self._callers):
+            raise ValueError('the scenario commands these robots; make the batch with driver="caller"')
+
     def _numbers(self, indices: Iterable[int] | None) -> list[int]:
         count = len(self)
         return [make_index(index, count) for index in (range(count) if indices is None else indices)]
@@ -354,12 +374,14 @@ class Sim:
             randomize=randomize,
             threads=1,
         )
+        if len(self._batch) != 1:
+            raise ValueError(f"scenario {self._batch._name}: has several robots; take rumbo.Batch")
         self._serials: dict[str, Serial] = {}
         #: A board is emulated, with pins and ports.
         self.is_emulated: bool = _rumbo.probe(self._batch._batch)
 
     def __repr__(self) -> str:
-        driver = "you" if self._batch._caller else "the scenario"
+        driver = "you" if all(self._batch._callers) else "the scenario"
         return f"<robot of {self._batch._name}, seed {self.seed}, driven by {driver}: {self.t_s:.2f} s>"
 
     def __copy__(self) -> Sim:
@@ -521,22 +543,26 @@ _Made = tuple[str, int]
 
 
 def _pickled(batch: _rumbo.Batch) -> tuple[Any, ...]:
-    setup, caller, seeds, histories = batch.snapshot().parts()
-    return _batch, (MADE_BY, setup, caller, seeds, histories, batch.threads)
+    return _batch, (MADE_BY, *batch.snapshot().parts(), batch.threads)
 
 
 def _batch(
-    made_by: _Made, setup: _rumbo.Setup, caller: bool, seeds: list[int], histories: list[bytes], threads: int | None
+    made_by: _Made,
+    setup: _rumbo.Setup,
+    callers: list[bool],
+    seeds: list[int],
+    histories: list[list[bytes]],
+    threads: int | None,
 ) -> _rumbo.Batch:
     check_version("robots", made_by)
-    return _rumbo.Batch(setup, seeds, caller=caller, threads=threads, histories=histories)
+    return _rumbo.Batch(setup, seeds, callers=callers, threads=threads, histories=histories)
 
 
 def _snapshot(
-    made_by: _Made, setup: _rumbo.Setup, caller: bool, seeds: list[int], histories: list[bytes]
+    made_by: _Made, setup: _rumbo.Setup, callers: list[bool], seeds: list[int], histories: list[list[bytes]]
 ) -> _rumbo.Snapshot:
     check_version("a snapshot", made_by)
-    return _rumbo.Batch(setup, seeds, caller=caller, threads=None, histories=histories).snapshot()
+    return _rumbo.Batch(setup, seeds, callers=callers, threads=None, histories=histories).snapshot()
 
 
 copyreg.pickle(_rumbo.Batch, _pickled)

@@ -1,4 +1,5 @@
-//! Robots stepped from Python: one for `rumbo.Sim`, many for `rumbo.Batch` and the environments.
+//! Robots stepped from Python: one for `rumbo.Sim`, many for `rumbo.Batch` and the environments, each alone in its world
+//! or with the others of its scenario.
 
 use crate::guard::{detached, exception, making, pool, threads};
 use crate::setup::Setup;
@@ -30,15 +31,16 @@ const STRIDE_OF_ALL: usize = 100_000;
 /// How many of our native robots an emulated one weighs.
 const EMULATED: usize = 50;
 /// An action: wheel speeds, left and right [rad/s], and where the servo points [rad].
-pub(crate) const ACTION: usize = 3;
+const ACTION: usize = 3;
 
 /// Robots of one setup.
 #[pyclass(frozen, module = "rumbo._rumbo")]
 pub(crate) struct Batch {
     setup: Py<Setup>,
     robots: Mutex<Robots>,
-    caller: bool,
-    count: usize,
+    /// Of each robot of a world, whether the caller drives it.
+    callers: Vec<bool>,
+    worlds: usize,
     threads: usize,
 }
 
@@ -46,26 +48,40 @@ pub(crate) struct Batch {
 #[pyclass(frozen, module = "rumbo._rumbo")]
 pub(crate) struct Snapshot {
     setup: Py<Setup>,
-    caller: bool,
+    callers: Vec<bool>,
     robots: Robots,
 }
 
-/// What defines a snapshot: its setup, whether the caller drives, seeds, and what was done to each robot.
-type Parts<'py> = (Py<Setup>, bool, Vec<u64>, Vec<Bound<'py, PyBytes>>);
+/// What defines a snapshot: its setup, which robots of a world the caller drives, seeds, and what was done to each robot.
+type Parts<'py> = (
+    Py<Setup>,
+    Vec<bool>,
+    Vec<u64>,
+    Vec<Vec<Bound<'py, PyBytes>>>,
+);
 
 #[pymethods]
 impl Snapshot {
     fn __len__(&self) -> usize {
-        self.robots.robots().len()
+        self.robots.robots().count()
     }
 
     /// What makes it again, anywhere, by [`Batch::new`].
     fn parts<'py>(&self, py: Python<'py>) -> Parts<'py> {
         let lives = self.robots.lives().into_iter();
         let (seeds, histories) = lives
-            .map(|(seed, history)| (seed, PyBytes::new(py, &history)))
+            .map(|(seed, histories)| {
+                let histories = histories.iter();
+                let histories = histories.map(|history| PyBytes::new(py, history));
+                (seed, histories.collect())
+            })
             .unzip();
-        (self.setup.clone_ref(py), self.caller, seeds, histories)
+        (
+            self.setup.clone_ref(py),
+            self.callers.clone(),
+            seeds,
+            histories,
+        )
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {
@@ -79,41 +95,44 @@ impl Snapshot {
 
 #[pymethods]
 impl Batch {
-    /// A robot for each seed, driven by its scenario or by the caller: at its start, or after the acts of its history.
-    /// `progress` is called with the share that is made.
+    /// The robots of each seed, at their start, or after the acts of their histories; those of `callers` are driven by the
+    /// caller. `progress` is called with the share that is made.
     #[new]
-    #[pyo3(signature = (setup, seeds, *, caller, threads, histories=None, progress=None))]
+    #[pyo3(signature = (setup, seeds, *, callers, threads, histories=None, progress=None))]
     fn new(
         py: Python<'_>,
         setup: Py<Setup>,
         seeds: Vec<u64>,
-        caller: bool,
+        callers: Vec<bool>,
         threads: Option<i64>,
-        histories: Option<Vec<PyBackedBytes>>,
+        histories: Option<Vec<Vec<PyBackedBytes>>>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let threads = self::threads(threads)?;
         let histories = histories.unwrap_or_default();
-        let histories = histories.iter().map(|history| history.to_vec());
+        let histories = histories
+            .iter()
+            .map(|of_world| of_world.iter().map(|history| history.to_vec()).collect());
         let histories = histories.chain(std::iter::repeat(Vec::new()));
         let lives: Vec<_> = seeds.into_iter().zip(histories).collect();
-        let driver = match caller {
+        let drivers = callers.iter().map(|caller| match caller {
             true => Driver::Caller,
             false => Driver::Scenario,
-        };
-        let files = setup.get().files.clone();
+        });
+        let drivers: Vec<_> = drivers.collect();
+        let files = &setup.get().files;
         let robots = making(
             py,
-            || pool(threads),
-            lives.len(),
+            (lives.len() > 1).then_some(threads),
+            lives.len() * callers.len(),
             progress.as_ref(),
-            |made| Robots::of_lives(files, driver, &lives, made),
+            |made| Robots::of_lives(files, drivers, &lives, made),
         )?;
         Ok(Self {
             setup,
             robots: Mutex::new(robots),
-            caller,
-            count: lives.len(),
+            callers,
+            worlds: lives.len(),
             threads,
         })
     }
@@ -123,8 +142,8 @@ impl Batch {
         Ok(Self {
             setup: self.setup.clone_ref(py),
             robots: Mutex::new(self.lock()?.clone()),
-            caller: self.caller,
-            count: self.count,
+            callers: self.callers.clone(),
+            worlds: self.worlds,
             threads: self.threads,
         })
     }
@@ -135,10 +154,10 @@ impl Batch {
         self.threads
     }
 
-    /// Who commands the robots.
+    /// Which robots of a world the caller drives.
     #[getter]
-    fn caller(&self) -> bool {
-        self.caller
+    fn callers(&self) -> Vec<bool> {
+        self.callers.clone()
     }
 
     /// What is simulated.
@@ -148,12 +167,12 @@ impl Batch {
     }
 
     fn __len__(&self) -> usize {
-        self.count
+        self.worlds * self.callers.len()
     }
 
     /// The robots' seeds.
     fn seeds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u64>>> {
-        let seeds: Vec<u64> = self.lock()?.robots().iter().map(Robot::seed).collect();
+        let seeds: Vec<u64> = self.lock()?.robots().map(Robot::seed).collect();
         Ok(seeds.to_pyarray(py))
     }
 
@@ -162,7 +181,7 @@ impl Batch {
         let mut held = self.lock()?;
         let robots = &mut *held;
         in_strides(py, ticks, self.stride(), |now| {
-            on_threads(py, self.count, self.threads, || robots.advance(now))
+            self.on_threads(py, || robots.advance(now))
         })
     }
 
@@ -176,8 +195,9 @@ impl Batch {
         self.step(py, known, truth, 0, |_, _, _| false)
     }
 
-    /// Gives each robot its row of `actions`, of wheel speeds or of shares of the full PWM, advances it by this many control
-    /// ticks and writes its rows. Robots of which `active` is false stand still in time.
+    /// Gives each robot that the caller drives its row of `actions`, of wheel speeds or of shares of the full PWM, advances
+    /// all by this many control ticks and writes their rows. Robots of which `active` is false are disarmed; a world where
+    /// it is false for all that the caller drives stands still in time.
     #[pyo3(signature = (actions, active, ticks, known, truth, *, pwm=false))]
     #[allow(clippy::too_many_arguments, reason = "keywords of one Python call")]
     fn drive(
@@ -194,46 +214,56 @@ impl Batch {
             true => MOST_DUTY,
             false => MOST_SPEED,
         };
-        let (actions, active) = checked(&actions, &active, self.count, most)?;
-        self.step(py, known, truth, ticks, |index, robot, begins| {
-            if active.get(index) != Some(&true) {
+        let (actions, active) = checked(&actions, &active, self.__len__(), most)?;
+        self.step(py, known, truth, ticks, |first, robots, begins| {
+            let mut driven = self.callers.iter().zip(&active[first..]);
+            if !driven.any(|(caller, active)| *caller && *active) {
                 return false;
             }
-            if let (true, Some([left, right, servo_rad])) = (begins, actions.get(index)) {
-                let (left, right) = (*left, *right);
-                let (wheels, servo) = (Wheels { left, right }, ServoAngle(*servo_rad));
-                match pwm {
-                    true => robot.drive_duty(wheels, servo),
-                    false => robot.drive(wheels, servo),
+            let rows = actions[first..].iter().zip(&active[first..]);
+            for (robot, (action, active)) in robots.iter_mut().zip(rows).filter(|_| begins) {
+                let [left, right, servo_rad] = *action;
+                let (wheels, servo) = (Wheels { left, right }, ServoAngle(servo_rad));
+                match (active, pwm) {
+                    (true, true) => robot.drive_duty(wheels, servo),
+                    (true, false) => robot.drive(wheels, servo),
+                    (false, _) => {
+                        // One that is disarmed stays so, and one of the scenario does not obey.
+                        let _ = robot.command(&Command::Disarm);
+                        robot.aim(None);
+                    }
                 }
             }
             true
         })
     }
 
-    /// Selects the mode of wheel speeds for these robots, arms them, and lets them stand for this many ticks.
+    /// Selects the mode of wheel speeds for these robots, arms them, and lets their worlds go on for this many ticks.
     fn begin(&self, py: Python<'_>, indices: Vec<usize>, ticks: u32) -> PyResult<()> {
         let mut held = self.lock()?;
         let robots = &mut *held;
-        let mut chosen = vec![false; self.count];
+        let count = self.__len__();
+        let mut chosen = vec![false; count];
         for index in indices {
             let chosen = chosen.get_mut(index);
-            *chosen.ok_or_else(|| beyond(index, self.count))? = true;
+            *chosen.ok_or_else(|| beyond(index, count))? = true;
         }
         let mut begins = true;
         in_strides(py, ticks, self.stride(), |now| {
-            on_threads(py, self.count, self.threads, || {
-                robots.for_each(|index, robot| {
-                    if chosen.get(index) != Some(&true) {
+            self.on_threads(py, || {
+                robots.for_each(|first, group| {
+                    let robots = group.robots_mut().iter_mut().zip(&chosen[first..]);
+                    let chosen: Vec<_> = robots.filter(|(_, chosen)| **chosen).collect();
+                    if chosen.is_empty() {
                         return;
                     }
-                    if begins {
+                    for (robot, _) in chosen.into_iter().filter(|_| begins) {
                         for command in [Command::Mode(ModeId::WheelSpeed), Command::Arm] {
-                            // A robot at its start obeys.
+                            // A robot at its start obeys; one of the scenario does not, and need not.
                             let _ = robot.command(&command);
                         }
                     }
-                    robot.advance(now);
+                    group.advance(now);
                 });
             })?;
             begins = false;
@@ -241,18 +271,17 @@ impl Batch {
         })
     }
 
-    /// Puts new robots of these seeds in place of those of these numbers.
+    /// Puts new robots of these seeds in place of those of the worlds of these numbers.
     fn renew(&self, py: Python<'_>, indices: Vec<usize>, seeds: Vec<u64>) -> PyResult<()> {
-        if let Some(index) = indices.iter().find(|index| **index >= self.count) {
-            return Err(beyond(*index, self.count));
+        if let Some(index) = indices.iter().find(|index| **index >= self.worlds) {
+            return Err(beyond(*index, self.worlds));
         }
         let mut held = self.lock()?;
         let robots = &mut *held;
         let pairs: Vec<_> = indices.into_iter().zip(seeds).collect();
-        let pool = || pool(self.threads);
-        making(py, pool, pairs.len(), None, |made| {
-            robots.renew(&pairs, made)
-        })
+        let threads = (pairs.len() > 1).then_some(self.threads);
+        let count = pairs.len() * self.callers.len();
+        making(py, threads, count, None, |made| robots.renew(&pairs, made))
     }
 
     /// Applies a command in the words of a scenario to one robot.
@@ -278,8 +307,8 @@ impl Batch {
     /// The log of one robot: the bytes of its file.
     fn log<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyBytes>> {
         let held = self.lock()?;
-        let robot = held.robots().get(index);
-        let robot = robot.ok_or_else(|| beyond(index, self.count))?;
+        let robot = held.robots().nth(index);
+        let robot = robot.ok_or_else(|| beyond(index, self.__len__()))?;
         let Setup {
             files,
             library,
@@ -292,7 +321,8 @@ impl Batch {
             overrides,
         };
         let written = detached(py, || {
-            source.episode(files, robot, |manifest, run| {
+            let robots = files.robots();
+            source.episode(&robots[index % robots.len()], robot, |manifest, run| {
                 record_run(Cursor::new(Vec::new()), manifest, run)
             })
         })?;
@@ -321,18 +351,24 @@ impl Batch {
     fn snapshot(&self, py: Python<'_>) -> PyResult<Snapshot> {
         Ok(Snapshot {
             setup: self.setup.clone_ref(py),
-            caller: self.caller,
+            callers: self.callers.clone(),
             robots: self.lock()?.clone(),
         })
     }
 
     /// Puts the robots back to a snapshot of a batch of the same size.
     fn restore(&self, snapshot: &Snapshot) -> PyResult<()> {
-        let count = snapshot.robots.robots().len();
-        if count != self.count {
+        let count = |callers: &[bool], robots: usize| match callers.len() {
+            1 => format!("{robots} robots"),
+            several => format!("{robots} robots, {several} in a world,"),
+        };
+        let (theirs, own) = (
+            count(&snapshot.callers, snapshot.__len__()),
+            count(&self.callers, self.__len__()),
+        );
+        if theirs != own {
             return Err(PyValueError::new_err(format!(
-                "a snapshot of {count} robots does not fit a batch of {}",
-                self.count
+                "a snapshot of {theirs} does not fit a batch of {own}"
             )));
         }
         *self.lock()? = snapshot.robots.clone();
@@ -347,8 +383,8 @@ impl Batch {
 
     pub(crate) fn with<T>(&self, index: usize, act: impl FnOnce(&mut Robot) -> T) -> PyResult<T> {
         let mut robots = self.lock()?;
-        let robot = robots.robots_mut().get_mut(index);
-        robot.map(act).ok_or_else(|| beyond(index, self.count))
+        let robot = robots.robot_mut(index);
+        robot.map(act).ok_or_else(|| beyond(index, self.__len__()))
     }
 
     fn step(
@@ -357,16 +393,18 @@ impl Batch {
         mut known: PyReadwriteArray2<'_, f32>,
         mut truth: PyReadwriteArray2<'_, f64>,
         ticks: u32,
-        act: impl Fn(usize, &mut Robot, bool) -> bool + Sync + Send,
+        act: impl Fn(usize, &mut [Robot], bool) -> bool + Sync + Send,
     ) -> PyResult<()> {
         let mut held = self.lock()?;
         let robots = &mut *held;
-        let known = rows("known", &mut known, self.count, OBSERVED.len())?;
-        let truth = rows("truth", &mut truth, self.count, TRUE.len())?;
+        let known = rows("known", &mut known, self.__len__(), OBSERVED.len())?;
+        let truth = rows("truth", &mut truth, self.__len__(), TRUE.len())?;
         let mut begins = true;
         let mut advance = |now| {
-            on_threads(py, self.count, self.threads, || {
-                robots.step(known, truth, now, |index, robot| act(index, robot, begins));
+            self.on_threads(py, || {
+                robots.step(known, truth, now, |first, robots| {
+                    act(first, robots, begins)
+                });
             })?;
             begins = false;
             Ok(())
@@ -383,17 +421,22 @@ impl Batch {
             Some(_) => EMULATED,
             None => 1,
         };
-        stride(weight * self.count)
+        let weight = weight * self.__len__();
+        (STRIDE_OF_ALL / weight.max(1)).clamp(1, STRIDE_TICKS) as u32
+    }
+
+    /// Does the work on a pool of its number of threads; for a single world on this one.
+    fn on_threads<T: Send>(&self, py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+        if self.worlds <= 1 {
+            return detached(py, work);
+        }
+        let pool = pool(self.threads)?;
+        detached(py, || pool.install(work))
     }
 }
 
-/// Between two looks for Ctrl-C [ticks], with so many robots of ours.
-pub(crate) fn stride(robots: usize) -> u32 {
-    (STRIDE_OF_ALL / robots.max(1)).clamp(1, STRIDE_TICKS) as u32
-}
-
 /// Robots that only one thread steps at a time.
-pub(crate) fn hold<T>(robots: &Mutex<T>) -> PyResult<MutexGuard<'_, T>> {
+fn hold(robots: &Mutex<Robots>) -> PyResult<MutexGuard<'_, Robots>> {
     robots.try_lock().map_err(|error| {
         PyRuntimeError::new_err(match error {
             TryLockError::WouldBlock => {
@@ -404,12 +447,12 @@ pub(crate) fn hold<T>(robots: &Mutex<T>) -> PyResult<MutexGuard<'_, T>> {
     })
 }
 
-pub(crate) fn beyond(index: usize, count: usize) -> PyErr {
+fn beyond(index: usize, count: usize) -> PyErr {
     PyIndexError::new_err(format!("robot {index}: there are {count}"))
 }
 
 /// Advances by this many ticks, with a look for Ctrl-C in between.
-pub(crate) fn in_strides(
+fn in_strides(
     py: Python<'_>,
     ticks: u32,
     stride: u32,
@@ -426,7 +469,7 @@ pub(crate) fn in_strides(
 }
 
 /// An action for each of so many robots, and whether it is given to it.
-pub(crate) fn checked<'a>(
+fn checked<'a>(
     actions: &'a PyReadonlyArray2<'_, f32>,
     active: &'a PyReadonlyArray1<'_, bool>,
     count: usize,
@@ -443,22 +486,8 @@ pub(crate) fn checked<'a>(
     Ok((actions, active.as_slice()?))
 }
 
-/// Does the work on a pool of this many threads; for a single robot on this one.
-fn on_threads<T: Send>(
-    py: Python<'_>,
-    robots: usize,
-    threads: usize,
-    work: impl FnOnce() -> T + Send,
-) -> PyResult<T> {
-    if robots <= 1 {
-        return detached(py, work);
-    }
-    let pool = pool(threads)?;
-    detached(py, || pool.install(work))
-}
-
 /// Corners of each obstacle that stands in a world [m].
-pub(crate) fn corners(world: &World) -> Vec<Vec<[f64; 2]>> {
+fn corners(world: &World) -> Vec<Vec<[f64; 2]>> {
     let obstacles = world.obstacles().iter();
     obstacles
         .map(|obstacle| obstacle.corners().collect())
@@ -492,7 +521,7 @@ pub(crate) fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize)
 }
 
 /// What wheels are given: what it is, the most of it either way, and its unit.
-pub(crate) const MOST_SPEED: (&str, f32, &str) = ("wheel speed", MAX_WHEEL_RAD_S, "rad/s");
+const MOST_SPEED: (&str, f32, &str) = ("wheel speed", MAX_WHEEL_RAD_S, "rad/s");
 const MOST_DUTY: (&str, f32, &str) = ("wheel's share of the PWM", 1.0, "of the full one");
 
 /// Every number is one that the robot takes.

@@ -88,32 +88,45 @@ pub(crate) fn pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
 /// How often Ctrl-C is looked for.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Makes robots on the threads of `pool`, of which `count` are to be made, and looks for Ctrl-C meanwhile; a single one is
-/// made here, without threads, which a fork of this process would lose. `progress` is called with the share that is made.
+/// Makes robots on this many threads, of which `count` are to be made, and looks for Ctrl-C meanwhile; without threads here,
+/// where a fork of this process has none. `progress` is called with the share that is made.
 pub(crate) fn making<T: Send>(
     py: Python<'_>,
-    pool: impl FnOnce() -> PyResult<Arc<ThreadPool>>,
+    threads: Option<usize>,
     count: usize,
     progress: Option<&Py<PyAny>>,
     make: impl FnOnce(Made<'_>) -> Result<T, FileError> + Send,
 ) -> PyResult<T> {
-    let ended = match count {
-        0 | 1 => detached(py, || make(&|| Ok(())))?,
-        _ => watched(py, &*pool()?, progress, |shares, stop| {
-            let made = AtomicUsize::new(0);
+    let Some(threads) = threads else {
+        let interrupted = Mutex::new(None);
+        let ended = detached(py, || {
             make(&|| {
-                let made = made.fetch_add(1, Ordering::Relaxed) + 1;
-                if made.is_multiple_of(count.div_ceil(100)) {
-                    // An error: nobody listens any more, and `stop` is set.
-                    let _ = shares.send(made as f64 / count as f64);
-                }
-                match stop.load(Ordering::Relaxed) {
-                    true => Err(FileError::Setting("interrupted".to_owned())),
-                    false => Ok(()),
-                }
+                call(None, 0.0).map_err(|error| {
+                    *interrupted.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                    FileError::Setting("interrupted".to_owned())
+                })
             })
-        })?,
+        })?;
+        let interrupted = interrupted.into_inner();
+        return match interrupted.unwrap_or_else(PoisonError::into_inner) {
+            Some(error) => Err(error),
+            None => ended.map_err(|error| exception(&error)),
+        };
     };
+    let ended = watched(py, &*pool(threads)?, progress, |shares, stop| {
+        let made = AtomicUsize::new(0);
+        make(&|| {
+            let made = made.fetch_add(1, Ordering::Relaxed) + 1;
+            if made.is_multiple_of(count.div_ceil(100)) {
+                // An error: nobody listens any more, and `stop` is set.
+                let _ = shares.send(made as f64 / count as f64);
+            }
+            match stop.load(Ordering::Relaxed) {
+                true => Err(FileError::Setting("interrupted".to_owned())),
+                false => Ok(()),
+            }
+        })
+    })?;
     ended.map_err(|error| exception(&error))
 }
 

@@ -5,7 +5,6 @@
 //! time. Input is checked before anything runs; an error of the simulator's files is a `ValueError` with their text.
 
 mod batch;
-mod fleet;
 mod guard;
 mod identify;
 mod log;
@@ -21,7 +20,6 @@ mod _rumbo {
     #[pymodule_export]
     use super::batch::{Batch, Snapshot};
     #[pymodule_export]
-    use super::fleet::Fleet;
     #[pymodule_export]
     use super::identify::identify;
     #[pymodule_export]

@@ -154,10 +154,10 @@ impl Setup {
         &self.files.scenario.name
     }
 
-    /// The names of its robots, if it has several.
+    /// The names of its robots; of a single one the scenario's.
     #[getter]
     fn robots(&self) -> Vec<&str> {
-        let robots = self.files.fleet.iter();
+        let robots = self.files.robots().iter();
         robots.map(|robot| robot.scenario.name.as_str()).collect()
     }
 

@@ -45,12 +45,12 @@ def alike(one: Any, other: Any) -> bool:
 
 def test_by_the_scenario_s_commands_robots_are_those_of_a_run() -> None:
     runs = rumbo.run(CORNERS, seeds=5, trace=True)[0].robots
-    fleet = rumbo.Fleet(CORNERS, seed=5)
-    assert fleet.names == tuple(run.scenario for run in runs) and len(fleet) == 4
+    batch = rumbo.Batch(CORNERS, seeds=[4, 5])
+    assert batch.names == tuple(run.scenario for run in runs) and batch.seeds.tolist() == [4] * 4 + [5] * 4
     for second in (1, 8, 20):
-        fleet.step(second - fleet.truth()["t_s"][0])
-        truth = fleet.truth()
-        for row, run in enumerate(runs):
+        batch.step(second - batch.truth()["t_s"][0])
+        truth = batch.truth()
+        for row, run in enumerate(runs, 4):
             trace: Any = run.trace
             sample = int(np.searchsorted(trace["t_s"], second - 1e-6))
             for name in ("x_m", "y_m", "left_rad_s", "right_rad_s", "range_front_m", "battery_v"):
@@ -139,15 +139,15 @@ def test_robots_in_one_world_are_pickled_copied_and_put_back() -> None:
         assert alike(go_on(other), expected)
     env.restore(snapshot)
     assert alike(go_on(env), expected)
-    with pytest.raises(ValueError, match="a snapshot of south_west, .* does not fit robot_0, robot_1"):
+    with pytest.raises(ValueError, match="a snapshot of 4 robots, 4 in a world, does not fit a batch of 2 robots, 2 in a world"):
         FleetGoalEnv(robots=2).restore(snapshot)
     # By the scenario alone.
-    fleet = rumbo.Fleet(CORNERS, seed=5)
-    fleet.step(3)
-    again = pickle.loads(pickle.dumps(fleet))
-    for one in (fleet, again):
+    batch = rumbo.Batch(CORNERS, seeds=5)
+    batch.step(3)
+    again = pickle.loads(pickle.dumps(batch))
+    for one in (batch, again):
         one.step(1)
-    assert alike(fleet.truth(), again.truth())
+    assert alike(batch.truth(), again.truth())
 
 
 def test_the_end_of_the_time_truncates_and_a_step_after_it_is_empty() -> None:
@@ -169,8 +169,8 @@ def test_robots_that_are_no_agents_go_by_the_scenario() -> None:
         if env.agents:
             *_, infos = env.step(still)
     assert list(infos) == ["north_east"]
-    fleet: Any = env._fleet
-    truth = fleet.truth()
+    batch: Any = env._batch
+    truth = batch.truth()
     moved = np.hypot(np.abs(truth["x_m"]) - 1, np.abs(truth["y_m"]) - 1) > 0.1
     assert moved[[0, 1, 3]].all(), truth
 
@@ -186,11 +186,8 @@ def test_robots_that_are_no_agents_go_by_the_scenario() -> None:
         (lambda: FleetGoalEnv(across(2) | {"command": []}).reset(), "robot_0: has no goal"),
         (lambda: FleetGoalEnv(robots=2).reset(seed=-1), "seed = -1"),
         (lambda: FleetGoalEnv(robots=2, parameters={"front_kpp": 1}), "front_kp"),
-        (lambda: rumbo.Fleet("mode1"), "mode1: has one robot"),
-        (lambda: rumbo.Fleet(CORNERS, callers=["x"]), 'no robot "x"'),
-        (lambda: rumbo.Fleet(CORNERS).fault("x"), "no robot 'x'"),
-        (lambda: rumbo.Fleet(CORNERS).drive(np.zeros((3, 3))), "shape"),
-        (lambda: rumbo.Fleet(CORNERS).drive(np.full((4, 3), 99.0)), r"action\[0, 0\]"),
+        (lambda: rumbo.Sim(CORNERS), "has several robots; take rumbo.Batch"),
+        (lambda: rumbo.Batch(CORNERS, seeds=1, driver=["x"]), "no robot 'x'; the scenario has south_west"),
     ],
 )
 def test_wrong_settings_are_named(make: Any, words: str) -> None:

@@ -329,7 +329,7 @@ def test_control_c_ends_the_making_of_robots() -> None:
         "calibrated": True,
         "fleet": [{"name": f"r{n}", "start": {"x_m": n % 8 - 4.0, "y_m": n // 8 - 2.0}} for n in range(32)],
     }
-    interrupted(lambda: [rumbo.Fleet(many) for _ in range(20)])
+    interrupted(lambda: [rumbo.Batch(many, seeds=1) for _ in range(20)])
 
 
 def test_control_c_ends_the_check_of_a_sweep_s_points() -> None:

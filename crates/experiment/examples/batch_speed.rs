@@ -8,7 +8,7 @@
 
 use rumbo_control::mode::ModeId;
 use rumbo_control::{ServoAngle, Wheels};
-use rumbo_experiment::batch::{Batch, Driver, Team};
+use rumbo_experiment::batch::{Batch, Driver};
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup, fleet_around};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
@@ -199,15 +199,16 @@ fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
 fn commanded(arena: &Setup, seconds: u64) -> Result<Speed, FileError> {
     let mut arena = arena.clone();
     arena.scenario.mode = ModeId::WheelSpeed;
-    let mut batch = Batch::new(arena, Driver::Caller, &seeds(ROBOTS))?;
-    batch.for_each(|_, robot| {
+    let mut batch = Batch::new(&arena, Driver::Caller, &seeds(ROBOTS))?;
+    batch.for_each(|_, group| {
         // A robot at its start obeys.
-        let _ = robot.command(&Command::Arm);
+        let _ = group.robots_mut()[0].command(&Command::Arm);
     });
     let (mut known, mut truth) = (vec![0.0; ROBOTS * 14], vec![0.0; ROBOTS * 20]);
     let start = Start::now();
     for _ in 0..seconds * 10 {
-        batch.step(&mut known, &mut truth, 10, |_, robot| {
+        batch.step(&mut known, &mut truth, 10, |_, robots| {
+            let robot = &mut robots[0];
             let [_, _, left_m, right_m, front_m, ..] = robot.observed();
             let (left, right) = match left_m.min(right_m).min(front_m) < NEAR_M as f32 {
                 true if left_m > right_m => (-3.0, 3.0),
@@ -224,7 +225,7 @@ fn commanded(arena: &Setup, seconds: u64) -> Result<Speed, FileError> {
 
 /// The same of mode 8 by the scenario's commands over the link.
 fn by_scenario(arena: &Setup, seconds: u64) -> Result<Speed, FileError> {
-    let mut batch = Batch::new(arena.clone(), Driver::Scenario, &seeds(ROBOTS))?;
+    let mut batch = Batch::new(arena, Driver::Scenario, &seeds(ROBOTS))?;
     let start = Start::now();
     batch.advance(seconds as u32 * 100);
     Ok(start.speed(seconds * 100))
@@ -242,13 +243,9 @@ fn together(arena: &Setup, robots: usize, seconds: u64) -> Result<Speed, FileErr
         );
     let setup = library.setup("bench", &Overrides::default())?;
     let rounds = ROBOTS / robots;
-    let teams = seeds(rounds).into_iter();
-    let teams = teams.map(|seed| Team::new(&setup, |_| Driver::Scenario, seed));
-    let mut teams = teams.collect::<Result<Vec<_>, _>>()?;
+    let mut batch = Batch::new(&setup, Driver::Scenario, &seeds(rounds))?;
     let start = Start::now();
-    for team in &mut teams {
-        team.advance(seconds as u32 * 100);
-    }
+    batch.advance(seconds as u32 * 100);
     Ok(start.speed_of(rounds * robots, seconds * 100))
 }
 
@@ -262,7 +259,7 @@ fn memory(arena: &Setup) -> Result<f64, Box<dyn Error>> {
     };
     let count = 8_192;
     let before_kib = resident_kib()?;
-    let batch = Batch::new(arena.clone(), Driver::Caller, &seeds(count))?;
+    let batch = Batch::new(arena, Driver::Caller, &seeds(count))?;
     let each = (resident_kib()? - before_kib) * 1024.0 / count as f64;
     drop(batch);
     Ok(each)

@@ -90,6 +90,7 @@ pub struct Run<'a> {
     seed: u64,
     fleet: Fleet,
     /// Its robots, in order.
+    sims: Vec<Sim>,
     members: Vec<Member<&'a Setup>>,
     end_us: u64,
     /// End of the current sample [us].
@@ -113,14 +114,15 @@ impl<'a> Run<'a> {
             sims.push(sim);
             members.push(member);
         }
-        let fleet = Fleet::new(sims).map_err(|error| {
+        let fleet = Fleet::new(&mut sims.iter_mut().collect::<Vec<_>>()).map_err(|error| {
             FileError::Setting(format!("scenario {}: {error}", setup.scenario.name))
         })?;
         Ok(Self {
             setup,
             seed,
-            sample_us: fleet.now_us(),
+            sample_us: sims[0].now_us(),
             fleet,
+            sims,
             members,
             end_us,
             waves: None,
@@ -130,11 +132,11 @@ impl<'a> Run<'a> {
 
     /// Robot and program; of several the first.
     pub fn sim(&mut self) -> &mut Sim {
-        self.fleet.first_mut()
+        &mut self.sims[0]
     }
 
     pub(crate) fn mega(&self) -> Option<&Mega> {
-        self.fleet.first().mega()
+        self.sims[0].mega()
     }
 
     /// The messages received from the robot so far.
@@ -151,36 +153,36 @@ impl<'a> Run<'a> {
 
     /// The time is over, or a program has ended.
     pub fn is_over(&self) -> bool {
-        self.fleet.now_us() >= self.end_us || self.has_ended()
+        self.sims[0].now_us() >= self.end_us || self.has_ended()
     }
 
     fn has_ended(&self) -> bool {
-        let mut robots = self.fleet.robots().iter();
-        robots.any(|robot| robot.verdict().is_some())
+        self.sims.iter().any(|robot| robot.verdict().is_some())
     }
 
     /// Advances to the end of a sample, or to where a debugger halts the program.
     pub fn advance(&mut self) {
         self.operate();
-        self.fleet.advance(self.sample_us);
+        let mut sims: Vec<_> = self.sims.iter_mut().collect();
+        self.fleet.advance(&mut sims, self.sample_us);
         self.draw_levels();
         self.sample();
     }
 
     /// Before a sample: what the operators send.
     fn operate(&mut self) {
-        if self.fleet.now_us() >= self.sample_us {
-            for (sim, member) in std::iter::zip(self.fleet.robots_mut(), &mut self.members) {
+        if self.sims[0].now_us() >= self.sample_us {
+            for (sim, member) in std::iter::zip(&mut self.sims, &mut self.members) {
                 member.operator.step(sim);
             }
-            self.sample_us = (self.fleet.now_us() + SAMPLE_US).min(self.end_us);
+            self.sample_us = (self.sims[0].now_us() + SAMPLE_US).min(self.end_us);
         }
     }
 
     /// At its end, or that of a program.
     fn sample(&mut self) {
-        if self.fleet.now_us() >= self.sample_us || self.has_ended() {
-            for (sim, member) in std::iter::zip(self.fleet.robots_mut(), &mut self.members) {
+        if self.sims[0].now_us() >= self.sample_us || self.has_ended() {
+            for (sim, member) in std::iter::zip(&mut self.sims, &mut self.members) {
                 member.trace.sample(sim);
                 member.trace.listen(sim);
             }
@@ -193,7 +195,7 @@ impl<'a> Run<'a> {
     }
 
     fn draw_levels(&mut self) {
-        if let (Some(waves), Some(mega)) = (&mut self.waves, self.fleet.first_mut().mega_mut()) {
+        if let (Some(waves), Some(mega)) = (&mut self.waves, self.sims[0].mega_mut()) {
             for level in mega.chip_mut().take_levels() {
                 if self.undrawn.is_ok() {
                     self.undrawn = waves.put(level);
@@ -209,7 +211,7 @@ impl<'a> Run<'a> {
     pub(crate) fn finish_drawing(&mut self) -> io::Result<()> {
         self.draw_levels();
         std::mem::replace(&mut self.undrawn, Ok(()))?;
-        match (self.waves.take(), self.fleet.first().mega()) {
+        match (self.waves.take(), self.sims[0].mega()) {
             (Some(waves), Some(mega)) => waves.finish(mega.chip().cycle()),
             _ => Ok(()),
         }
@@ -217,13 +219,13 @@ impl<'a> Run<'a> {
 
     fn judge(mut self) -> RunResult {
         let members = std::mem::take(&mut self.members);
-        let robots = std::iter::zip(self.fleet.robots_mut(), members);
+        let robots = std::iter::zip(&mut self.sims, members);
         let mut robots: Vec<RunResult> = robots
             .map(|(sim, member)| member.result(sim, self.seed))
             .collect();
         let whole = match &mut robots[..] {
             [only] => std::mem::take(only),
-            _ => together(&self.fleet, robots),
+            _ => together(&self.fleet, &self.sims, robots),
         };
         judged(self.setup, whole)
     }
@@ -305,7 +307,7 @@ impl<S: Deref<Target = Setup> + Clone> Member<S> {
 }
 
 /// The result of several robots: with the metrics of each and of each pair after their names, and of all.
-fn together(fleet: &Fleet, robots: Vec<RunResult>) -> RunResult {
+fn together(fleet: &Fleet, sims: &[Sim], robots: Vec<RunResult>) -> RunResult {
     let all = |what: fn(&RunResult) -> &[Note]| -> Vec<Note> {
         let named = robots.iter().flat_map(|robot| {
             what(robot).iter().map(|note| Note::Robot {
@@ -321,7 +323,7 @@ fn together(fleet: &Fleet, robots: Vec<RunResult>) -> RunResult {
         .collect();
     RunResult {
         seed: robots.first().map_or(0, |first| first.seed),
-        metrics: metrics::of_fleet(fleet, &own),
+        metrics: metrics::of_fleet(fleet, sims, &own),
         failures: all(|robot| &robot.failures),
         notes: all(|robot| &robot.notes),
         ended: robots.iter().find_map(|robot| robot.ended.clone()),

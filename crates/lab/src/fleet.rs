@@ -36,8 +36,9 @@ struct World {
     start: u32,
 }
 
-/// What is constant of a robot between two starts.
+/// A robot, with what is constant of it between two starts.
 struct About {
+    sim: Sim,
     name: String,
     mode: rumbo_control::mode::ModeId,
     scene: Scene,
@@ -104,7 +105,6 @@ fn begin(
     choice: &Choice,
     memories: &[Vec<u8>],
 ) -> Result<(Fleet, Vec<About>), FileError> {
-    let mut sims = Vec::new();
     let mut robots = Vec::new();
     for prepared in prepare_fleet(library, overrides, choice, memories)? {
         let Prepared {
@@ -114,12 +114,12 @@ fn begin(
             first_commands,
             manifest,
         } = prepared;
-        sims.push(sim);
         // Another scenario may have another number of robots.
         scene
             .experiments
             .retain(|experiment| experiment.name == choice.scenario);
         robots.push(About {
+            sim,
             name: manifest.member.clone().unwrap_or_default(),
             mode,
             scene,
@@ -127,8 +127,13 @@ fn begin(
             manifest,
         });
     }
-    let fleet = Fleet::new(sims)
-        .map_err(|error| FileError::Setting(format!("scenario {}: {error}", choice.scenario)))?;
+    let fleet = Fleet::new(
+        &mut robots
+            .iter_mut()
+            .map(|about| &mut about.sim)
+            .collect::<Vec<_>>(),
+    )
+    .map_err(|error| FileError::Setting(format!("scenario {}: {error}", choice.scenario)))?;
     Ok((fleet, robots))
 }
 
@@ -149,7 +154,7 @@ impl FleetRobot {
     }
 
     fn sim<T>(&self, what: impl FnOnce(&mut Sim) -> T) -> T {
-        what(&mut self.shared().fleet.robots_mut()[self.number])
+        what(&mut self.shared().robots[self.number].sim)
     }
 
     fn leads(&self) -> bool {
@@ -160,16 +165,16 @@ impl FleetRobot {
 impl World {
     /// Where the others of a robot are.
     fn others(&self, number: usize) -> Shown {
-        let robots = std::iter::zip(&self.robots, self.fleet.robots()).enumerate();
-        let others = robots.filter(|(other, _)| *other != number);
+        let others = self.robots.iter().enumerate();
+        let others = others.filter(|(other, _)| *other != number);
         let signals = others
-            .flat_map(|(_, (about, sim))| Other::signals(&about.name, sight::truth(sim).pose));
+            .flat_map(|(_, about)| Other::signals(&about.name, sight::truth(&about.sim).pose));
         (Source::Others, signals.collect())
     }
 
     /// All start again from time 0, as switched off and on again.
     fn start_again(&mut self, choice: &Choice) -> Result<(), FileError> {
-        let memories: Vec<_> = self.fleet.robots().iter().map(Sim::memory).collect();
+        let memories: Vec<_> = self.robots.iter().map(|about| about.sim.memory()).collect();
         (self.fleet, self.robots) = begin(&self.library, &self.overrides, choice, &memories)?;
         self.start += 1;
         Ok(())
@@ -178,14 +183,16 @@ impl World {
 
 impl Target for FleetRobot {
     fn now_us(&self) -> u64 {
-        self.shared().fleet.now_us()
+        self.sim(|sim| sim.now_us())
     }
 
     fn advance(&mut self, dt_us: u64) -> Result<(), TargetError> {
         if self.leads() {
-            let mut world = self.shared();
-            let until_us = world.fleet.now_us() + dt_us;
-            world.fleet.advance(until_us);
+            let until_us = self.now_us() + dt_us;
+            let mut shared = self.shared();
+            let World { fleet, robots, .. } = &mut *shared;
+            let mut sims: Vec<_> = robots.iter_mut().map(|about| &mut about.sim).collect();
+            fleet.advance(&mut sims, until_us);
         }
         Ok(())
     }

@@ -16,10 +16,10 @@ use rumbo_plant::world::{Obstacle, ShapeError};
 /// Longest step, and the grid it keeps to [us].
 const STEP_US: u64 = 1_000;
 
-/// Robots in one world, at least one.
+/// What robots in one world are to each other; at least one. They themselves are the caller's, in the same order at each
+/// call.
 #[derive(Clone, Debug)]
 pub struct Fleet {
-    robots: Vec<Sim>,
     /// Each as the others meet it.
     bodies: Vec<Body>,
     /// Those that do not go on as they did, and how far at most each has jumped [m]; kept for its memory.
@@ -92,16 +92,17 @@ impl Fleet {
     ///
     /// # Errors
     /// Two of them inside each other, clocks that differ, none, or too many.
-    pub fn new(mut robots: Vec<Sim>) -> Result<Self, FleetError> {
-        let Some(now_us) = robots.first().map(Sim::now_us) else {
+    pub fn new(robots: &mut [&mut Sim]) -> Result<Self, FleetError> {
+        let Some(now_us) = robots.first().map(|first| first.now_us()) else {
             return Err(FleetError::Empty);
         };
         if robots.iter().any(|robot| robot.now_us() != now_us) {
             return Err(FleetError::Clocks);
         }
-        let bodies = robots.iter().map(Sim::body).collect::<Result<Vec<_>, _>>();
+        let bodies = robots.iter().map(|robot| robot.body());
+        let bodies = bodies.collect::<Result<Vec<_>, _>>();
         let bodies = bodies.map_err(|_: ShapeError| FleetError::TooMany)?;
-        let outlines: Vec<Obstacle> = std::iter::zip(&robots, &bodies)
+        let outlines: Vec<Obstacle> = std::iter::zip(&*robots, &bodies)
             .map(|(robot, body)| body.outline(&robot.motion().pose))
             .collect();
         for (second, outline) in outlines.iter().enumerate() {
@@ -119,70 +120,31 @@ impl Fleet {
             }
         }
         Ok(Self {
-            approaches: Approaches::new(&bodies, robots.iter().map(Sim::pose)),
+            approaches: Approaches::new(&bodies, robots.iter().map(|robot| robot.pose())),
             pings: vec![[0; 3]; robots.len()],
             changed: Vec::with_capacity(robots.len()),
-            robots,
             bodies,
             movers,
         })
     }
 
-    /// The robots.
-    pub fn robots(&self) -> &[Sim] {
-        &self.robots
-    }
-
-    /// The robots, to send them bytes or to receive some; only [`Fleet::advance`] passes time.
-    pub fn robots_mut(&mut self) -> &mut [Sim] {
-        &mut self.robots
-    }
-
-    /// One of them.
-    pub fn robot_mut(&mut self, index: usize) -> Option<&mut Sim> {
-        self.robots.get_mut(index)
-    }
-
-    /// The first of them.
-    pub fn first(&self) -> &Sim {
-        &self.robots[0]
-    }
-
-    /// The first of them, as [`Fleet::robots_mut`].
-    pub fn first_mut(&mut self) -> &mut Sim {
-        &mut self.robots[0]
-    }
-
-    /// The only one of them.
-    pub fn only_mut(&mut self) -> Option<&mut Sim> {
-        match &mut self.robots[..] {
-            [only] => Some(only),
-            _ => None,
-        }
-    }
-
-    /// The time of all of them [us].
-    pub fn now_us(&self) -> u64 {
-        self.first().now_us()
-    }
-
     /// Advances all robots to this time [us].
-    pub fn advance(&mut self, until_us: u64) {
-        if let [only] = &mut self.robots[..] {
+    pub fn advance(&mut self, robots: &mut [&mut Sim], until_us: u64) {
+        if let [only] = robots {
             only.advance(until_us);
             return;
         }
-        while let Some(now_us) = self.robots.first().map(Sim::now_us)
+        while let Some(now_us) = robots.first().map(|first| first.now_us())
             && now_us < until_us
         {
             let end_us = ((now_us / STEP_US + 1) * STEP_US).min(until_us);
-            self.meet(now_us);
-            for robot in &mut self.robots {
+            self.meet(robots, now_us);
+            for robot in robots.iter_mut() {
                 robot.advance(end_us);
             }
-            let poses = self.robots.iter().map(Sim::pose);
+            let poses = robots.iter().map(|robot| robot.pose());
             self.approaches.measure(&self.bodies, poses);
-            if self.robots.iter().any(|robot| robot.now_us() < end_us) {
+            if robots.iter().any(|robot| robot.now_us() < end_us) {
                 // At a breakpoint.
                 return;
             }
@@ -191,13 +153,12 @@ impl Fleet {
 
     /// Each robot gets the poses and velocities of the others, and their pings of the last step. No sonar is so near to
     /// another robot's that a burst, 450 us after its trigger, would have arrived before.
-    fn meet(&mut self, now_us: u64) {
+    fn meet(&mut self, robots: &mut [&mut Sim], now_us: u64) {
         let mut pings = Vec::new();
-        let robots = std::iter::zip(&self.robots, &mut self.pings).enumerate();
-        robots.for_each(|(index, (robot, counts))| robot.pings_since(index, counts, &mut pings));
+        let counted = std::iter::zip(&*robots, &mut self.pings).enumerate();
+        counted.for_each(|(index, (robot, counts))| robot.pings_since(index, counts, &mut pings));
         self.changed.clear();
-        let robots = std::iter::zip(&self.robots, &mut self.bodies).enumerate();
-        for (index, (robot, body)) in robots {
+        for (index, (robot, body)) in std::iter::zip(&*robots, &mut self.bodies).enumerate() {
             let from = robot.motion();
             if !body.stands_as(&from) {
                 let at_us = now_us;
@@ -205,7 +166,7 @@ impl Fleet {
                 self.changed.push((index, jump_m));
             }
         }
-        for (own, robot) in self.robots.iter_mut().enumerate() {
+        for (own, robot) in robots.iter_mut().enumerate() {
             let others = self.changed.iter().filter(|(other, _)| *other != own);
             robot.meet(others.map(|&(other, jump_m)| {
                 let number = self.movers + other - usize::from(other > own);
@@ -222,11 +183,8 @@ impl Fleet {
         self.approaches.closest_m(one, other)
     }
 
-    /// The contacts of a robot so far, in order.
-    pub fn encounters(&self, robot: usize) -> Vec<Encounter> {
-        let Some(sim) = self.robots.get(robot) else {
-            return Vec::new();
-        };
+    /// The contacts of the robot of this number so far, in order.
+    pub fn encounters(&self, robot: usize, sim: &Sim) -> Vec<Encounter> {
         let standing = sim.world().obstacles().len();
         let met = |index: usize| match index.checked_sub(standing) {
             None => Met::Obstacle(index),

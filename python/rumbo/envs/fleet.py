@@ -29,9 +29,9 @@ from gymnasium import error, spaces
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
-from .._fleet import Fleet, FleetSnapshot
+from .. import _rumbo
 from .._setup import Parameters, Source, make_setup
-from .._sim import OBSERVED, TRUE
+from .._sim import OBSERVED, TRUE, Batch
 from ._core import SCALE, STAND_S, action_space, checked_seed, observation_space
 from ._tasks import ACTION_S, FAILURE, GOAL, collided, mix
 
@@ -79,7 +79,7 @@ def across(robots: int) -> dict[str, Any]:
 class FleetEnvSnapshot:
     """A parallel environment as it was at one moment."""
 
-    _robots: FleetSnapshot
+    _robots: _rumbo.Snapshot
     _state: tuple[int, int, int, list[str], NDArray[np.float64]] = field(repr=False)
 
 
@@ -136,7 +136,7 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
             "randomize": randomize,
         }
         setup = make_setup(source, **self._settings)
-        if not setup.robots:
+        if len(setup.robots) == 1:
             raise ValueError(f"scenario {setup.name}: has one robot; give a scenario with [[fleet]]")
         chosen = setup.robots if agents is None else list(agents)
         for name in chosen:
@@ -155,7 +155,7 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
         self._low, self._high = bounds.low, bounds.high
         #: The names of the numbers of an observation.
         self.observation_names: tuple[str, ...] = OBSERVED
-        self._fleet: Fleet | None = None
+        self._batch: Batch | None = None
         self._closed = False
         #: The seed given, how many of its episodes were begun, and the actions of this one.
         self._base, self._begun, self._taken = 0, 0, 0
@@ -174,19 +174,18 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
     ) -> tuple[dict[str, _Array], dict[str, dict[str, Any]]]:
         """Begins the episode of `seed`, or the next one."""
         self._check_open()
-        if seed is None and self._fleet is None:
+        if seed is None and self._batch is None:
             seed = secrets.randbits(63)
         if seed is not None:
             self._base, self._begun = checked_seed(seed), 0
         number = self._base if self._begun == 0 else mix(self._base ^ mix(self._begun)) >> 1
         self._begun += 1
-        if self._fleet is None:
-            self._fleet = Fleet(self._source, seed=number, callers=self.possible_agents, **self._settings)
+        if self._batch is None:
+            self._batch = self._make(number)
         else:
-            self._fleet.renew(number)
-        fleet = self._fleet
-        fleet.begin_wheel_speed(STAND_S)
-        known, self._truth = fleet.rows()
+            self._batch.renew([0], [number])
+        self._batch.begin_wheel_speed(duration_s=STAND_S)
+        known, self._truth = self._batch.rows()
         for name, row in self._rows.items():
             if np.isnan(self._truth[row, TRUE.index("goal_x_m")]):
                 raise ValueError(f"robot {name}: has no goal; give it a command with goal_m, or the world a goal_m")
@@ -199,18 +198,17 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
     ) -> tuple[dict[str, _Array], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
         """Acts for 0.1 s."""
         self._check_open()
-        if self._fleet is None:
+        if self._batch is None:
             raise error.ResetNeeded("reset() comes first")
         rows = self._checked_actions(actions)
         if not self.agents:
             return {}, {}, {}, {}, {}
         before = self._truth
-        active = np.zeros(len(self._fleet), np.bool_)
+        active = np.zeros(len(self._batch), np.bool_)
         active[[self._rows[agent] for agent in self.agents]] = True
-        self._fleet.drive(rows, ACTION_S, active=active)
-        known, self._truth = self._fleet.rows()
+        known, self._truth = self._batch.drive(rows, ACTION_S, active=active)
         self._taken += 1
-        reward, arrived = GOAL.judge(before, self._truth, np.zeros((len(self._fleet), 2)))
+        reward, arrived = GOAL.judge(before, self._truth, np.zeros((len(self._batch), 2)))
         failed = collided(self._truth) & ~arrived
         reward = np.where(failed, reward + FAILURE, reward)
         over = failed | arrived
@@ -226,10 +224,10 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
     def snapshot(self) -> FleetEnvSnapshot:
         """The episode as it is now: `restore` puts it back, any number of times, and it can be pickled."""
         self._check_open()
-        if self._fleet is None:
+        if self._batch is None:
             raise error.ResetNeeded("reset() comes first")
         state = (self._base, self._begun, self._taken, list(self.agents), self._truth.copy())
-        return FleetEnvSnapshot(self._fleet.snapshot(), state)
+        return FleetEnvSnapshot(self._batch.snapshot(), state)
 
     def restore(self, snapshot: FleetEnvSnapshot) -> tuple[dict[str, _Array], dict[str, dict[str, Any]]]:
         """Puts the environment back to a snapshot of the same robots; gives the observations and infos of then.
@@ -238,18 +236,21 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
             ValueError: The snapshot is of other robots.
         """
         self._check_open()
-        if self._fleet is None:
-            self._fleet = Fleet(self._source, callers=self.possible_agents, **self._settings)
-        self._fleet.restore(snapshot._robots)
+        if self._batch is None:
+            self._batch = self._make(1)
+        self._batch.restore(snapshot._robots)
         self._base, self._begun, self._taken, agents, truth = snapshot._state
         self.agents, self._truth = list(agents), truth.copy()
-        return self._observations(self._fleet.rows()[0]), self._infos()
+        return self._observations(self._batch.rows()[0]), self._infos()
 
     def close(self) -> None:
         """Lets go of the robots."""
         self._closed = True
-        self._fleet = None
+        self._batch = None
         self.agents = []
+
+    def _make(self, seed: int) -> Batch:
+        return Batch(self._source, seeds=seed, driver=self.possible_agents, threads=1, **self._settings)
 
     def _check_open(self) -> None:
         if self._closed:
@@ -260,7 +261,7 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
             if agent not in self.agents:
                 why = "its episode has ended" if agent in self.possible_agents else "it is no agent"
                 raise ValueError(f"action of {agent!r}: {why}; there are {', '.join(self.agents) or 'none'}")
-        rows = np.zeros((len(self._fleet or ()), 3), np.float32)
+        rows = np.zeros((len(self._batch or ()), 3), np.float32)
         for agent in self.agents:
             if agent not in actions:
                 raise ValueError(f"no action of {agent!r}")
@@ -278,7 +279,7 @@ class FleetGoalEnv(ParallelEnv[str, NDArray[np.float32], NDArray[np.float32]]):
 
     def _infos(self) -> dict[str, dict[str, Any]]:
         """Ground truth of each robot, by name, and the seed."""
-        seed = 0 if self._fleet is None else self._fleet.seed
+        seed = 0 if self._batch is None else int(self._batch.seeds[0])
         infos: dict[str, dict[str, Any]] = {}
         for agent in self.agents:
             row = self._truth[self._rows[agent]]

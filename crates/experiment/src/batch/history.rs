@@ -24,8 +24,6 @@ pub(super) enum Act {
     Aim(Option<ServoAngle>),
     /// Its recording began.
     Record,
-    /// What comes next is done to the robot of this number in a team.
-    Of(u8),
     /// The record of its board began.
     Probe,
     /// Bytes were typed to a port of its board.
@@ -71,7 +69,6 @@ impl History {
             Act::Aim(Some(servo)) => self.put(5, &[servo.0]),
             Act::Aim(None) => self.put(6, &[]),
             Act::Record => self.put(7, &[]),
-            Act::Of(robot) => self.bytes.extend([8, *robot]),
             Act::Probe => self.put(10, &[]),
             Act::Type(port, bytes) => {
                 self.put_text(11, bytes);
@@ -180,10 +177,6 @@ fn take_act(bytes: &mut &[u8]) -> Option<Act> {
         [5] => Act::Aim(Some(ServoAngle(take_number(bytes)?))),
         [6] => Act::Aim(None),
         [7] => Act::Record,
-        [8] => {
-            let [robot] = take(bytes)?;
-            Act::Of(robot)
-        }
         [9] => {
             let [ticks] = take(bytes)?;
             Act::Advance(u32::from(ticks))
@@ -218,7 +211,6 @@ mod tests {
             Act::Command(Command::Mode(ModeId::WheelSpeed)),
             Act::Command(Command::WheelReference(wheels)),
             Act::Advance(50),
-            Act::Of(3),
             Act::Drive(wheels, ServoAngle(0.3)),
             Act::Duty(wheels, ServoAngle(-0.3)),
             Act::Advance(70_000),

@@ -43,40 +43,32 @@ impl Robot {
         })
     }
 
-    /// Does to it, at its start, what was done to another one of its setup and seed, which it then is: see
-    /// [`Robot::history`].
-    ///
-    /// # Errors
-    /// These are no bytes of a history.
-    pub fn relive(&mut self, history: &[u8]) -> Result<(), FileError> {
-        for act in History::acts(history)? {
-            // What was refused then is refused again.
-            match act {
-                Act::Advance(ticks) => self.advance(ticks),
-                Act::Command(command) => {
-                    let _ = self.command(&command);
-                }
-                Act::Drive(wheels, servo) => self.drive(wheels, servo),
-                Act::Duty(duty, servo) => self.drive_duty(duty, servo),
-                Act::Instruct(text) => {
-                    let _ = self.instruct(&text);
-                }
-                Act::Aim(servo) => self.aim(servo),
-                Act::Record => self.record()?,
-                Act::Probe => {
-                    self.probe();
-                }
-                Act::Type(port, bytes) => self.type_in(port, &bytes),
-                Act::Apply(pin, volts) => {
-                    self.apply(pin, volts);
-                }
-                Act::Of(_) => {}
+    /// Does to it what was done to another one of its setup and seed. What was refused then is refused again.
+    pub(super) fn redo(&mut self, act: Act) -> Result<(), FileError> {
+        match act {
+            Act::Advance(ticks) => self.advance(ticks),
+            Act::Command(command) => {
+                let _ = self.command(&command);
+            }
+            Act::Drive(wheels, servo) => self.drive(wheels, servo),
+            Act::Duty(duty, servo) => self.drive_duty(duty, servo),
+            Act::Instruct(text) => {
+                let _ = self.instruct(&text);
+            }
+            Act::Aim(servo) => self.aim(servo),
+            Act::Record => self.record()?,
+            Act::Probe => {
+                self.probe();
+            }
+            Act::Type(port, bytes) => self.type_in(port, &bytes),
+            Act::Apply(pin, volts) => {
+                self.apply(pin, volts);
             }
         }
         Ok(())
     }
 
-    /// What was done to it since its start, for [`Robot::relive`].
+    /// What was done to it since its start: see [`Life`](super::Life).
     pub fn history(&self) -> Vec<u8> {
         self.history.to_bytes()
     }
@@ -89,6 +81,10 @@ impl Robot {
     /// The simulation.
     pub fn sim(&self) -> &Sim {
         &self.sim
+    }
+
+    pub(super) fn sim_mut(&mut self) -> &mut Sim {
+        &mut self.sim
     }
 
     /// The world it drives in.
@@ -162,6 +158,11 @@ impl Robot {
         self.pilot.goal_m()
     }
 
+    /// Without a goal of its world it has the first one of its scenario's commands.
+    pub(super) fn seek_first_goal(&mut self, setup: &Setup) {
+        self.pilot.seek_first_goal(setup);
+    }
+
     /// Keeps its world in common with others if it is the same.
     pub(super) fn share_world(&mut self, common: &OnceLock<Arc<World>>) {
         self.sim.share_world(common);
@@ -169,7 +170,7 @@ impl Robot {
 
     /// Advances by this many control ticks of 10 ms, or to the end of a program that cannot go on.
     pub fn advance(&mut self, ticks: u32) {
-        self.history.push(&Act::Advance(ticks));
+        self.note_ticks(ticks);
         if !self.needs_every_tick() {
             let until_us = self.sim.now_us() + u64::from(ticks) * u64::from(TICK_US);
             return self.sim.advance(until_us);
@@ -184,13 +185,18 @@ impl Robot {
         }
     }
 
+    /// That it goes on by so many ticks.
+    pub(super) fn note_ticks(&mut self, ticks: u32) {
+        self.history.push(&Act::Advance(ticks));
+    }
+
     /// An operator or a recorder looks at it at each tick.
     fn needs_every_tick(&self) -> bool {
         !self.pilot.is_caller() || self.trace.is_some() || self.probe.is_some()
     }
 
     /// Before a tick: what its operator sends.
-    fn operate(&mut self) {
+    pub(super) fn operate(&mut self) {
         let received = self.pilot.operate(&mut self.sim);
         match &mut self.trace {
             Some(trace) => trace.messages.extend(received),
@@ -199,7 +205,7 @@ impl Robot {
     }
 
     /// After a tick, if it is recorded or probed.
-    fn sample(&mut self) {
+    pub(super) fn sample(&mut self) {
         let from = self.trace.as_ref().map(|trace| trace.consoles.len());
         if let Some(trace) = &mut self.trace {
             trace.sample(&self.sim);

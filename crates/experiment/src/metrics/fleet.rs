@@ -1,20 +1,25 @@
 //! Metrics of several robots in one world: those of each, of each pair, and of all.
 
 use super::{Metrics, bare};
-use rumbo_sim::fleet::{Fleet, Met};
+use rumbo_sim::Sim;
+use rumbo_sim::fleet::{Encounter, Fleet, Met};
 
 /// Of robots by their names, with the metrics of each: those begin with its name, a pair's with both, as in
 /// `north.contacts` and `north-south.closest_m`.
-pub(crate) fn of_fleet(fleet: &Fleet, robots: &[(&str, &Metrics)]) -> Metrics {
+pub(crate) fn of_fleet(fleet: &Fleet, sims: &[Sim], robots: &[(&str, &Metrics)]) -> Metrics {
     let mut metrics = Metrics::new();
     for (robot, own) in robots {
         let own = own.iter();
         metrics.extend(own.map(|(metric, value)| (format!("{robot}.{metric}"), *value)));
     }
+    let numbered = sims.iter().enumerate();
+    let encounters: Vec<_> = numbered
+        .map(|(number, sim)| fleet.encounters(number, sim))
+        .collect();
     let (mut closest_m, mut met, mut fastest_m_s) = (f64::INFINITY, 0, 0.0_f64);
     for (second, (robot, _)) in robots.iter().enumerate() {
         for (first, (other, _)) in robots[..second].iter().enumerate() {
-            let pair = Pair::of(fleet, first, second);
+            let pair = Pair::of(fleet, &encounters, first, second);
             let mut put = |metric: &str, value: f64| {
                 let name = format!("{other}-{robot}.{metric}");
                 metrics.insert(name, rounded(value));
@@ -27,8 +32,9 @@ pub(crate) fn of_fleet(fleet: &Fleet, robots: &[(&str, &Metrics)]) -> Metrics {
             closest_m = closest_m.min(pair.closest_m);
             met += pair.contacts;
         }
-        let encounters = fleet.encounters(second);
-        let speeds = encounters.iter().map(|encounter| encounter.speed_m_s);
+        let speeds = encounters[second]
+            .iter()
+            .map(|encounter| encounter.speed_m_s);
         fastest_m_s = speeds.fold(fastest_m_s, f64::max);
     }
     let arrived = robots.iter().filter(|(_, own)| has_arrived(own));
@@ -56,11 +62,10 @@ struct Pair {
 }
 
 impl Pair {
-    fn of(fleet: &Fleet, first: usize, second: usize) -> Self {
+    fn of(fleet: &Fleet, encounters: &[Vec<Encounter>], first: usize, second: usize) -> Self {
         let felt = |robot: usize, other: usize| {
-            let mut encounters = fleet.encounters(robot);
-            encounters.retain(|encounter| encounter.met == Met::Robot(other));
-            encounters
+            let with = |encounter: &&Encounter| encounter.met == Met::Robot(other);
+            encounters[robot].iter().filter(with).collect::<Vec<_>>()
         };
         let (one, other) = (felt(first, second), felt(second, first));
         let speeds = one.iter().chain(&other).map(|each| each.speed_m_s);

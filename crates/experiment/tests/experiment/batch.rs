@@ -65,12 +65,12 @@ fn each_robot_of_a_batch_is_bit_for_bit_that_of_a_run() {
         let runs = SEEDS.map(|seed| run::run(&setup, seed).unwrap());
         for threads in [1, 2] {
             on_threads(threads, || {
-                let mut batch = Batch::new(setup.clone(), Driver::Scenario, &SEEDS).unwrap();
+                let mut batch = Batch::new(&setup, Driver::Scenario, &SEEDS).unwrap();
                 // Uneven steps: where a caller looks changes nothing.
                 let ticks = runs[0].trace.samples.len();
                 for at in (0..ticks - STEP).step_by(STEP) {
                     batch.advance(STEP as u32);
-                    for (robot, run) in batch.robots().iter().zip(&runs) {
+                    for (robot, run) in batch.robots().zip(&runs) {
                         let sample = &run.trace.samples[at + STEP - 1];
                         assert_eq!(
                             of_robot(robot),
@@ -88,18 +88,19 @@ fn each_robot_of_a_batch_is_bit_for_bit_that_of_a_run() {
 
 /// Drives by actions that change, and gives all that is known and true at the end of each step.
 fn driven(batch: &mut Batch, steps: u32) -> Vec<(Vec<u32>, Vec<u64>)> {
-    batch.for_each(|_, robot| {
-        robot.command(&Command::Arm).unwrap();
-        robot.advance(50);
+    batch.for_each(|_, group| {
+        group.robots_mut()[0].command(&Command::Arm).unwrap();
+        group.advance(50);
     });
-    let robots = batch.robots().len();
+    let robots = batch.robots().count();
     let (mut known, mut truth) = (
         vec![0.0; robots * OBSERVED.len()],
         vec![0.0; robots * TRUE.len()],
     );
     let mut rows = Vec::new();
     for step in 0..steps {
-        batch.step(&mut known, &mut truth, 10, |_, robot| {
+        batch.step(&mut known, &mut truth, 10, |_, robots| {
+            let robot = &mut robots[0];
             // By the seed: the same robot does the same in every batch.
             let speed = 4.0 + (step * 7 % 5) as f32 - (robot.seed() % 3) as f32;
             let wheels = Wheels {
@@ -121,7 +122,7 @@ fn driven(batch: &mut Batch, steps: u32) -> Vec<(Vec<u32>, Vec<u64>)> {
 fn a_driven_robot_is_the_same_alone_and_among_others_on_any_threads() {
     let mut setup = setup("mode8-random");
     setup.scenario.mode = ModeId::WheelSpeed;
-    let make = |seeds: &[u64]| Batch::new(setup.clone(), Driver::Caller, seeds).unwrap();
+    let make = |seeds: &[u64]| Batch::new(&setup, Driver::Caller, seeds).unwrap();
     let together = [1, 2].map(|threads| on_threads(threads, || driven(&mut make(&SEEDS), 60)));
     assert!(together[0] == together[1]);
     for (index, seed) in SEEDS.into_iter().enumerate() {
@@ -136,8 +137,8 @@ fn a_driven_robot_is_the_same_alone_and_among_others_on_any_threads() {
 #[test]
 fn a_driven_robot_turns_its_wheels_and_its_servo_as_commanded_and_knows_it() {
     let setup = setup("mode5");
-    let mut batch = Batch::new(setup, Driver::Caller, &[3]).unwrap();
-    let robot = &mut batch.robots_mut()[0];
+    let mut batch = Batch::new(&setup, Driver::Caller, &[3]).unwrap();
+    let robot = batch.robot_mut(0).unwrap();
     robot.command(&Command::Arm).unwrap();
     let wheels = Wheels {
         left: 6.0,
@@ -159,9 +160,10 @@ fn a_driven_robot_turns_its_wheels_and_its_servo_as_commanded_and_knows_it() {
 #[test]
 fn a_snapshot_continues_bit_for_bit_the_same() {
     for driver in [Driver::Scenario, Driver::Caller] {
-        let mut batch = Batch::new(setup("mode4-final"), driver, &SEEDS).unwrap();
+        let mut batch = Batch::new(&setup("mode4-final"), driver, &SEEDS).unwrap();
         if driver == Driver::Caller {
-            for robot in batch.robots_mut() {
+            for index in 0..SEEDS.len() {
+                let robot = batch.robot_mut(index).unwrap();
                 robot.command(&Command::Mode(ModeId::WheelSpeed)).unwrap();
                 robot.command(&Command::Arm).unwrap();
                 robot.drive(Wheels::both(5.0), ServoAngle(0.3));
@@ -179,13 +181,13 @@ fn a_snapshot_continues_bit_for_bit_the_same() {
         // As another process would: by what was done to them.
         let lives = batch.lives();
         let mut relived =
-            Batch::of_lives(setup("mode4-final"), driver, &lives, &|| Ok(())).unwrap();
+            Batch::of_lives(&setup("mode4-final"), vec![driver], &lives, &|| Ok(())).unwrap();
         assert_eq!(relived.lives(), lives);
         for all in [&mut batch, &mut again, &mut relived] {
             all.advance(300);
         }
-        let robots = batch.robots().iter();
-        for (one, (other, third)) in robots.zip(again.robots().iter().zip(relived.robots())) {
+        let robots = batch.robots();
+        for (one, (other, third)) in robots.zip(again.robots().zip(relived.robots())) {
             assert_eq!(of_robot(one), of_robot(other));
             assert_eq!(of_robot(one), of_robot(third));
         }
@@ -194,8 +196,8 @@ fn a_snapshot_continues_bit_for_bit_the_same() {
 
 #[test]
 fn wheels_are_driven_open_loop_by_shares_of_the_pwm_while_armed() {
-    let mut batch = Batch::new(setup("mode5"), Driver::Caller, &[3]).unwrap();
-    let robot = &mut batch.robots_mut()[0];
+    let mut batch = Batch::new(&setup("mode5"), Driver::Caller, &[3]).unwrap();
+    let robot = batch.robot_mut(0).unwrap();
     let duty = Wheels {
         left: 0.8,
         right: -0.6,
@@ -217,22 +219,25 @@ fn wheels_are_driven_open_loop_by_shares_of_the_pwm_while_armed() {
 
 #[test]
 fn a_renewed_robot_is_that_of_its_seed_and_the_others_go_on() {
-    let mut batch = Batch::new(setup("mode1"), Driver::Scenario, &[1, 2]).unwrap();
-    let mut fresh = Batch::new(setup("mode1"), Driver::Scenario, &[9]).unwrap();
+    let mut batch = Batch::new(&setup("mode1"), Driver::Scenario, &[1, 2]).unwrap();
+    let mut fresh = Batch::new(&setup("mode1"), Driver::Scenario, &[9]).unwrap();
     batch.advance(100);
-    let second = of_robot(&batch.robots()[1]);
+    let second = of_robot(batch.robots().nth(1).unwrap());
     batch.renew(&[(0, 9)], &|| Ok(())).unwrap();
-    assert_eq!(of_robot(&batch.robots()[1]), second);
+    assert_eq!(of_robot(batch.robots().nth(1).unwrap()), second);
     batch.advance(200);
     fresh.advance(200);
-    assert_eq!(of_robot(&batch.robots()[0]), of_robot(&fresh.robots()[0]));
+    assert_eq!(
+        of_robot(batch.robots().nth(0).unwrap()),
+        of_robot(fresh.robots().nth(0).unwrap())
+    );
 }
 
 #[test]
 fn a_command_in_words_is_checked_as_in_a_scenario() {
-    let mut batch = Batch::new(setup("mode1"), Driver::Caller, &[1]).unwrap();
+    let mut batch = Batch::new(&setup("mode1"), Driver::Caller, &[1]).unwrap();
     batch.advance(50);
-    let robot = &mut batch.robots_mut()[0];
+    let robot = batch.robot_mut(0).unwrap();
     robot.instruct("reference_m = 0.4").unwrap();
     robot.instruct("arm = true").unwrap();
     let said = |result: Result<(), _>| -> String {
@@ -243,8 +248,8 @@ fn a_command_in_words_is_checked_as_in_a_scenario() {
     assert!(said(robot.instruct("mode = \"mission\"")).contains("refused"));
     assert!(said(robot.instruct("goal = \"world\"")).contains("mode"));
     assert!(said(robot.instruct("arm = true\nat_s = 3")).contains("at_s"));
-    let mut scenario = Batch::new(setup("mode1"), Driver::Scenario, &[1]).unwrap();
-    assert!(said(scenario.robots_mut()[0].instruct("arm = true")).contains("scenario"));
+    let mut scenario = Batch::new(&setup("mode1"), Driver::Scenario, &[1]).unwrap();
+    assert!(said(scenario.robot_mut(0).unwrap().instruct("arm = true")).contains("scenario"));
 }
 
 #[test]
@@ -261,10 +266,14 @@ fn a_recorded_robot_has_the_trace_of_its_run() {
         };
         let setup = Library::new().setup(scenario, &overrides).unwrap();
         let run = run::run(&setup, 7).unwrap();
-        let mut batch = Batch::new(setup, Driver::Scenario, &[7]).unwrap();
-        batch.robots_mut()[0].record().unwrap();
+        let mut batch = Batch::new(&setup, Driver::Scenario, &[7]).unwrap();
+        batch.robot_mut(0).unwrap().record().unwrap();
         batch.advance(run.trace.samples.len() as u32);
-        assert_eq!(batch.robots()[0].trace(), Some(&run.trace), "{scenario}");
+        assert_eq!(
+            batch.robots().nth(0).unwrap().trace(),
+            Some(&run.trace),
+            "{scenario}"
+        );
     }
 }
 
@@ -274,21 +283,21 @@ fn recording_changes_no_bit_of_a_driven_robot() {
     setup.scenario.mode = ModeId::WheelSpeed;
     for seeds in [&[1][..], &[1, 2, 3]] {
         on_threads(1, || {
-            let make = || Batch::new(setup.clone(), Driver::Caller, seeds).unwrap();
+            let make = || Batch::new(&setup, Driver::Caller, seeds).unwrap();
             let unrecorded = driven(&mut make(), 60);
             let mut batch = make();
-            batch.robots_mut()[0].record().unwrap();
+            batch.robot_mut(0).unwrap().record().unwrap();
             assert!(driven(&mut batch, 60) == unrecorded);
             // From somewhere on, and once more.
             let mut batch = make();
             batch.advance(33);
             let mut other = batch.clone();
-            batch.robots_mut()[0].record().unwrap();
+            batch.robot_mut(0).unwrap().record().unwrap();
             batch.advance(20);
-            batch.robots_mut()[0].record().unwrap();
+            batch.robot_mut(0).unwrap().record().unwrap();
             other.advance(20);
             assert!(driven(&mut batch, 60) == driven(&mut other, 60));
-            let trace = batch.robots()[0].trace().unwrap();
+            let trace = batch.robots().nth(0).unwrap().trace().unwrap();
             assert_eq!(trace.samples.len(), 650);
             assert!((trace.samples[0].t_s - 0.54).abs() < 1e-9);
         });
@@ -297,8 +306,8 @@ fn recording_changes_no_bit_of_a_driven_robot() {
 
 #[test]
 fn a_driven_robot_says_to_the_tap_what_it_knows_and_what_it_was_commanded() {
-    let mut batch = Batch::new(setup("mode5"), Driver::Caller, &[3]).unwrap();
-    let robot = &mut batch.robots_mut()[0];
+    let mut batch = Batch::new(&setup("mode5"), Driver::Caller, &[3]).unwrap();
+    let robot = batch.robot_mut(0).unwrap();
     robot
         .instruct("parameter = \"front_kp\"\nvalue = 5")
         .unwrap();

@@ -1,5 +1,6 @@
 //! Scenarios with several robots.
 
+use rumbo_experiment::batch::{Batch, Driver};
 use rumbo_experiment::files::{
     FileError, Kind, Library, NativeProgram, Overrides, Setup, Start, fleet_around,
 };
@@ -210,4 +211,24 @@ fn where_one_robot_is_driven_a_fleet_is_refused() {
         error.contains("has robots of its own, and here one is driven"),
         "{error}"
     );
+}
+
+#[test]
+fn stepped_by_a_caller_each_robot_is_that_of_the_run_and_again_by_what_was_done_to_it() {
+    let setup = setup_of(&format!("{TO_THE_WALL}{THREE}")).unwrap();
+    let result = run(&setup, 3).unwrap();
+    let mut batch = Batch::new(&setup, Driver::Scenario, &[2, 3]).unwrap();
+    batch.robot_mut(4).unwrap().record().unwrap();
+    batch.advance(100);
+    batch.advance(150);
+    let drivers = vec![Driver::Scenario; 3];
+    let again = Batch::of_lives(&setup, drivers, &batch.lives(), &|| Ok(())).unwrap();
+    for batch in [batch, again] {
+        for (robot, run) in batch.robots().skip(3).zip(&result.robots) {
+            let (pose, sample) = (robot.sim().truth().pose, &run.trace.samples[249]);
+            assert_eq!([pose.x_m, pose.y_m], [sample.x_m, sample.y_m]);
+        }
+        let recorded = batch.robots().nth(4).unwrap().trace().unwrap();
+        assert_eq!(recorded.samples, result.robots[1].trace.samples[..250]);
+    }
 }

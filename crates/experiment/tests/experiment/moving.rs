@@ -8,7 +8,7 @@ use rumbo_experiment::run::{RunResult, run, run_all_on};
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::world::Obstacle;
 use rumbo_sim::Sim;
-use rumbo_sim::fleet::{Fleet, FleetError, Met};
+use rumbo_sim::fleet::{Encounter, Fleet, FleetError, Met};
 use rumbo_wire::Command;
 
 /// Two who cross the way, and a goal behind them.
@@ -83,16 +83,39 @@ fn drive(robot: &mut Sim) {
     }
 }
 
+/// Robots with what they are to each other.
+#[derive(Clone)]
+struct Together {
+    fleet: Fleet,
+    robots: Vec<Sim>,
+}
+
+impl Together {
+    fn new(mut robots: Vec<Sim>) -> Result<Self, FleetError> {
+        let fleet = Fleet::new(&mut robots.iter_mut().collect::<Vec<_>>())?;
+        Ok(Self { fleet, robots })
+    }
+
+    fn advance(&mut self, until_us: u64) {
+        let mut robots: Vec<_> = self.robots.iter_mut().collect();
+        self.fleet.advance(&mut robots, until_us);
+    }
+
+    fn encounters(&self, robot: usize) -> Vec<Encounter> {
+        self.fleet.encounters(robot, &self.robots[robot])
+    }
+}
+
 #[test]
 fn a_fleet_of_one_is_the_single_run() {
     let mut single = ahead(3, 0.0, 0.0);
-    let mut fleet = Fleet::new(vec![ahead(3, 0.0, 0.0)]).unwrap();
+    let mut fleet = Together::new(vec![ahead(3, 0.0, 0.0)]).unwrap();
     drive(&mut single);
-    drive(fleet.robot_mut(0).unwrap());
+    drive(&mut fleet.robots[0]);
     for tick in 1..=500 {
         single.advance(tick * 10_000);
         fleet.advance(tick * 10_000);
-        assert_eq!(single.truth(), fleet.robots()[0].truth());
+        assert_eq!(single.truth(), fleet.robots[0].truth());
     }
     assert!(single.truth().pose.x_m > 0.5, "{:?}", single.truth());
 }
@@ -100,11 +123,11 @@ fn a_fleet_of_one_is_the_single_run() {
 #[test]
 fn two_that_meet_head_on_touch_each_other_and_do_not_overlap() {
     let pi = std::f64::consts::PI;
-    let mut fleet = Fleet::new(vec![ahead(1, 0.0, 0.0), ahead(2, 1.0, pi)]).unwrap();
+    let mut fleet = Together::new(vec![ahead(1, 0.0, 0.0), ahead(2, 1.0, pi)]).unwrap();
     for robot in 0..2 {
-        drive(fleet.robot_mut(robot).unwrap());
+        drive(&mut fleet.robots[robot]);
     }
-    let front_m = |fleet: &Fleet| fleet.robots()[0].truth().range_m[2];
+    let front_m = |fleet: &Together| fleet.robots[0].truth().range_m[2];
     let before_m = front_m(&fleet);
     fleet.advance(6_000_000);
     for robot in 0..2 {
@@ -113,8 +136,8 @@ fn two_that_meet_head_on_touch_each_other_and_do_not_overlap() {
         assert_eq!(first.met, Met::Robot(1 - robot));
         assert!(first.speed_m_s > 0.1, "both drive: {encounters:?}");
     }
-    assert!(fleet.closest_m(0, 1) < 1e-3);
-    let [one, other] = fleet.robots() else {
+    assert!(fleet.fleet.closest_m(0, 1) < 1e-3);
+    let [one, other] = &fleet.robots[..] else {
         panic!()
     };
     let apart_m = other.truth().pose.x_m - one.truth().pose.x_m;
@@ -135,9 +158,9 @@ fn the_closest_approach_is_the_least_distance_at_any_millisecond() {
         y_m: 0.4,
         heading_rad: 0.98 * pi,
     };
-    let mut fleet = Fleet::new(vec![ahead(1, 0.0, 0.0), Sim::new(other).unwrap()]).unwrap();
+    let mut fleet = Together::new(vec![ahead(1, 0.0, 0.0), Sim::new(other).unwrap()]).unwrap();
     for robot in 0..2 {
-        drive(fleet.robot_mut(robot).unwrap());
+        drive(&mut fleet.robots[robot]);
     }
     let outline = |robot: &Sim| {
         let params = robot.params();
@@ -147,17 +170,17 @@ fn the_closest_approach_is_the_least_distance_at_any_millisecond() {
     let mut least_m = f64::INFINITY;
     for ms in 1..=6_000 {
         fleet.advance(ms * 1_000);
-        let [one, other] = fleet.robots() else {
+        let [one, other] = &fleet.robots[..] else {
             panic!()
         };
         least_m = least_m.min(outline(one).apart_m(&outline(other)));
-        let known_m = fleet.closest_m(0, 1);
+        let known_m = fleet.fleet.closest_m(0, 1);
         assert!(
             (known_m - least_m).abs() < 1e-12,
             "{ms} ms: {known_m} {least_m}"
         );
     }
-    let [one, other] = fleet.robots() else {
+    let [one, other] = &fleet.robots[..] else {
         panic!()
     };
     let last_m = outline(one).apart_m(&outline(other));
@@ -189,7 +212,7 @@ fn two_emulated_megas_meet_the_same_way_each_time_and_from_a_snapshot() {
         Sim::new(config).unwrap()
     };
     let pi = std::f64::consts::PI;
-    let fleet = || Fleet::new(vec![robot(1, 0.0, 0.0), robot(2, 1.0, pi)]).unwrap();
+    let fleet = || Together::new(vec![robot(1, 0.0, 0.0), robot(2, 1.0, pi)]).unwrap();
     let (mut first, mut second) = (fleet(), fleet());
     first.advance(500_000);
     let mut snapshot = first.clone();
@@ -198,7 +221,7 @@ fn two_emulated_megas_meet_the_same_way_each_time_and_from_a_snapshot() {
         assert_eq!(fleet.encounters(0)[0].met, Met::Robot(1));
         assert_eq!(fleet.encounters(1)[0].met, Met::Robot(0));
     }
-    let truths = |fleet: &Fleet| [0, 1].map(|robot| fleet.robots()[robot].truth());
+    let truths = |fleet: &Together| [0, 1].map(|robot| fleet.robots[robot].truth());
     assert_eq!(truths(&first), truths(&second));
     assert_eq!(truths(&first), truths(&snapshot));
 }
@@ -212,13 +235,13 @@ fn the_order_of_the_robots_makes_no_difference() {
             let (seed, x_m, heading_rad) = places[index];
             ahead(seed, x_m, heading_rad)
         });
-        let mut fleet = Fleet::new(robots.to_vec()).unwrap();
+        let mut fleet = Together::new(robots.to_vec()).unwrap();
         for robot in 0..3 {
-            drive(fleet.robot_mut(robot).unwrap());
+            drive(&mut fleet.robots[robot]);
         }
         fleet.advance(4_000_000);
         let place = |robot: usize| order.iter().position(|index| *index == robot).unwrap();
-        [0, 1, 2].map(|robot| fleet.robots()[place(robot)].truth())
+        [0, 1, 2].map(|robot| fleet.robots[place(robot)].truth())
     };
     let forth = truths([0, 1, 2]);
     assert_eq!(forth, truths([2, 0, 1]));
@@ -227,7 +250,7 @@ fn the_order_of_the_robots_makes_no_difference() {
 
 #[test]
 fn robots_inside_each_other_are_refused() {
-    let error = Fleet::new(vec![
+    let error = Together::new(vec![
         ahead(1, 0.0, 0.0),
         ahead(2, 3.0, 0.0),
         ahead(3, 0.1, 1.0),

@@ -18,8 +18,8 @@ fn an_episode_s_log_has_the_robot_the_goal_and_the_truth_and_is_not_run_again() 
     let folder = folder.path();
     let (library, overrides) = (Library::new(), Overrides::default());
     let setup = library.setup("mode8-random", &overrides).unwrap();
-    let mut batch = Batch::new(setup.clone(), Driver::Caller, &[4]).unwrap();
-    let robot = &mut batch.robots_mut()[0];
+    let mut batch = Batch::new(&setup, Driver::Caller, &[4]).unwrap();
+    let robot = batch.robot_mut(0).unwrap();
     let source = Source {
         kind: Kind::Episode,
         library: &library,
