@@ -139,7 +139,7 @@ def test_robots_in_one_world_are_pickled_copied_and_put_back() -> None:
         assert alike(go_on(other), expected)
     env.restore(snapshot)
     assert alike(go_on(env), expected)
-    with pytest.raises(ValueError, match="a snapshot of 4 robots, 4 in a world, does not fit a batch of 2 robots, 2 in a world"):
+    with pytest.raises(ValueError, match="a snapshot of 4 robots.* does not fit a batch of 2 robots"):
         FleetGoalEnv(robots=2).restore(snapshot)
     # By the scenario alone.
     batch = rumbo.Batch(CORNERS, seeds=5)

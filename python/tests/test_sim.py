@@ -278,7 +278,7 @@ def test_a_pickle_of_another_version_is_refused() -> None:
     with pytest.raises(ValueError, match=r"a snapshot: was pickled by Rumbo 0\.1\.0, model 3, and this is Rumbo"):
         _snapshot(("0.1.0", 3), *parts)
     with pytest.raises(ValueError, match="it is damaged, make it again"):
-        _snapshot((rumbo.__version__, rumbo.MODEL), *parts[:3], [b"\x63"])
+        _snapshot((rumbo.__version__, rumbo.MODEL), *parts[:3], [[b"\x63"]])
 
 
 def interrupted(act: Any) -> None:

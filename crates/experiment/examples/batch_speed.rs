@@ -21,7 +21,7 @@ use std::fmt::Write;
 use std::time::Instant;
 
 const ROBOTS: usize = 64;
-/// Robots in one world; alone as a team of one.
+/// Robots in one world; alone as any other.
 const TEAMS: [usize; 3] = [1, 4, 16];
 const TICK_US: u64 = 10_000;
 /// Nearer than this the robot of the plant turns [m].
