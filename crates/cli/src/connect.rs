@@ -41,5 +41,5 @@ fn serve(args: &ConnectArgs) -> Result<Lab, Failure> {
         text: args.text,
         ..calibrate::in_dashboard()
     };
-    rumbo_station::serve_with(config, robot, extras).map_err(Failure::input)
+    rumbo_station::serve_all(config, vec![(String::new(), robot)], extras).map_err(Failure::input)
 }

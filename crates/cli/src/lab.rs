@@ -9,7 +9,7 @@ use crate::output;
 use crate::tune;
 use crate::workshop::{self, Workshop};
 use rumbo_experiment::files::{Kind, Library, Overrides, ScenarioFile};
-use rumbo_lab::{OwnProgram, SimulatedRobot};
+use rumbo_lab::{FleetRobot, OwnProgram, SimulatedRobot};
 use rumbo_log::Choice;
 use rumbo_sim::debugging::Debugging;
 use rumbo_station::{Lab, LabConfig, Named};
@@ -25,11 +25,11 @@ pub(crate) fn lab(args: &mut LabArgs) -> Result<(), Failure> {
 
 /// Serves the dashboard.
 fn serve(args: &mut LabArgs) -> Result<Lab, Failure> {
-    if let Some(scenario) = fleet(args)? {
-        return served_fleet(args, &scenario);
-    }
-    let robot = simulated(args)?;
-    rumbo_station::serve_with(config(args), Box::new(robot), calibrate::in_dashboard())
+    let robots = match fleet(args)? {
+        Some(scenario) => several(args, &scenario)?,
+        None => vec![(String::new(), Box::new(simulated(args)?) as _)],
+    };
+    rumbo_station::serve_all(config(args), robots, calibrate::in_dashboard())
         .map_err(Failure::input)
 }
 
@@ -43,18 +43,7 @@ fn fleet(args: &LabArgs) -> Result<Option<ScenarioFile>, Failure> {
 fn simulated(args: &mut LabArgs) -> Result<SimulatedRobot, Failure> {
     let robot = args.setting.robot.as_deref();
     args.image.compile(robot, Some(&args.scenario))?;
-    let choice = Choice {
-        scenario: args.scenario.clone(),
-        world: args.setting.world.clone(),
-        rig: args.setting.rig.clone(),
-        seed: args.seed.seed,
-    };
-    let overrides = Overrides {
-        robot: args.setting.robot.clone(),
-        policy: args.setting.policy.clone(),
-        ..args.image.overrides()
-    };
-    let mut robot = SimulatedRobot::new(overrides, choice)?;
+    let mut robot = SimulatedRobot::new(overrides(args), choice(args, &args.scenario))?;
     robot.make_dropped_by(workshop::make_dropped);
     if let (Some(given), Some(board)) = (args.image.given(), robot.chip_board()) {
         let watch = |path| Workshop::watch(path, board).map(|it| Box::new(it) as _);
@@ -72,6 +61,23 @@ fn simulated(args: &mut LabArgs) -> Result<SimulatedRobot, Failure> {
     Ok(robot)
 }
 
+fn choice(args: &LabArgs, scenario: &str) -> Choice {
+    Choice {
+        scenario: scenario.to_owned(),
+        world: args.setting.world.clone(),
+        rig: args.setting.rig.clone(),
+        seed: args.seed.seed,
+    }
+}
+
+fn overrides(args: &LabArgs) -> Overrides {
+    Overrides {
+        robot: args.setting.robot.clone(),
+        policy: args.setting.policy.clone(),
+        ..args.image.overrides()
+    }
+}
+
 fn config(args: &LabArgs) -> LabConfig {
     LabConfig {
         at: args.session.serve.at(),
@@ -85,8 +91,8 @@ fn config(args: &LabArgs) -> LabConfig {
     }
 }
 
-/// Serves the dashboards of several robots in one world: those of the scenario, or as many as asked for.
-fn served_fleet(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Lab, Failure> {
+/// Several robots in one world: those of the scenario, or as many as asked for.
+fn several(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Vec<Named>, Failure> {
     #[cfg(unix)]
     let alone = args.pty || args.usb_pty || args.gdb.is_some();
     #[cfg(not(unix))]
@@ -98,17 +104,6 @@ fn served_fleet(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Lab, Fail
     }
     let kind = args.setting.robot.as_deref();
     args.image.compile(kind, Some(&args.scenario))?;
-    let overrides = Overrides {
-        robot: args.setting.robot.clone(),
-        policy: args.setting.policy.clone(),
-        ..args.image.overrides()
-    };
-    let choice = Choice {
-        scenario: scenario.name.clone(),
-        world: args.setting.world.clone(),
-        rig: args.setting.rig.clone(),
-        seed: args.seed.seed,
-    };
     if args.robots > 1 && !scenario.fleet.is_empty() {
         return Err(Failure::Input(format!(
             "--robots {}: scenario {} has robots of its own; leave --robots out",
@@ -117,16 +112,10 @@ fn served_fleet(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Lab, Fail
     }
     let library = Library::new().beside(&args.scenario);
     let library = library.holding(Kind::Scenario, &scenario.name, &scenario.text);
-    let robots = rumbo_lab::fleet(library, overrides, &choice, args.robots.into())?;
-    let mut robots = robots
-        .into_iter()
-        .map(|robot| -> Named { (robot.name(), Box::new(robot)) });
-    let first = robots
-        .next()
-        .ok_or_else(|| Failure::Input("there is no robot".into()))?;
-    let others = robots.collect();
-    rumbo_station::serve_fleet(config(args), first, others, calibrate::in_dashboard())
-        .map_err(Failure::input)
+    let choice = choice(args, &scenario.name);
+    let robots = rumbo_lab::fleet(library, overrides(args), &choice, args.robots.into())?;
+    let named = |robot: FleetRobot| -> Named { (robot.name(), Box::new(robot)) };
+    Ok(robots.into_iter().map(named).collect())
 }
 
 /// The port for a debugger, printed to stderr.

@@ -3,7 +3,7 @@
 //! They share the simulation. The first one's session has the time, and starts all of them again; the others go with it.
 
 use crate::hand::HAND;
-use crate::prepare::{Prepared, chosen, prepare_fleet};
+use crate::prepare::{Prepared, chosen, prepare};
 use crate::robot::type_to;
 use crate::sight;
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, fleet_around};
@@ -106,7 +106,7 @@ fn begin(
     memories: &[Vec<u8>],
 ) -> Result<(Fleet, Vec<About>), FileError> {
     let mut robots = Vec::new();
-    for prepared in prepare_fleet(library, overrides, choice, memories)? {
+    for prepared in prepare(library, overrides, None, choice, memories)? {
         let Prepared {
             sim,
             mode,

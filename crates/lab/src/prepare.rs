@@ -28,17 +28,26 @@ pub(crate) fn chosen(overrides: &Overrides, choice: &Choice) -> Overrides {
     }
 }
 
-/// Prepares the page's choice, on the emulated Mega with an image; `memory` is what the robot's EEPROM holds.
+/// Prepares the robots of the page's choice, at least one, on emulated chips with an image; `memories` are what their EEPROMs hold, as
+/// far as they hold any.
 pub(crate) fn prepare(
     library: &Library,
     overrides: &Overrides,
     image: Option<&Held>,
-    choice: Choice,
-    memory: &[u8],
-) -> Result<Prepared, FileError> {
-    let (setup, mut manifest) = set_up(library, overrides, image, &choice)?;
-    manifest.remember(memory);
-    ready(library, &setup, choice, memory, manifest)
+    choice: &Choice,
+    memories: &[Vec<u8>],
+) -> Result<Vec<Prepared>, FileError> {
+    let (setup, manifest) = set_up(library, overrides, image, choice)?;
+    let robots = setup.robots().iter().enumerate().map(|(number, own)| {
+        let memory = memories.get(number).map_or(&[][..], Vec::as_slice);
+        let mut manifest = manifest.clone();
+        manifest.member = (!setup.fleet.is_empty()).then(|| own.scenario.name.clone());
+        manifest.remember(memory);
+        let mut prepared = ready(library, own, choice.clone(), memory, manifest)?;
+        prepared.scene.others = others(&setup.fleet, number);
+        Ok(prepared)
+    });
+    robots.collect()
 }
 
 /// The setup of the page's choice, and its manifest.
@@ -57,27 +66,6 @@ pub(crate) fn set_up(
         manifest.image = Some(held.hash.clone());
     }
     Ok((setup, manifest))
-}
-
-/// Prepares the several robots of the page's choice; `memories` are what their EEPROMs hold, as far as they hold any.
-pub(crate) fn prepare_fleet(
-    library: &Library,
-    overrides: &Overrides,
-    choice: &Choice,
-    memories: &[Vec<u8>],
-) -> Result<Vec<Prepared>, FileError> {
-    let overrides = chosen(overrides, choice);
-    let setup = library.setup(&choice.scenario, &overrides)?;
-    let robots = setup.fleet.iter().enumerate().map(|(number, own)| {
-        let memory = memories.get(number).map_or(&[][..], Vec::as_slice);
-        let mut manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
-        manifest.member = Some(own.scenario.name.clone());
-        manifest.remember(memory);
-        let mut prepared = ready(library, own, choice.clone(), memory, manifest)?;
-        prepared.scene.others = others(&setup.fleet, number);
-        Ok(prepared)
-    });
-    robots.collect()
 }
 
 fn ready(

@@ -79,7 +79,7 @@ impl SimulatedRobot {
             mut scene,
             first_commands,
             manifest,
-        } = prepare(&library, &overrides, None, choice, &[])?;
+        } = prepare(&library, &overrides, None, &choice, &[])?.swap_remove(0);
         if let Some(world) = &scene.choice.world
             && !scene.worlds.contains(world)
         {
@@ -408,9 +408,10 @@ impl SimulatedRobot {
 
     /// Starts again from time 0, as switched off and on again: saved parameters persist.
     pub(crate) fn start_again(&mut self, choice: Choice) -> Result<(), FileError> {
-        let memory = self.sim.memory();
+        let memories = [self.sim.memory()];
         let held = self.held.as_ref();
-        let fresh = prepare(&self.library, &self.overrides, held, choice, &memory)?;
+        let fresh =
+            prepare(&self.library, &self.overrides, held, &choice, &memories)?.swap_remove(0);
         // What the command line added to the lists stays there.
         let Scene {
             experiments,

@@ -80,7 +80,7 @@ impl Default for LabConfig {
     }
 }
 
-/// A target and the name of its robot.
+/// A target and the name of its robot; of a single one nothing.
 pub type Named = (String, Box<dyn Target>);
 
 /// Makes addresses that open the dashboard once each.
@@ -171,33 +171,15 @@ impl Drop for Lab {
 /// # Errors
 /// [`ServeError`], when the port cannot be opened.
 pub fn serve(config: LabConfig, target: Box<dyn Target>) -> Result<Lab, ServeError> {
-    serve_with(config, target, Extras::default())
+    serve_all(config, vec![(String::new(), target)], Extras::default())
 }
 
-/// The same, with what the session can do besides.
+/// The same of all robots in a world, with what they are called and what their sessions can do besides. The time is the
+/// first one's; STOP for any stops all.
 ///
 /// # Errors
 /// As [`serve`].
-pub fn serve_with(
-    config: LabConfig,
-    target: Box<dyn Target>,
-    extras: Extras,
-) -> Result<Lab, ServeError> {
-    serve_fleet(config, (String::new(), target), Vec::new(), extras)
-}
-
-/// The same of several robots in one world, with what they are called. The time is the first one's; STOP for any stops
-/// all.
-///
-/// # Errors
-/// As [`serve`].
-pub fn serve_fleet(
-    config: LabConfig,
-    first: Named,
-    others: Vec<Named>,
-    extras: Extras,
-) -> Result<Lab, ServeError> {
-    let robots = std::iter::once(first).chain(others);
+pub fn serve_all(config: LabConfig, robots: Vec<Named>, extras: Extras) -> Result<Lab, ServeError> {
     let LabConfig {
         at,
         speed,
@@ -225,12 +207,7 @@ pub fn serve_fleet(
             },
             orders,
         });
-        let mut seats: Vec<Seat> = seats.collect();
-        let others = seats.split_off(1);
-        match seats.pop() {
-            Some(first) => Running::new(first, others, speed, recordings, extras).run(),
-            None => Ok(()),
-        }
+        Running::new(seats, speed, recordings, extras).run()
     })
 }
 

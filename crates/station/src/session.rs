@@ -72,17 +72,15 @@ fn recorder(recordings: &Recordings, manifest: Manifest) -> Result<Recorder, Log
     Recorder::in_folder(recordings.folder(), &manifest)
 }
 
-/// The session of one of several robots, which follows the clock of the first.
-struct Follower {
+/// The session of a robot.
+struct Robot {
     driver: Driver<Around>,
     orders: Orders,
 }
 
-/// A session in its thread, perhaps with those of other robots in the same world.
+/// The sessions of the robots in a world in their thread: the others follow the clock of the first.
 pub(crate) struct Running {
-    driver: Driver<Around>,
-    orders: Orders,
-    followers: Vec<Follower>,
+    robots: Vec<Robot>,
     began: Instant,
 }
 
@@ -94,56 +92,50 @@ pub(crate) struct Seat {
 }
 
 impl Running {
-    /// A session that has not begun yet, and those of the robots that go with its time.
+    /// Sessions that have not begun yet.
     pub(crate) fn new(
-        first: Seat,
-        others: Vec<Seat>,
+        seats: impl Iterator<Item = Seat>,
         speed: f64,
         recordings: Option<Arc<Recordings>>,
         extras: Extras,
     ) -> Self {
-        let begin = |seat: Seat| {
+        let robots = seats.map(|seat| {
             let around = Around {
                 subscribers: seat.subscribers,
                 recordings: recordings.clone(),
             };
-            let driver = Driver::new(seat.target, around, speed, extras);
-            (driver, seat.orders)
-        };
-        let (driver, orders) = begin(first);
-        let followers = others.into_iter().map(begin);
-        let followers = followers.map(|(driver, orders)| Follower { driver, orders });
+            Robot {
+                driver: Driver::new(seat.target, around, speed, extras),
+                orders: seat.orders,
+            }
+        });
         Self {
-            driver,
-            orders,
-            followers: followers.collect(),
+            robots: robots.collect(),
             began: Instant::now(),
         }
     }
 
-    /// Runs until the sender of orders is gone.
+    /// Runs until the sender of the first one's orders is gone.
     ///
     /// # Errors
     /// The target's error when it is gone for good.
     pub(crate) fn run(mut self) -> Result<(), TargetError> {
         let wall_us = self.wall_us();
-        self.driver.begin(wall_us);
-        for follower in &mut self.followers {
-            follower.driver.begin(wall_us);
+        for robot in &mut self.robots {
+            robot.driver.begin(wall_us);
         }
         let ended = self.run_until_ended();
-        if let Err(why) = &ended {
+        let wall_us = self.wall_us();
+        if let (Err(why), Some(first)) = (&ended, self.robots.first_mut()) {
             let text = format!("the robot is gone: {why}");
-            self.driver.note(Level::Fault, text, self.wall_us());
+            first.driver.note(Level::Fault, text, wall_us);
         }
-        self.driver.publish();
-        for follower in &mut self.followers {
-            follower.driver.publish();
+        for robot in &mut self.robots {
+            robot.driver.publish();
         }
         // All logs are completed at once, and before anything else is done: whoever waits for us may not wait for long.
-        let followers = self.followers.iter_mut().map(|each| &mut each.driver);
-        let drivers = std::iter::once(&mut self.driver).chain(followers);
-        let recorders = drivers.filter_map(|driver| driver.host().subscribers.recorder.take());
+        let robots = self.robots.iter_mut();
+        let recorders = robots.filter_map(|robot| robot.driver.host().subscribers.recorder.take());
         let mut recorders: Vec<Recorder> = recorders.collect();
         recorders.iter_mut().for_each(Recorder::end);
         drop(recorders);
@@ -151,74 +143,73 @@ impl Running {
     }
 
     fn run_until_ended(&mut self) -> Result<(), TargetError> {
-        loop {
+        let began = self.began;
+        while let Some((first, others)) = self.robots.split_first_mut() {
             // Orders to the other robots wake nobody.
-            let wait = match self.driver.speed() > 0.0 || !self.followers.is_empty() {
+            let wait = match first.driver.speed() > 0.0 || !others.is_empty() {
                 true => WAKE,
                 false => WAKE_PAUSED,
             };
-            let first = match self.orders.queue.recv_timeout(wait) {
+            let order = match first.orders.queue.recv_timeout(wait) {
                 Ok(order) => Some(order),
                 Err(RecvTimeoutError::Timeout) => None,
-                // Do not leave the robot driving. Should this STOP be lost, the missing heartbeat stops it.
-                Err(RecvTimeoutError::Disconnected) => {
-                    let stop = || [Order::Robot(Command::Stop)];
-                    let wall_us = self.wall_us();
-                    for follower in &mut self.followers {
-                        follower.driver.obey(stop(), wall_us)?;
-                    }
-                    return self.driver.obey(stop(), wall_us);
-                }
+                Err(RecvTimeoutError::Disconnected) => return self.stop(),
             };
-            obey(&mut self.driver, &self.orders, first, self.began)?;
-            for Follower { driver, orders } in &mut self.followers {
-                driver.follow(&self.driver);
-                obey(driver, orders, None, self.began)?;
+            first.obey(order, began)?;
+            for other in &mut *others {
+                other.driver.follow(&first.driver);
+                other.obey(None, began)?;
             }
-            self.advance()?;
-            if let Some(trouble) = self.driver.host().subscribers.recording_trouble() {
+            advance(first, others, began)?;
+            if let Some(trouble) = first.driver.host().subscribers.recording_trouble() {
                 let text = trouble.to_string();
-                self.driver.note(Level::Warning, text, self.wall_us());
+                first.driver.note(Level::Warning, text, since_us(began));
             }
-            let wall_us = self.wall_us();
-            self.driver.update(wall_us);
-            for follower in &mut self.followers {
-                follower.driver.update(wall_us);
+            let wall_us = since_us(began);
+            for robot in &mut self.robots {
+                robot.driver.update(wall_us);
             }
         }
+        Ok(())
+    }
+
+    /// Leaves no robot driving. Should this STOP be lost, the missing heartbeat stops it.
+    fn stop(&mut self) -> Result<(), TargetError> {
+        let wall_us = self.wall_us();
+        let robots = self.robots.iter_mut();
+        let stopped = robots.map(|robot| robot.driver.obey([Order::Robot(Command::Stop)], wall_us));
+        stopped.fold(Ok(()), |all, one| all.and(one))
     }
 
     fn wall_us(&self) -> u64 {
         since_us(self.began)
     }
+}
 
-    /// Advances the target by the time due.
-    fn advance(&mut self) -> Result<(), TargetError> {
-        let began = Instant::now();
-        self.driver.wall_passed(self.wall_us());
-        while began.elapsed() < ROUND && self.driver.slice(self.wall_us())? {
-            let wall_us = self.wall_us();
-            for follower in &mut self.followers {
-                follower.driver.step(wall_us)?;
-            }
+/// Advances the first one's target by the time due, and the others with it.
+fn advance(first: &mut Robot, others: &mut [Robot], began: Instant) -> Result<(), TargetError> {
+    let round = Instant::now();
+    first.driver.wall_passed(since_us(began));
+    while round.elapsed() < ROUND && first.driver.slice(since_us(began))? {
+        let wall_us = since_us(began);
+        for other in &mut *others {
+            other.driver.step(wall_us)?;
         }
-        Ok(())
+    }
+    Ok(())
+}
+
+impl Robot {
+    /// Executes the orders that wait, after the `first` one.
+    fn obey(&mut self, first: Option<Order>, began: Instant) -> Result<(), TargetError> {
+        let waiting = first.into_iter().chain(self.orders.queue.try_iter());
+        let waiting: Vec<Order> = waiting.collect();
+        self.driver.host().subscribers.board.took(waiting.len());
+        let stop = self.orders.stop.swap(false, Ordering::SeqCst);
+        self.driver.obey(stop_first(waiting, stop), since_us(began))
     }
 }
 
 fn since_us(began: Instant) -> u64 {
     u64::try_from(began.elapsed().as_micros()).unwrap_or(u64::MAX)
-}
-
-/// Executes the orders that wait, after the `first` one.
-fn obey(
-    driver: &mut Driver<Around>,
-    orders: &Orders,
-    first: Option<Order>,
-    began: Instant,
-) -> Result<(), TargetError> {
-    let waiting: Vec<Order> = first.into_iter().chain(orders.queue.try_iter()).collect();
-    driver.host().subscribers.board.took(waiting.len());
-    let stop = orders.stop.swap(false, Ordering::SeqCst);
-    driver.obey(stop_first(waiting, stop), since_us(began))
 }

@@ -4,7 +4,7 @@
 use crate::page;
 use crate::support::Toy;
 use page::*;
-use rumbo_station::{Extras, Lab, LabConfig, ServeAt, serve_fleet};
+use rumbo_station::{Extras, Lab, LabConfig, ServeAt, serve_all};
 use serde_json::{Value, json};
 
 #[tokio::test]
@@ -50,8 +50,8 @@ fn two_robots() -> Lab {
         ..LabConfig::default()
     };
     let robot = |name: &str| (name.to_owned(), Box::<Toy>::default() as _);
-    let others = vec![robot("second")];
-    serve_fleet(config, robot("first"), others, Extras::default()).unwrap()
+    let robots = vec![robot("first"), robot("second")];
+    serve_all(config, robots, Extras::default()).unwrap()
 }
 
 #[tokio::test]
