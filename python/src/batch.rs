@@ -1,17 +1,18 @@
 //! Robots stepped from Python: one for `rumbo.Sim`, many for `rumbo.Batch` and the environments, each alone in its world
 //! or with the others of its scenario.
 
+use crate::arrays::{MOST_DUTY, MOST_SPEED, check_actions, checked, rows};
 use crate::guard::{detached, exception, making, pool, threads};
 use crate::setup::Setup;
 use numpy::{
-    PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods,
+    PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2,
     ToPyArray,
 };
 use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyBytes;
-use rumbo_control::mode::{MAX_WHEEL_RAD_S, ModeId};
+use rumbo_control::mode::ModeId;
 use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Batch as Robots, Driver, OBSERVED, Robot, TRUE};
 use rumbo_experiment::files::FileError;
@@ -20,7 +21,6 @@ use rumbo_log::Kind;
 use rumbo_plant::world::World;
 use rumbo_session::headless::record_run;
 use rumbo_wire::Command;
-use std::f32::consts::FRAC_PI_2;
 use std::io::Cursor;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
@@ -30,8 +30,6 @@ const STRIDE_TICKS: usize = 100;
 const STRIDE_OF_ALL: usize = 100_000;
 /// How many of our native robots an emulated one weighs.
 const EMULATED: usize = 50;
-/// An action: wheel speeds, left and right [rad/s], and where the servo points [rad].
-const ACTION: usize = 3;
 
 /// Robots of one setup.
 #[pyclass(frozen, module = "rumbo._rumbo")]
@@ -468,75 +466,10 @@ fn in_strides(
     Ok(())
 }
 
-/// An action for each of so many robots, and whether it is given to it.
-fn checked<'a>(
-    actions: &'a PyReadonlyArray2<'_, f32>,
-    active: &'a PyReadonlyArray1<'_, bool>,
-    count: usize,
-    most: (&str, f32, &str),
-) -> PyResult<(&'a [[f32; ACTION]], &'a [bool])> {
-    has_rows("actions", actions.shape(), count, ACTION)?;
-    if !actions.is_c_contiguous() || active.len() != count {
-        return Err(PyValueError::new_err(
-            "actions must be C-contiguous, and active must have a value for each robot",
-        ));
-    }
-    let actions = actions.as_slice()?.as_chunks().0;
-    check_actions(actions, most)?;
-    Ok((actions, active.as_slice()?))
-}
-
 /// Corners of each obstacle that stands in a world [m].
 fn corners(world: &World) -> Vec<Vec<[f64; 2]>> {
     let obstacles = world.obstacles().iter();
     obstacles
         .map(|obstacle| obstacle.corners().collect())
         .collect()
-}
-
-/// The array's numbers, row by row, if it has this shape.
-pub(crate) fn rows<'a, T: numpy::Element>(
-    name: &str,
-    array: &'a mut PyReadwriteArray2<'_, T>,
-    rows: usize,
-    columns: usize,
-) -> PyResult<&'a mut [T]> {
-    has_rows(name, array.shape(), rows, columns)?;
-    // A slice of an array in Fortran's order would be transposed.
-    if !array.is_c_contiguous() {
-        return Err(PyValueError::new_err(format!(
-            "{name} must be C-contiguous"
-        )));
-    }
-    Ok(array.as_slice_mut()?)
-}
-
-pub(crate) fn has_rows(name: &str, shape: &[usize], rows: usize, columns: usize) -> PyResult<()> {
-    if shape == [rows, columns] {
-        return Ok(());
-    }
-    Err(PyValueError::new_err(format!(
-        "{name} has the shape {shape:?}: must be [{rows}, {columns}]"
-    )))
-}
-
-/// What wheels are given: what it is, the most of it either way, and its unit.
-const MOST_SPEED: (&str, f32, &str) = ("wheel speed", MAX_WHEEL_RAD_S, "rad/s");
-const MOST_DUTY: (&str, f32, &str) = ("wheel's share of the PWM", 1.0, "of the full one");
-
-/// Every number is one that the robot takes.
-fn check_actions(actions: &[[f32; ACTION]], of_wheel: (&str, f32, &str)) -> PyResult<()> {
-    let limits = [of_wheel, of_wheel, ("servo angle", FRAC_PI_2, "rad")];
-    let sides = ["left ", "right ", ""];
-    for (index, action) in actions.iter().enumerate() {
-        let columns = action.iter().zip(limits).zip(sides);
-        for (column, ((value, (what, most, unit)), side)) in columns.enumerate() {
-            if value.is_nan() || value.abs() > most {
-                return Err(PyValueError::new_err(format!(
-                    "action[{index}, {column}] = {value}: {side}{what} must be within {most:.4} {unit} of zero"
-                )));
-            }
-        }
-    }
-    Ok(())
 }

@@ -4,6 +4,7 @@
 //! Every call that takes time gives up Python's lock and looks for Ctrl-C between runs, or between seconds of simulated
 //! time. Input is checked before anything runs; an error of the simulator's files is a `ValueError` with their text.
 
+mod arrays;
 mod batch;
 mod guard;
 mod identify;

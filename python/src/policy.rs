@@ -1,6 +1,6 @@
 //! Policies as the robot evaluates them.
 
-use crate::batch::{has_rows, rows};
+use crate::arrays::{has_rows, rows};
 use crate::guard::exception;
 use crate::setup::library;
 use crate::study::refuse;

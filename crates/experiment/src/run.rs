@@ -5,8 +5,10 @@
 #[cfg(feature = "host")]
 mod batch;
 
+mod judge;
 mod player;
 
+use judge::{judged, together};
 pub use player::Player;
 pub(crate) use player::of_seed;
 
@@ -14,7 +16,7 @@ pub(crate) use player::of_seed;
 pub use batch::{in_order, run_all, run_all_on, run_each};
 
 use crate::calibrate::calibrate_simulated;
-use crate::files::{Calibrated, FileError, Setup, did_you_mean, near, unknown};
+use crate::files::{Calibrated, FileError, Setup, unknown};
 use crate::metrics::{self, Metrics};
 use crate::note::Note;
 use crate::operator::Operator;
@@ -30,9 +32,6 @@ use std::fs::File;
 use std::io::{self, BufWriter};
 use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// A sketch that misses more limits than this was made for something else.
-const MANY: usize = 2;
 
 /// The file of a run's waveforms.
 pub(crate) type Waves = Waveform<BufWriter<File>>;
@@ -231,29 +230,6 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The result, judged by the limits of its scenario.
-fn judged(setup: &Setup, mut whole: RunResult) -> RunResult {
-    let scenario = &setup.scenario;
-    whole.scenario.clone_from(&scenario.name);
-    whole.path.clone_from(&scenario.path);
-    // What its program could no longer do is not judged: the verdict suffices.
-    if whole.ended.is_none() {
-        whole.failures.extend(missed(setup, &whole));
-    }
-    let own = scenario.has_mode && setup.firmware.is_some() && !setup.takes_parameters();
-    if own && whole.failures.len() > MANY {
-        let text = format!(
-            "scenario {} judges mode {}; a sketch that does something else runs in a scenario without mode and limits, \
-             for instance `rumbo run free`",
-            scenario.name,
-            scenario.mode.name()
-        );
-        whole.notes.push(text.into());
-    }
-    whole.pass = whole.failures.is_empty();
-    whole
-}
-
 impl<S: Deref<Target = Setup> + Clone> Member<S> {
     /// With its robot at its start.
     fn new(setup: S, seed: u64) -> Result<(Sim, Self), FileError> {
@@ -304,58 +280,6 @@ impl<S: Deref<Target = Setup> + Clone> Member<S> {
             ..RunResult::default()
         }
     }
-}
-
-/// The result of several robots: with the metrics of each and of each pair after their names, and of all.
-fn together(fleet: &Fleet, sims: &[Sim], robots: Vec<RunResult>) -> RunResult {
-    let all = |what: fn(&RunResult) -> &[Note]| -> Vec<Note> {
-        let named = robots.iter().flat_map(|robot| {
-            what(robot).iter().map(|note| Note::Robot {
-                name: robot.scenario.clone(),
-                note: Box::new(note.clone()),
-            })
-        });
-        named.collect()
-    };
-    let own = robots.iter();
-    let own: Vec<_> = own
-        .map(|robot| (robot.scenario.as_str(), &robot.metrics))
-        .collect();
-    RunResult {
-        seed: robots.first().map_or(0, |first| first.seed),
-        metrics: metrics::of_fleet(fleet, sims, &own),
-        failures: all(|robot| &robot.failures),
-        notes: all(|robot| &robot.notes),
-        ended: robots.iter().find_map(|robot| robot.ended.clone()),
-        robots,
-        ..RunResult::default()
-    }
-}
-
-/// The limits that a result misses.
-fn missed(setup: &Setup, result: &RunResult) -> Vec<Note> {
-    let metrics = &result.metrics;
-    let mut failures = Vec::new();
-    for (name, bounds) in &setup.scenario.limits {
-        let why = match metrics.get(name) {
-            Some(value) if bounds.admit(*value) => continue,
-            Some(value) if value.is_finite() => format!(" = {value:.4}: limit {bounds}"),
-            // The measured event did not happen.
-            Some(_) => format!(" = never: limit {bounds}"),
-            None if !result.drove() => format!(
-                " = never: limit {bounds}; the robot was not armed, or its program drove no wheel"
-            ),
-            None => format!(
-                ": this scenario has no such metric; {}",
-                instead(name, metrics)
-            ),
-        };
-        failures.push(Note::Limit {
-            metric: name.clone(),
-            why,
-        });
-    }
-    failures
 }
 
 /// The parameters of a robot before the first command, if it has a table of them.
@@ -498,13 +422,5 @@ pub fn check_metrics<'a>(
     match names.find(|name| !all.contains(name)) {
         Some(name) => Err(unknown("metric", name, all.iter().copied())),
         None => Ok(()),
-    }
-}
-
-fn instead(name: &str, metrics: &Metrics) -> String {
-    let known = || metrics.keys().map(String::as_str);
-    match &near::near(name, known())[..] {
-        [] => format!("it has {}", known().collect::<Vec<_>>().join(", ")),
-        near => did_you_mean(&near.iter().map(ToString::to_string).collect::<Vec<_>>()),
     }
 }

@@ -3,24 +3,19 @@
 //! A student's page shows the task, the measurements, the points and the advice, and plots a run with a public seed. It
 //! shows no other controller's results.
 
-use crate::channel::Channel;
-use crate::chapters::maps;
-use crate::chapters::panels::pwm_panel;
-use crate::chapters::parts::{DISTANCE, LEFT, REFERENCE, RIGHT, SPEED, TIME};
+mod figures;
+
 use crate::complaints::complaint;
 use crate::judge;
 use crate::metric_names::{Shown, shown};
-use crate::signals::{CM, Outcome, RPM};
+use crate::signals::Outcome;
 use crate::summary::{figure, heading, shell};
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, capital, escape, put, word};
 use pulldown_cmark::{Event, Options, Parser, html};
-use rumbo_control::mode::ReferenceKind;
-use rumbo_control::rig::Rig;
 use rumbo_experiment::grade::{Assignment, Line, Mark, Test, Words};
 use rumbo_experiment::note::Note;
 use rumbo_plot::{Curve, Ink, Panel, Plot, Points};
-use rumbo_wire::Command;
 
 const POINTS_OF: Text = word("points-of");
 const SEEDS: Text = word("seeds-driven");
@@ -50,10 +45,6 @@ const NONE: Text = word("no-points");
 const SIMILAR: Text = word("similar-hand-ins");
 const AT_MOST: Text = word("at-most-value");
 const AT_LEAST: Text = word("at-least-value");
-const LEFT_SONAR: Text = word("left-sonar");
-const RIGHT_SONAR: Text = word("right-sonar");
-const FRONT: Text = word("front-sonar");
-const DRIVEN: Text = word("driven");
 
 /// A text of an assignment in a language, if it has it.
 #[must_use]
@@ -362,7 +353,7 @@ fn curves(assignment: &Assignment, mark: &Mark, language: Language) -> String {
         };
         let seed = SEED_SHOWN.with(language, &[("seed", &result.seed.to_string())]);
         let title = of(language, &test.title);
-        for svg in figures(language, test, &outcome) {
+        for svg in figures::figures(language, test, &outcome) {
             let label = format!("<svg role=\"img\" aria-label=\"{}\"", escape(title));
             let svg = svg.replacen("<svg", &label, 1);
             put(
@@ -379,94 +370,6 @@ fn curves(assignment: &Assignment, mark: &Mark, language: Language) -> String {
         true => html,
         false => heading(YOUR_ROBOT.of(language)) + &html,
     }
-}
-
-/// The quantity plotted for a run of this mode, from ground truth.
-fn figures(language: Language, test: &Test, outcome: &Outcome) -> Vec<String> {
-    let truth = |name: Text, ink, signal: &dyn Fn(&rumbo_sim::trace::Sample) -> f64| {
-        Curve::new(name.of(language), ink, outcome.truth(signal))
-    };
-    let range = |name, ink, sonar: Channel| truth(name, ink, &|s| CM * s.range_m[sonar as usize]);
-    let speed =
-        |name, ink, wheel: Channel| truth(name, ink, &|s| RPM * s.wheel_rad_s[wheel as usize]);
-    let speeds = || {
-        vec![
-            speed(LEFT, Ink::First, Channel::Left),
-            speed(RIGHT, Ink::Second, Channel::Right),
-        ]
-    };
-    let asked = |factor| {
-        Curve::steps(
-            REFERENCE.of(language),
-            Ink::Reference,
-            outcome.reference(factor),
-        )
-    };
-    let pwm = pwm_panel(language, outcome);
-    let timed = |panels| {
-        Plot {
-            x: TIME.of(language).to_owned(),
-            x_range: None,
-            panels,
-        }
-        .svg(language)
-    };
-    let with = |text: Text, mut curves: Vec<Curve>, more: Curve| {
-        curves.insert(0, more);
-        Panel::new(text.of(language), curves)
-    };
-    let mode = test.setup.scenario.mode.description();
-    match mode.reference.map(|reference| reference.kind) {
-        Some(ReferenceKind::Distance) if mode.rigs.contains(Rig::FrontSingle) => {
-            let front = vec![range(FRONT, Ink::First, Channel::Front)];
-            vec![timed(vec![
-                with(DISTANCE, front, asked(CM)).at_least(0.0, 100.0),
-                pwm,
-            ])]
-        }
-        Some(ReferenceKind::Distance) => {
-            let both = vec![
-                range(LEFT_SONAR, Ink::First, Channel::Left),
-                range(RIGHT_SONAR, Ink::Second, Channel::Right),
-            ];
-            vec![timed(vec![with(DISTANCE, both, asked(CM)), pwm])]
-        }
-        Some(ReferenceKind::WheelSpeed | ReferenceKind::Speed) => {
-            vec![timed(vec![with(SPEED, speeds(), asked(RPM)), pwm])]
-        }
-        None => vec![timed(vec![Panel::new(SPEED.of(language), speeds()), pwm])],
-        Some(ReferenceKind::Goal) => {
-            let mut map = maps::map(language);
-            map.shapes = maps::shapes(outcome);
-            map.curves = vec![Curve::new(
-                DRIVEN.of(language),
-                Ink::First,
-                outcome.true_trajectory(),
-            )];
-            map.marks = goals(outcome);
-            let speeds = Panel::new(SPEED.of(language), speeds());
-            vec![map.svg(language), timed(vec![speeds, pwm])]
-        }
-    }
-}
-
-/// The robot's goals, in the world.
-fn goals(outcome: &Outcome) -> Vec<(f64, f64, String)> {
-    let start = outcome.setup.scenario.start;
-    let (sin, cos) = start.heading_rad.sin_cos();
-    let commands = outcome.setup.scenario.commands.iter();
-    let places = commands.filter_map(|timed| match timed.command {
-        Command::Goal { x_m, y_m } => Some((f64::from(x_m), f64::from(y_m))),
-        Command::Waypoint(place) => Some((f64::from(place.x_m), f64::from(place.y_m))),
-        _ => None,
-    });
-    places
-        .enumerate()
-        .map(|(number, (x, y))| {
-            let (x, y) = (start.x_m + cos * x - sin * y, start.y_m + sin * x + cos * y);
-            (x, y, (number + 1).to_string())
-        })
-        .collect()
 }
 
 /// Distribution of the hand-ins over the points, in tenths of the full mark.

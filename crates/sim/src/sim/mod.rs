@@ -9,8 +9,10 @@
 //! Bytes go through [`Link`]s at 9600 baud, or at the rate of the wiring's module: the user of a [`Sim`] sees the robot as behind a real port. A clone is a
 //! snapshot, which continues bit for bit the same.
 
+mod among;
 mod baseline;
 mod emulated;
+mod hand;
 mod native;
 mod touches;
 mod unlinked;
@@ -29,15 +31,13 @@ use rumbo_control::{Duty, SIDES, SonarId, Wheels};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::link::{Direction, Link, LinkParams};
-use rumbo_plant::moving::{Body, Course, Motion};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Event, Plant, State, Truth};
-use rumbo_plant::sonar::Ping;
-use rumbo_plant::world::{ShapeError, World};
+use rumbo_plant::world::World;
 use rumbo_wire::{Command, FromRobot};
 use std::collections::BTreeMap;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 pub use touches::Touch;
 use touches::Touches;
 
@@ -333,63 +333,6 @@ impl Sim {
         self.plant.world()
     }
 
-    /// Where the body is.
-    pub(crate) fn pose(&self) -> Pose {
-        self.state.pose()
-    }
-
-    /// Where the body is, and how fast it moves.
-    pub(crate) fn motion(&self) -> Motion {
-        self.plant.motion(&self.state)
-    }
-
-    /// The body as another robot meets it, where it stands now.
-    pub(crate) fn body(&self) -> Result<Body, ShapeError> {
-        let corners = self.plant.footprint().corners(&Pose::default());
-        let at_us = self.now_us();
-        let from = self.motion();
-        Body::new(corners.to_vec(), Course::Straight { at_us, from })
-    }
-
-    /// Puts a body into the world.
-    pub(crate) fn join(&mut self, body: Body) -> Result<(), ShapeError> {
-        self.plant.add_body(&mut self.state, body)
-    }
-
-    /// Adds the pings since there had been so many of each sonar, which is brought up to date, with `robot`, its number
-    /// among all.
-    pub(crate) fn pings_since(
-        &self,
-        robot: usize,
-        counts: &mut [u64; 3],
-        pings: &mut Vec<(usize, Ping)>,
-    ) {
-        for sonar in rumbo_plant::sonar::SonarId::ALL {
-            let state = self.plant.sonar(&self.state, sonar);
-            let count = &mut counts[sonar.index()];
-            if *count != state.pings() {
-                *count = state.pings();
-                let speaker = (3 * robot + sonar.index()) as u32;
-                pings.push((robot, state.last_ping(speaker)));
-            }
-        }
-    }
-
-    /// Lets the sonars receive pings of other robots.
-    pub(crate) fn receive_pings(&mut self, pings: &[Ping]) {
-        self.plant.receive_pings(&mut self.state, pings);
-    }
-
-    /// Has bodies of the world, by their numbers, go as these from now on; each has jumped by at most so much [m].
-    pub(crate) fn meet<'a>(&mut self, bodies: impl Iterator<Item = (usize, &'a Body, f64)>) {
-        self.plant.replace_bodies(&mut self.state, bodies);
-    }
-
-    /// Keeps its world in common with others if it is the same as theirs: the first one's.
-    pub fn share_world(&mut self, common: &OnceLock<Arc<World>>) {
-        self.plant.share_world(common);
-    }
-
     /// Drains the messages of the report's native program; empty for other programs, which send over the link.
     pub fn drain_messages(&mut self) -> Vec<FromRobot> {
         match &mut self.controller {
@@ -404,47 +347,6 @@ impl Sim {
             Some(Controller::Rumbo(native)) => native.mode_state(),
             _ => None,
         }
-    }
-
-    /// Lifts the robot and puts it down elsewhere, if there is room: its program does not notice.
-    pub fn put(&mut self, at: Pose) {
-        if self.plant.has_room(&self.state, &at) {
-            self.state.place(at);
-        }
-    }
-
-    /// Puts something of the world elsewhere, by its distance from where the world has it \[m\], if there is room: what has
-    /// this number among obstacles, then bodies, which take their whole course along.
-    pub fn shift(&mut self, thing: usize, to_m: [f64; 2]) {
-        let was_m = self.shifted.get(&thing).copied().unwrap_or_default();
-        let by_m = [to_m[0] - was_m[0], to_m[1] - was_m[1]];
-        if self.plant.shift(&mut self.state, thing, by_m) {
-            self.shifted.insert(thing, to_m);
-        }
-    }
-
-    /// What stands elsewhere than the world has it, by [`Self::shift`].
-    pub fn shifted(&self) -> &BTreeMap<usize, [f64; 2]> {
-        &self.shifted
-    }
-
-    /// Moves the robot in the world, as a hand would; our native robot's estimated pose is set to `estimate`, relative
-    /// to its origin.
-    pub fn place(&mut self, at: Pose, estimate: rumbo_control::Pose) {
-        self.state.place(at);
-        if let Some(Controller::Rumbo(native)) = &mut self.controller {
-            native.set_pose(estimate);
-        }
-    }
-
-    /// Holds a wheel, as a hand would, with so much dry friction [N m]; 0 lets go.
-    pub fn hold(&mut self, wheel: rumbo_plant::drivetrain::Side, friction_n_m: f64) {
-        self.state.hold(wheel, friction_n_m);
-    }
-
-    /// Lifts the robot so that its wheels turn freely, or puts it down where it is.
-    pub fn lift(&mut self, wheels_in_air: bool) {
-        self.plant.lift(&self.params, wheels_in_air);
     }
 
     /// Makes it accept the bytes meant for another robot, timed by that one's clock: our native robot no longer checks

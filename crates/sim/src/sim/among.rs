@@ -1,0 +1,67 @@
+//! A robot among others: its body in their worlds, theirs in its own, and their pings.
+
+use super::Sim;
+use rumbo_plant::contact::Pose;
+use rumbo_plant::moving::{Body, Course, Motion};
+use rumbo_plant::sonar::Ping;
+use rumbo_plant::world::{ShapeError, World};
+use std::sync::{Arc, OnceLock};
+
+impl Sim {
+    /// Where the body is.
+    pub(crate) fn pose(&self) -> Pose {
+        self.state.pose()
+    }
+
+    /// Where the body is, and how fast it moves.
+    pub(crate) fn motion(&self) -> Motion {
+        self.plant.motion(&self.state)
+    }
+
+    /// The body as another robot meets it, where it stands now.
+    pub(crate) fn body(&self) -> Result<Body, ShapeError> {
+        let corners = self.plant.footprint().corners(&Pose::default());
+        let at_us = self.now_us();
+        let from = self.motion();
+        Body::new(corners.to_vec(), Course::Straight { at_us, from })
+    }
+
+    /// Puts a body into the world.
+    pub(crate) fn join(&mut self, body: Body) -> Result<(), ShapeError> {
+        self.plant.add_body(&mut self.state, body)
+    }
+
+    /// Adds the pings since there had been so many of each sonar, which is brought up to date, with `robot`, its number
+    /// among all.
+    pub(crate) fn pings_since(
+        &self,
+        robot: usize,
+        counts: &mut [u64; 3],
+        pings: &mut Vec<(usize, Ping)>,
+    ) {
+        for sonar in rumbo_plant::sonar::SonarId::ALL {
+            let state = self.plant.sonar(&self.state, sonar);
+            let count = &mut counts[sonar.index()];
+            if *count != state.pings() {
+                *count = state.pings();
+                let speaker = (3 * robot + sonar.index()) as u32;
+                pings.push((robot, state.last_ping(speaker)));
+            }
+        }
+    }
+
+    /// Lets the sonars receive pings of other robots.
+    pub(crate) fn receive_pings(&mut self, pings: &[Ping]) {
+        self.plant.receive_pings(&mut self.state, pings);
+    }
+
+    /// Has bodies of the world, by their numbers, go as these from now on; each has jumped by at most so much [m].
+    pub(crate) fn meet<'a>(&mut self, bodies: impl Iterator<Item = (usize, &'a Body, f64)>) {
+        self.plant.replace_bodies(&mut self.state, bodies);
+    }
+
+    /// Keeps its world in common with others if it is the same as theirs: the first one's.
+    pub fn share_world(&mut self, common: &OnceLock<Arc<World>>) {
+        self.plant.share_world(common);
+    }
+}
