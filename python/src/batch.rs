@@ -4,10 +4,7 @@
 use crate::arrays::{MOST_DUTY, MOST_SPEED, check_actions, checked, rows};
 use crate::guard::{detached, exception, making, pool, threads};
 use crate::setup::Setup;
-use numpy::{
-    PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2,
-    ToPyArray,
-};
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2, ToPyArray};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
@@ -16,8 +13,8 @@ use rumbo_control::mode::ModeId;
 use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Batch as Robots, Driver, OBSERVED, Robot, TRUE};
 use rumbo_experiment::files::FileError;
-use rumbo_lab::run_log::Source;
-use rumbo_log::Kind;
+use rumbo_lab::run_log::RunSource;
+use rumbo_log::LogKind;
 use rumbo_plant::world::World;
 use rumbo_session::headless::record_run;
 use rumbo_wire::Command;
@@ -313,8 +310,8 @@ impl Batch {
             overrides,
             ..
         } = self.setup.get();
-        let source = Source {
-            kind: Kind::Episode,
+        let source = RunSource {
+            kind: LogKind::Episode,
             library,
             overrides,
         };

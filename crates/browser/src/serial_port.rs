@@ -4,7 +4,7 @@
 //! are dropped, so that no old command takes effect afterwards. The robot has stopped by then, for lack of a heartbeat,
 //! and nothing here arms it.
 
-use rumbo_log::{Kind, Manifest};
+use rumbo_log::{LogKind, Manifest};
 use rumbo_session::{LinkNews, Target, TargetError};
 use std::collections::VecDeque;
 
@@ -102,7 +102,7 @@ impl Target for SerialPort {
 
     fn manifest(&self) -> Manifest {
         Manifest {
-            kind: Kind::Robot,
+            kind: LogKind::Robot,
             program: "unknown".into(),
             port: Some(self.name.clone()),
             ..Manifest::default()

@@ -4,11 +4,11 @@ use crate::args::{CalibrateArgs, OverwriteArgs};
 use crate::failure::Failure;
 use crate::output::{self, figure};
 use crate::place;
-use crate::run_log::{Kept, Source};
+use crate::run_log::{Kept, RunSource};
 use rumbo_experiment::calibrate::{self, Calibration, Row};
 use rumbo_experiment::calibration_run;
 use rumbo_experiment::files::{Library, Overrides, RobotFile, Setup, bounded};
-use rumbo_log::Kind;
+use rumbo_log::LogKind;
 use rumbo_plant::rewrite::RewriteError;
 use rumbo_station::Extras;
 use serde::Serialize;
@@ -49,8 +49,8 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         check_robot(path, &args.robot, calibrate::is_calibrated, args.overwrite)?;
     }
     let run = calibration_run::run_calibration(&setup, args.seed.seed)?;
-    let source = Source {
-        kind: Kind::Calibration,
+    let source = RunSource {
+        kind: LogKind::Calibration,
         library: &Library::new(),
         overrides: &overrides,
     };

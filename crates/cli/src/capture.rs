@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::left_out::LeftOut;
 use crate::output;
 use crate::place::Guard;
-use rumbo_log::{Burst, Kind, Manifest};
+use rumbo_log::{Burst, LogKind, Manifest};
 use rumbo_station::headless::record_text;
 use rumbo_wire::text::{Row, TextCommand, TextError};
 use serde_json::json;
@@ -61,7 +61,7 @@ pub(crate) fn import(
     let (link, left_out) = parse(&args.file, text)?;
     left_out.report(&args.file);
     let manifest = Manifest {
-        kind: Kind::Robot,
+        kind: LogKind::Robot,
         program: "original".into(),
         version: env!("CARGO_PKG_VERSION").into(),
         port: Some(args.file.display().to_string()),

@@ -12,8 +12,8 @@ use rayon::prelude::*;
 use rumbo_experiment::batch::Robot;
 use rumbo_experiment::claims::{Broken, Given, Suite, Test, Verdict};
 use rumbo_experiment::files::{Library, Overrides, Setup};
-use rumbo_lab::run_log::Source;
-use rumbo_log::Kind;
+use rumbo_lab::run_log::RunSource;
+use rumbo_log::LogKind;
 use rumbo_report::Stamp;
 use rumbo_session::headless::record_run;
 use std::fs::File;
@@ -137,8 +137,8 @@ fn leave(
     guard.check(&log, &mark)?;
     guard.check(&waves, &Mark::of(stamp))?;
     let library = beside(suite);
-    let source = Source {
-        kind: Kind::Run,
+    let source = RunSource {
+        kind: LogKind::Run,
         library: &library,
         overrides,
     };

@@ -7,11 +7,11 @@ use crate::output;
 use crate::place::{self, Guard};
 use crate::recorded;
 use crate::results::Results;
-use crate::run_log::Source;
+use crate::run_log::RunSource;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::files::{Library, Overrides};
 use rumbo_lab::manifest;
-use rumbo_log::Kind;
+use rumbo_log::LogKind;
 use rumbo_report::Stamp;
 use rumbo_report::real::{self, Real};
 use rumbo_report::text::Language;
@@ -58,8 +58,8 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
     let place = args.out.join(REPORT);
     place::write(&place, stamp.put_on(page))?;
     if args.data {
-        let source = Source {
-            kind: Kind::Run,
+        let source = RunSource {
+            kind: LogKind::Run,
             library: &library,
             overrides: &overrides,
         };
@@ -133,7 +133,7 @@ fn named(path: &Path) -> [String; 2] {
 }
 
 /// The log of each run, its true signals as CSV, and its metrics as JSON.
-fn write_data(folder: &Path, source: &Source<'_>, data: &Data) -> Result<(), Failure> {
+fn write_data(folder: &Path, source: &RunSource<'_>, data: &Data) -> Result<(), Failure> {
     data.outcomes.values().try_for_each(|outcome| {
         let results = Results::of(folder, &outcome.result.scenario, outcome.result.seed);
         results.write(source, &outcome.setup, &outcome.result)

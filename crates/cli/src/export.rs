@@ -8,7 +8,7 @@ use crate::mark::Mark;
 use crate::output;
 use crate::place::{self, Guard};
 use crate::ros2bag::Bag;
-use rumbo_log::{Kind, Log, Manifest, Reading, Row, SIGNALS, Source};
+use rumbo_log::{Log, LogKind, Manifest, Reading, Row, SIGNALS, Source};
 use rumbo_report::Stamp;
 use rumbo_station::log_file;
 use std::collections::BTreeSet;
@@ -158,9 +158,9 @@ pub(crate) fn warn_if_cut(path: &Path, log: &Log) -> Result<(), Failure> {
 fn once_more(manifest: &Manifest) -> Option<String> {
     let seed = manifest.seed?;
     let command = match manifest.kind {
-        Kind::Run => format!("run {}", manifest.scenario.as_ref()?),
-        Kind::Calibration => "calibrate".into(),
-        Kind::Lab | Kind::Robot | Kind::Episode => return None,
+        LogKind::Run => format!("run {}", manifest.scenario.as_ref()?),
+        LogKind::Calibration => "calibrate".into(),
+        LogKind::Lab | LogKind::Robot | LogKind::Episode => return None,
     };
     Some(format!(
         "; `rumbo {command} --seed {seed}` makes such a run again"

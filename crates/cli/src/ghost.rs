@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use rumbo_control::Fault;
 use rumbo_experiment::files::Overrides;
 use rumbo_lab::SimulatedRobot;
-use rumbo_log::{Choice, Kind, Log, Manifest, Scene, Truth};
+use rumbo_log::{Choice, Log, LogKind, Manifest, Scene, Truth};
 use rumbo_session::{Abilities, Ghost, LinkNews, Standing, Target, TargetError};
 use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
 use std::collections::VecDeque;
@@ -203,7 +203,7 @@ pub(crate) fn add_to(
             "{shown}: does not say which scenario it is of; name one, as in --ghost mode1"
         )));
     };
-    if recorded.is_some_and(|manifest| manifest.kind == Kind::Episode) {
+    if recorded.is_some_and(|manifest| manifest.kind == LogKind::Episode) {
         return Err(Failure::Input(format!(
             "{shown}: an episode, whose robot a program in Python drove without a link; a ghost takes its commands from a link"
         )));

@@ -10,7 +10,7 @@ use rumbo_control::params::ParamId;
 use rumbo_control::rig::Rig;
 use rumbo_experiment::files::{FileError, Kind, Library, MOVEMENTS, parameters::exact};
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::{Mount, Rig as Mounts};
+use rumbo_plant::plant::{Mount, Mounts};
 use serde_json::{Map, Value, json};
 
 /// Longest list of names on a line of the overview \[characters\].

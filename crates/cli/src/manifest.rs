@@ -1,9 +1,7 @@
 //! The manifest of a log, converted back into a run.
 
 use crate::failure::Failure;
-use rumbo_experiment::files::{
-    Kind as File, Library, NativeProgram, Overrides, Port, Setup, TimedText,
-};
+use rumbo_experiment::files::{Kind, Library, NativeProgram, Overrides, Port, Setup, TimedText};
 use rumbo_lab::manifest::{OF_FLEET, OF_POLICY, hash};
 use rumbo_log::Manifest;
 use rumbo_wire::LineEnding;
@@ -94,9 +92,9 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
     check_ranges(log, manifest)?;
     let mut library = Library::new();
     for (kind, file, name) in [
-        (File::Scenario, "scenario", scenario),
-        (File::Robot, "robot", robot),
-        (File::World, "world", world),
+        (Kind::Scenario, "scenario", scenario),
+        (Kind::Robot, "robot", robot),
+        (Kind::World, "world", world),
     ] {
         let text = manifest
             .files
@@ -108,7 +106,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
     let of_fleet = of_fleet.filter_map(|(file, text)| Some((file.strip_prefix(OF_FLEET)?, text)));
     let mut robots = 0;
     for (name, text) in of_fleet {
-        library = library.holding(File::Robot, name, text);
+        library = library.holding(Kind::Robot, name, text);
         robots += 1;
     }
     let of_policy = manifest.files.iter();
@@ -116,7 +114,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         of_policy.filter_map(|(file, text)| Some((file.strip_prefix(OF_POLICY)?, text)));
     let mut policies = Vec::new();
     for (name, text) in of_policy {
-        library = library.holding(File::Policy, name, text);
+        library = library.holding(Kind::Policy, name, text);
         policies.push(name.to_owned());
     }
     let (program, firmware) = match manifest.program.as_str() {
@@ -153,7 +151,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
 mod tests {
     use super::*;
     use rumbo_lab::manifest::{lines, of};
-    use rumbo_log::Kind;
+    use rumbo_log::LogKind;
 
     #[test]
     fn a_line_for_the_usb_port_is_read_from_its_own_list_with_its_ending() {
@@ -183,7 +181,7 @@ mod tests {
         let made = Library::new().setup("mode1", &overrides).unwrap();
         let manifest = Manifest {
             step_us: MIN_STEP_US,
-            ..of(Kind::Lab, &made, &overrides, 3)
+            ..of(LogKind::Lab, &made, &overrides, 3)
         };
         assert_eq!(manifest.program, "baseline");
         let (again, seed) = setup(Path::new("a.mcap"), &manifest).unwrap();

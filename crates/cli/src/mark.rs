@@ -8,7 +8,7 @@
 //! | SVG, HTML, waveform | a comment, `rumbo compare 5a1c09e2`: the command and a checksum of what it was about |
 //! | profile | nothing but chains of functions with their cycles |
 
-use rumbo_log::Kind;
+use rumbo_log::LogKind;
 use rumbo_report::Stamp;
 use rumbo_station::log_file;
 use std::fs::File;
@@ -48,7 +48,7 @@ impl Mark {
                 .ok()
                 .and_then(|log| log.manifest)
                 .is_some_and(|log| {
-                    log.kind == Kind::Run
+                    log.kind == LogKind::Run
                         && log.scenario.as_ref() == Some(scenario)
                         && log.seed == Some(*seed)
                 }),

@@ -6,7 +6,7 @@
 use crate::logs;
 use rumbo_control::mode::{Description, ModeId, ReferenceKind, Takes};
 use rumbo_experiment::files::bounded::{LONGEST_LOG, read_at_most};
-use rumbo_log::{Kind, Row, recorded_csv};
+use rumbo_log::{LogKind, Row, recorded_csv};
 use rumbo_report::real::{FromLog, NotShown};
 use rumbo_station::log_file;
 use rumbo_wire::text::RowKind;
@@ -26,7 +26,7 @@ pub(crate) fn from_log(path: &Path) -> Result<FromLog, NotShown> {
     }
     let log = log_file::read_signals(path).map_err(|_| NotShown::NoLog)?;
     let manifest = log.manifest.as_ref().ok_or(NotShown::NoLog)?;
-    if manifest.kind != Kind::Robot {
+    if manifest.kind != LogKind::Robot {
         return Err(NotShown::Simulated);
     }
     let csv = csv(&log.rows).ok_or(NotShown::NoRun)?;

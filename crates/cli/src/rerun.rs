@@ -14,7 +14,7 @@ use rumbo_control::params::SCHEMA;
 use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_experiment::{MODEL, calibration_run};
-use rumbo_log::{Burst, Kind, Log, Manifest, Row, Said, Sample, Sent};
+use rumbo_log::{Burst, Log, LogKind, Manifest, Row, Said, Sample, Sent};
 use rumbo_sim::mega::{CONSOLES, PARTS};
 use rumbo_sim::{Config, Sim};
 use rumbo_station::log_file;
@@ -144,7 +144,7 @@ fn run_again(
         }
     })?;
     match recorded.kind {
-        Kind::Run => {
+        LogKind::Run => {
             let result = run::run(&setup, seed)?;
             let own = match &recorded.member {
                 Some(name) => result.robots.iter().find(|robot| robot.scenario == *name),
@@ -157,25 +157,25 @@ fn run_again(
                 ),
             }
         }
-        Kind::Calibration => {
+        LogKind::Calibration => {
             let again = calibration_run::run_calibration(&setup, seed)?;
             Ok(same(log, &again.result, recorder.protocol))
         }
-        Kind::Lab if let Some(protocol) = recorder.protocol => refused(format!(
+        LogKind::Lab if let Some(protocol) = recorder.protocol => refused(format!(
             "a session in protocol {protocol}, of which only the bytes could be compared, and this program speaks protocol \
              {PROTOCOL_VERSION}; run it again with the program that recorded it{}",
             recorder.version
         )),
-        Kind::Lab if recorded.member.is_some() => refused(
+        LogKind::Lab if recorded.member.is_some() => refused(
             "a session of one of several robots, which depends on what was done with the others; only a log of `rumbo run` can be run \
              again with several robots"
                 .into(),
         ),
-        Kind::Lab => session(log, &setup, seed, recorded),
-        Kind::Robot => {
+        LogKind::Lab => session(log, &setup, seed, recorded),
+        LogKind::Robot => {
             refused("is of a real robot; only simulated runs can be run again".into())
         }
-        Kind::Episode => refused(format!(
+        LogKind::Episode => refused(format!(
             "an episode, whose robot a program in Python drove; run that program again, its seed is {seed}"
         )),
     }

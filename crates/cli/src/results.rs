@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use crate::mark::Mark;
 use crate::place::{self, Guard};
-use crate::run_log::{self, Source};
+use crate::run_log::{self, RunSource};
 use rumbo_experiment::files::{ScenarioFile, Setup};
 use rumbo_experiment::run::RunResult;
 use rumbo_session::readable;
@@ -78,7 +78,7 @@ impl Results {
     /// Writes all of them.
     pub(crate) fn write(
         &self,
-        source: &Source<'_>,
+        source: &RunSource<'_>,
         setup: &Setup,
         result: &RunResult,
     ) -> Result<(), Failure> {

@@ -8,12 +8,12 @@ use crate::observe;
 use crate::output::{self, in_words};
 use crate::place::{self, Guard};
 use crate::results::Results;
-use crate::run_log::{Kept, Source};
+use crate::run_log::{Kept, RunSource};
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::compare::median;
 use rumbo_experiment::files::{Library, Overrides, ScenarioFile, Setup, TimedText};
 use rumbo_experiment::run::{self, RunResult};
-use rumbo_log::Kind;
+use rumbo_log::LogKind;
 use rumbo_sim::trace::Trace;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -58,8 +58,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         true => Err(Failure::Interrupted),
         false => Ok(()),
     };
-    let source = Source {
-        kind: Kind::Run,
+    let source = RunSource {
+        kind: LogKind::Run,
         library: &library,
         overrides: &overrides,
     };

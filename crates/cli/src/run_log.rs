@@ -10,7 +10,7 @@ use crate::output;
 use crate::place;
 use rumbo_experiment::files::Setup;
 use rumbo_experiment::run::RunResult;
-pub(crate) use rumbo_lab::run_log::{Source, burst, said};
+pub(crate) use rumbo_lab::run_log::{RunSource, burst, said};
 use rumbo_log::Manifest;
 use rumbo_station::headless::{record_run, record_run_in};
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ const KEPT: usize = 20;
 
 /// Writes the log of a run, of several robots one for each, to the path that is requested for it.
 pub(crate) fn write(
-    source: &Source<'_>,
+    source: &RunSource<'_>,
     path_of: impl Fn(Option<&str>) -> PathBuf,
     setup: &Setup,
     result: &RunResult,
@@ -55,7 +55,7 @@ impl Kept {
     }
 
     /// Records a run, if it is one to keep. A failure to record does not fail the run; it is reported once.
-    pub(crate) fn take(&mut self, source: &Source<'_>, setup: &Setup, result: &RunResult) {
+    pub(crate) fn take(&mut self, source: &RunSource<'_>, setup: &Setup, result: &RunResult) {
         let Some(folder) = &self.folder else {
             return;
         };

@@ -11,7 +11,7 @@ use crate::mark::Mark;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
 use crate::run::{progress_bar, set_threads};
-use crate::run_log::{self, Source};
+use crate::run_log::{self, RunSource};
 use journal::{Header, Journal};
 use rumbo_control::params::ParamId;
 use rumbo_experiment::MODEL;
@@ -20,7 +20,7 @@ use rumbo_experiment::metrics::{bare, more_is_better};
 use rumbo_experiment::run::{self, check_metrics};
 use rumbo_experiment::sweep::{Design, Plan, Row, Sweep};
 use rumbo_lab::manifest::{self, crc32};
-use rumbo_log::Kind;
+use rumbo_log::LogKind;
 use rumbo_report::Stamp;
 use rumbo_report::sweep::{Page, SHOWN};
 use std::collections::BTreeMap;
@@ -140,7 +140,7 @@ pub(crate) fn check_control<'a>(
 }
 
 fn header(args: &SweepArgs, setup: &Setup, overrides: &Overrides, plan: &Plan) -> Header {
-    let about = manifest::of(Kind::Run, setup, overrides, plan.seed);
+    let about = manifest::of(LogKind::Run, setup, overrides, plan.seed);
     let files = format!("{:?}", (&about.files, &about.rig, &about.wiring));
     Header {
         rumbo_sweep: about.version,
@@ -237,8 +237,8 @@ impl Writer<'_> {
         let names = sweep.plan.axes.iter().map(|axis| axis.name.clone());
         let values = sweep.plan.points[row.point].iter().copied();
         overrides.parameters.extend(names.zip(values));
-        let source = Source {
-            kind: Kind::Run,
+        let source = RunSource {
+            kind: LogKind::Run,
             library: self.library,
             overrides: &overrides,
         };

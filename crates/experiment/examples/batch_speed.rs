@@ -13,7 +13,7 @@ use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup, fleet_
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::{Event, Mount, Plant, Rig, State};
+use rumbo_plant::plant::{Event, Mount, Mounts, Plant, State};
 use rumbo_plant::sonar::SonarId;
 use rumbo_wire::Command;
 use std::error::Error;
@@ -141,7 +141,7 @@ fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
             on_servo: false,
         })
     };
-    let rig = Rig {
+    let rig = Mounts {
         left: mount(0.785),
         right: mount(-0.785),
         front: mount(0.0),

@@ -3,7 +3,7 @@
 use rumbo_experiment::MODEL;
 use rumbo_experiment::files::firmware;
 use rumbo_experiment::files::{NativeProgram, Overrides, Port, Setup, TimedText};
-use rumbo_log::{Kind, Manifest};
+use rumbo_log::{LogKind, Manifest};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -15,7 +15,7 @@ pub const OF_POLICY: &str = "policy ";
 
 /// The manifest of a setup as these overrides made it; `step_us` and the time are left to the caller.
 #[must_use]
-pub fn of(kind: Kind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manifest {
+pub fn of(kind: LogKind, setup: &Setup, overrides: &Overrides, seed: u64) -> Manifest {
     // Of several robots each may have a program of its own, which the scenario says.
     let program = match setup.fleet.len() {
         0 => setup.program,

@@ -6,7 +6,7 @@ use crate::scene::{first_commands, others, scene};
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
 use rumbo_experiment::run;
-use rumbo_log::{Choice, Kind, Manifest, Scene};
+use rumbo_log::{Choice, LogKind, Manifest, Scene};
 use rumbo_sim::{Config, Sim};
 use rumbo_wire::Command;
 
@@ -59,7 +59,7 @@ pub(crate) fn set_up(
 ) -> Result<(Setup, Manifest), FileError> {
     let overrides = chosen(overrides, choice);
     let mut setup: Setup = library.setup(&choice.scenario, &overrides)?;
-    let mut manifest = manifest::of(Kind::Lab, &setup, &overrides, choice.seed);
+    let mut manifest = manifest::of(LogKind::Lab, &setup, &overrides, choice.seed);
     if let Some(held) = image {
         setup.firmware = Some(held.firmware(&setup, overrides.wiring.as_deref())?);
         manifest.program.clone_from(&held.name);

@@ -7,7 +7,7 @@ use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
 use rumbo_experiment::note::Note;
 use rumbo_experiment::run::RunResult;
 use rumbo_log::{
-    Burst, Choice, Kind, Manifest, MapPose, Other, Outcome, Said, Scene, Source as Origin, Truth,
+    Burst, Choice, LogKind, Manifest, MapPose, Other, Outcome, Said, Scene, Source, Truth,
 };
 use rumbo_session::Shown;
 use rumbo_session::headless::Run;
@@ -16,16 +16,16 @@ use rumbo_sim::{READING_US, loop_signals};
 use rumbo_wire::FromRobot;
 
 /// How the runs were set up.
-pub struct Source<'a> {
+pub struct RunSource<'a> {
     /// The kind of runs.
-    pub kind: Kind,
+    pub kind: LogKind,
     /// The files.
     pub library: &'a Library,
     /// What is in place of the scenario's.
     pub overrides: &'a Overrides,
 }
 
-impl Source<'_> {
+impl RunSource<'_> {
     /// Passes the contents of a run's logs to `write`, one for each robot.
     ///
     /// # Errors
@@ -192,7 +192,7 @@ fn places(robots: &[RunResult], number: usize) -> Vec<(u64, Shown)> {
             let at = truth(robot.trace.samples.get(index)?).1.pose;
             Some(Other::signals(&robot.scenario, at))
         });
-        (t_us, (Origin::Others, poses.flatten().collect()))
+        (t_us, (Source::Others, poses.flatten().collect()))
     };
     (0..samples).step_by(every).map(at).collect()
 }
@@ -237,9 +237,9 @@ pub fn said(said: &rumbo_sim::trace::Said) -> Said {
 /// Of a program there are either instruments or control loops.
 fn shown(trace: &Trace) -> Vec<(u64, Shown)> {
     let instruments = trace.readings.iter();
-    let instruments = instruments.map(|each| (each.t_us, (Origin::Truth, each.signals.clone())));
+    let instruments = instruments.map(|each| (each.t_us, (Source::Truth, each.signals.clone())));
     let loops = trace.loops.iter();
-    let loops = loops.map(|(t_us, loops)| (*t_us, (Origin::Loops, loop_signals(loops))));
+    let loops = loops.map(|(t_us, loops)| (*t_us, (Source::Loops, loop_signals(loops))));
     instruments.chain(loops).collect()
 }
 

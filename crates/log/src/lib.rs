@@ -53,7 +53,7 @@ pub use error::ReadError;
 pub use event::{Level, LoggedEvent};
 pub use foreign::{Foreign, read_foreign};
 pub use log::{Log, Sent};
-pub use manifest::{ANOTHER, Kind, Manifest, Outcome};
+pub use manifest::{ANOTHER, LogKind, Manifest, Outcome};
 pub use mcap::MAGIC;
 pub use mend::mend;
 pub use parameters::{Parameter, ParameterState, parameter, parameters};

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// How a log came about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum LogKind {
     /// A session with the simulated robot, as fast as the wall clock.
     #[default]
     Lab,
@@ -28,7 +28,7 @@ pub const ANOTHER: &str = "another";
 #[serde(default)]
 pub struct Manifest {
     /// How the log came about.
-    pub kind: Kind,
+    pub kind: LogKind,
     /// Version of Rumbo that wrote it.
     pub version: String,
     /// Number of the model of robot and world that a simulated run was made with; `None` of a real robot, and of logs
@@ -154,10 +154,10 @@ impl Manifest {
                 .replace('Z', "")
         });
         let what = self.scenario.clone().unwrap_or_else(|| match self.kind {
-            Kind::Robot => "robot".into(),
-            Kind::Lab | Kind::Run => "run".into(),
-            Kind::Calibration => "calibration".into(),
-            Kind::Episode => "episode".into(),
+            LogKind::Robot => "robot".into(),
+            LogKind::Lab | LogKind::Run => "run".into(),
+            LogKind::Calibration => "calibration".into(),
+            LogKind::Episode => "episode".into(),
         });
         let seed = self.seed.map(|seed| seed.to_string());
         let parts = [when, Some(what), seed, self.member.clone()];
@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn a_manifest_and_an_outcome_survive_the_way_through_metadata() {
         let manifest = Manifest {
-            kind: Kind::Run,
+            kind: LogKind::Run,
             version: "1".into(),
             scenario: Some("7".into()),
             seed: Some(u64::MAX),

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
-use rumbo_plant::plant::{Mount, Plant, Rig, Setup};
+use rumbo_plant::plant::{Mount, Mounts, Plant, Setup};
 use rumbo_plant::sonar::SonarId;
 use rumbo_plant::world::{Block, ShapeError, Wall, World};
 
@@ -23,7 +23,7 @@ fn main() -> Result<(), ShapeError> {
             on_servo: false,
         })
     };
-    let rig = Rig {
+    let rig = Mounts {
         left: mount(0.05, 0.07, 1.57),
         right: mount(0.05, -0.07, -1.57),
         front: mount(0.11, 0.0, 0.0),

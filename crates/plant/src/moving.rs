@@ -22,14 +22,14 @@ pub struct Velocity {
 
 /// Where a body is at an instant, and how fast it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Motion {
+pub struct BodyMotion {
     /// Where.
     pub pose: Pose,
     /// How fast.
     pub velocity: Velocity,
 }
 
-impl Motion {
+impl BodyMotion {
     /// Velocity of the body's point that is at `at`.
     #[must_use]
     pub fn surface_m_s(&self, at: Point) -> Point {
@@ -78,7 +78,7 @@ pub enum Course {
         /// Time of `from`.
         at_us: u64,
         /// Pose and velocity then.
-        from: Motion,
+        from: BodyMotion,
     },
 }
 
@@ -147,7 +147,7 @@ impl Route {
         }
     }
 
-    fn at(&self, now_us: u64) -> Motion {
+    fn at(&self, now_us: u64) -> BodyMotion {
         let since_us = now_us.saturating_sub(self.start_us);
         let last_us = self.waypoints[self.waypoints.len() - 1].at_us;
         let (along_us, direction) = match self.repeat {
@@ -181,13 +181,13 @@ impl Route {
 }
 
 /// Between two waypoints; `direction` -1 backwards, 0 at rest.
-fn leg(from: &Waypoint, to: &Waypoint, along_us: u64, direction: f64) -> Motion {
+fn leg(from: &Waypoint, to: &Waypoint, along_us: u64, direction: f64) -> BodyMotion {
     let whole_us = (to.at_us - from.at_us) as f64;
     let share = (along_us - from.at_us) as f64 / whole_us;
     let (a, b) = (from.pose, to.pose);
     let way = [b.x_m - a.x_m, b.y_m - a.y_m, b.heading_rad - a.heading_rad];
     let per_s = direction * 1e6 / whole_us;
-    Motion {
+    BodyMotion {
         pose: Pose {
             x_m: a.x_m + share * way[0],
             y_m: a.y_m + share * way[1],
@@ -216,7 +216,7 @@ impl Body {
             radius_m,
             course: Course::Straight {
                 at_us: 0,
-                from: Motion::default(),
+                from: BodyMotion::default(),
             },
             fastest_m_s: 0.0,
         };
@@ -250,18 +250,18 @@ impl Body {
 
     /// Where it is.
     #[must_use]
-    pub fn at(&self, now_us: u64) -> Motion {
+    pub fn at(&self, now_us: u64) -> BodyMotion {
         match &self.course {
             Course::Route(route) => route.at(now_us),
             Course::Straight { at_us, from } => {
                 let dt_s = now_us.saturating_sub(*at_us) as f64 * 1e-6;
-                let Motion { pose, velocity } = *from;
+                let BodyMotion { pose, velocity } = *from;
                 let pose = Pose {
                     x_m: pose.x_m + velocity.m_s[0] * dt_s,
                     y_m: pose.y_m + velocity.m_s[1] * dt_s,
                     heading_rad: pose.heading_rad + velocity.yaw_rad_s * dt_s,
                 };
-                Motion { pose, velocity }
+                BodyMotion { pose, velocity }
             }
         }
     }
@@ -283,7 +283,7 @@ impl Body {
 
     /// True if it stands here for good, on its course as it is.
     #[must_use]
-    pub fn stands_as(&self, motion: &Motion) -> bool {
+    pub fn stands_as(&self, motion: &BodyMotion) -> bool {
         let stands = motion.velocity == Velocity::default();
         stands && matches!(&self.course, Course::Straight { from, .. } if from == motion)
     }

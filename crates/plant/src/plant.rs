@@ -8,13 +8,13 @@ use libm::{sincos, sqrt};
 use std::sync::{Arc, OnceLock};
 
 pub use crate::event::Event;
-pub use crate::rig::{Mount, Rig};
+pub use crate::rig::{Mount, Mounts};
 
 use crate::contact::{self, Footprint, Pose};
 use crate::drivetrain::{self, Bridge, Drivetrain, Modulation, Motion, Side};
 use crate::encoder::{self, Channel, Encoder};
 use crate::event::Queue;
-use crate::moving::{Body, Motion as BodyMotion, Velocity};
+use crate::moving::{Body, BodyMotion, Velocity};
 use crate::noise::Noise;
 use crate::params::{self, Params};
 use crate::servo;
@@ -37,7 +37,7 @@ pub struct Setup {
     /// Physical numbers, already drawn for the seed if they are to be.
     pub params: Params,
     /// Sonars.
-    pub rig: Rig,
+    pub rig: Mounts,
     /// The world.
     pub world: World,
     /// Seed of all noise.

@@ -15,7 +15,7 @@ pub struct Mount {
 
 /// The sonars a robot carries.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Rig {
+pub struct Mounts {
     /// Left, or the left (or rear left-side) one of a pair.
     pub left: Option<Mount>,
     /// Right, or the right one of a pair.
@@ -24,7 +24,7 @@ pub struct Rig {
     pub front: Option<Mount>,
 }
 
-impl Rig {
+impl Mounts {
     /// By [`SonarId::index`](crate::sonar::SonarId::index).
     pub(crate) fn mounts(&self) -> [Option<Mount>; 3] {
         [self.left, self.right, self.front]

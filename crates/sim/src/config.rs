@@ -9,7 +9,7 @@ use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_plant::contact::Pose;
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::Rig;
+use rumbo_plant::plant::Mounts;
 use rumbo_plant::world::World;
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub struct Config {
     /// The robot's physics, as drawn for the seed.
     pub plant: Params,
     /// Where its sonars sit.
-    pub rig: Rig,
+    pub rig: Mounts,
     /// The world that it drives in.
     pub world: World,
     /// The dark lines on its floor.

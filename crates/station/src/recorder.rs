@@ -4,7 +4,7 @@
 //! reported ([`Recorder::trouble`]), and the session continues.
 
 use crate::log_file::{LogError, Problem, claim};
-use rumbo_log::{Bound, Entry, Kind, LogWriter, Manifest};
+use rumbo_log::{Bound, Entry, LogKind, LogWriter, Manifest};
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -51,7 +51,7 @@ impl Recorder {
     fn start(path: PathBuf, file: File, manifest: &Manifest) -> Result<Self, LogError> {
         let (sender, entries) = sync_channel(QUEUE);
         let trouble = Trouble::default();
-        let bound = (manifest.kind == Kind::Robot).then(Bound::default);
+        let bound = (manifest.kind == LogKind::Robot).then(Bound::default);
         let (manifest, reported) = (manifest.clone(), Arc::clone(&trouble));
         let thread = std::thread::Builder::new()
             .name("recorder".into())

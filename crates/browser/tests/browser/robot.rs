@@ -4,7 +4,7 @@
 use rumbo_browser::Robot;
 use rumbo_experiment::files::Overrides;
 use rumbo_lab::SimulatedRobot;
-use rumbo_log::{Choice, Kind, Log};
+use rumbo_log::{Choice, Log, LogKind};
 use rumbo_session::Target;
 use std::io::Cursor;
 
@@ -186,7 +186,7 @@ fn the_session_is_saved_a_piece_at_a_time_as_a_log_of_a_robot_at_a_port() {
     assert_eq!(name, "20261124-094003-robot.mcap");
     let log = Log::read_replay(Cursor::new(bytes)).unwrap();
     let manifest = log.manifest.unwrap();
-    assert_eq!(manifest.kind, Kind::Robot);
+    assert_eq!(manifest.kind, LogKind::Robot);
     assert_eq!(manifest.port.as_deref(), Some("USB 2341:0042"));
     assert!(
         log.events

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::output::{self, figure};
 use rumbo_identify::lacks;
 use rumbo_log::{
-    ANOTHER, Entry, Kind, Level, LogWriter, LoggedEvent, Manifest, Names, Row, Source,
+    ANOTHER, Entry, Level, LogKind, LogWriter, LoggedEvent, Manifest, Names, Row, Source,
 };
 use rumbo_ros::recorded::Series;
 use serde_json::json;
@@ -34,7 +34,7 @@ impl Made {
         series: &[Series],
     ) -> std::io::Result<Vec<u8>> {
         let manifest = Manifest {
-            kind: Kind::Robot,
+            kind: LogKind::Robot,
             program: ANOTHER.into(),
             version: env!("CARGO_PKG_VERSION").into(),
             port: Some(file.to_owned()),

@@ -1,7 +1,7 @@
 //! A scenario's experiment with many seeds, for a page that draws those robots beside its own.
 
 use crate::failure::Failure;
-use crate::run_log::Source;
+use crate::run_log::RunSource;
 use rumbo_experiment::files::{Kind, Library, Overrides, unknown};
 use rumbo_experiment::run::run_all_on;
 use rumbo_log::{Log, Row};
@@ -75,8 +75,8 @@ pub(super) fn drive(
             "several robots are in this world: one seed at a time",
         ));
     }
-    let source = Source {
-        kind: rumbo_log::Kind::Run,
+    let source = RunSource {
+        kind: rumbo_log::LogKind::Run,
         library: &library,
         overrides: &overrides,
     };

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::support;
-use rumbo_log::Kind;
+use rumbo_log::LogKind;
 use rumbo_station::log_file;
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -34,7 +34,7 @@ fn a_calibration_is_recorded_and_its_log_is_read_like_any_other() {
 
     let read = log_file::read(&log).unwrap();
     assert_eq!(read.cut, None);
-    assert_eq!(read.manifest.as_ref().unwrap().kind, Kind::Calibration);
+    assert_eq!(read.manifest.as_ref().unwrap().kind, LogKind::Calibration);
     let found: serde_json::Value = serde_json::from_str(&stdout(&done)).unwrap();
     let outcome = read.outcome.as_ref().unwrap();
     assert!(outcome.pass);

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use rumbo_log::{Kind, Manifest, Truth};
+use rumbo_log::{LogKind, Manifest, Truth};
 use rumbo_session::headless::Run;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
@@ -103,7 +103,7 @@ fn a_log_of_a_real_robot_stands_beside_ours_and_one_of_a_simulated_robot_does_no
     let log = log_file::read(&simulated).unwrap();
     // The same as a robot behind a port would have left it.
     let manifest = Manifest {
-        kind: Kind::Robot,
+        kind: LogKind::Robot,
         ..log.manifest.clone().unwrap()
     };
     let end_us = log.link.last().unwrap().t_us;

@@ -3,7 +3,7 @@
 use super::error::FileError;
 use super::{Port, ScenarioFile, TimedText, WorldFile};
 use rumbo_control::SonarId;
-use rumbo_plant::plant::Rig;
+use rumbo_plant::plant::Mounts;
 use rumbo_sim::wire_fault::Wire;
 use rumbo_sim::wiring::{Part, PartKind};
 
@@ -75,7 +75,7 @@ pub(crate) fn takes(part: &Part, value: &str) -> Result<(), String> {
 pub(super) fn has_its_sonars(
     whose: &str,
     scenario: &ScenarioFile,
-    rig: &Rig,
+    rig: &Mounts,
 ) -> Result<(), FileError> {
     let sonars = scenario.sonar_faults.iter().map(|fault| fault.sonar);
     let echoes = scenario.wire_faults.iter().map(|fault| fault.wire);

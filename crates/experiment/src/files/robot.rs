@@ -27,7 +27,7 @@ use super::read::{Allowed, Source, Table};
 use super::value::ANGLE;
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::{Mount, Rig};
+use rumbo_plant::plant::{Mount, Mounts};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Direction, Driver};
 use rumbo_sim::wiring::{Divider, Motor, SIGNALS, Wiring, is_driver_input};
@@ -59,7 +59,7 @@ pub struct RobotFile {
     /// Physics, from `[plant.*]`: nominal values where the file has none.
     pub plant: Params,
     /// Where the sonars sit, by the name of the rig; none on a robot without sonars. In a pair on one side, `left` is the one in front.
-    pub rigs: BTreeMap<String, Rig>,
+    pub rigs: BTreeMap<String, Mounts>,
     /// Which signal is on which pin, by the name of the wiring.
     pub wirings: BTreeMap<String, Wiring>,
     /// Control parameters that differ from their defaults, from `[parameters]`; sent to the robot before arming.
@@ -172,7 +172,7 @@ pub(crate) fn read_plant(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String
     values
 }
 
-fn read_rig(table: &Table<'_, '_>) -> Rig {
+fn read_rig(table: &Table<'_, '_>) -> Mounts {
     let mount = |sonar| {
         let mount = table.table(sonar);
         let place = Mount {
@@ -184,7 +184,7 @@ fn read_rig(table: &Table<'_, '_>) -> Rig {
         mount.finish();
         table.has(sonar).then_some(place)
     };
-    let rig = Rig {
+    let rig = Mounts {
         left: mount("left"),
         right: mount("right"),
         front: mount("front"),

@@ -14,7 +14,7 @@ use super::{
 use crate::random_world::{Journey, Site, Size};
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::{Mount, Rig};
+use rumbo_plant::plant::{Mount, Mounts};
 use rumbo_plant::world::Point;
 use rumbo_sim::mega::firmware::{Firmware, Language};
 use rumbo_sim::wiring::Divider;
@@ -71,7 +71,7 @@ pub struct Setup {
     /// Its robot.
     pub robot: RobotFile,
     /// Where its sonars sit.
-    pub rig: Rig,
+    pub rig: Mounts,
     /// Its world.
     pub world: WorldFile,
     /// What drives its mode 9.
@@ -176,7 +176,7 @@ impl Library {
         }
         let sonarless = scenario.rig.is_empty() && robot.rigs.is_empty();
         let rig = robot.rigs.get(&scenario.rig).copied();
-        let rig = rig.or(sonarless.then(Rig::default)).ok_or_else(|| {
+        let rig = rig.or(sonarless.then(Mounts::default)).ok_or_else(|| {
             let near = near_or_all(&scenario.rig, robot.rigs.keys().map(String::as_str));
             match &overrides.rig {
                 Some(name) => FileError::Unknown {
@@ -434,14 +434,14 @@ impl Setup {
     /// # Errors
     /// The rig's name is none that the control core knows, or it lacks a sonar of that rig.
     pub fn rig_parameters(&self) -> Result<Vec<(ParamId, f32)>, FileError> {
-        use rumbo_control::rig::Rig as Known;
+        use rumbo_control::rig::Rig;
         let name = &self.scenario.rig;
-        let known = Known::ALL.into_iter().find(|rig| rig.name() == name);
+        let known = Rig::ALL.into_iter().find(|rig| rig.name() == name);
         let Some(rig) = known else {
             return Err(FileError::Unknown {
                 kind: "rig of the control core",
                 name: name.clone(),
-                near: near_or_all(name, Known::ALL.iter().map(|rig| rig.name())),
+                near: near_or_all(name, Rig::ALL.iter().map(|rig| rig.name())),
             });
         };
         let need = |mount: Option<Mount>, sonar: &str| {
@@ -453,23 +453,23 @@ impl Setup {
             })
         };
         let mut values = vec![(ParamId::Rig, f64::from(rig as u8))];
-        if matches!(rig, Known::FrontSingle | Known::Final) {
+        if matches!(rig, Rig::FrontSingle | Rig::Final) {
             values.push((ParamId::SonarFrontX, need(self.rig.front, "front")?.x_m));
         }
-        if rig != Known::FrontSingle {
+        if rig != Rig::FrontSingle {
             let left = need(self.rig.left, "left")?;
             let right = need(self.rig.right, "right")?;
             match rig {
-                Known::FrontPair => values.extend([
+                Rig::FrontPair => values.extend([
                     (ParamId::SonarFrontX, left.x_m),
                     (ParamId::FrontGap, left.y_m - right.y_m),
                 ]),
-                Known::SidePairLeft | Known::SidePairRight => values.extend([
+                Rig::SidePairLeft | Rig::SidePairRight => values.extend([
                     (ParamId::SonarSideX, 0.5 * (left.x_m + right.x_m)),
                     (ParamId::SonarSideY, left.y_m.abs()),
                     (ParamId::SideGap, left.x_m - right.x_m),
                 ]),
-                Known::FrontSingle | Known::Final => values.extend([
+                Rig::FrontSingle | Rig::Final => values.extend([
                     (ParamId::SonarSideX, left.x_m),
                     (ParamId::SonarSideY, left.y_m),
                 ]),

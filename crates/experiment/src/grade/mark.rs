@@ -96,7 +96,7 @@ impl fmt::Display for RunError {
 
 /// The result of one run.
 #[derive(Debug)]
-pub(super) struct Run {
+pub(super) struct GradedRun {
     pub(super) test: usize,
     /// `Err`: it could not be started.
     pub(super) result: Result<RunResult, RunError>,
@@ -120,7 +120,7 @@ impl Mark {
     }
 
     /// The mark from a hand-in's runs, in order of tests and seeds.
-    pub(super) fn of(assignment: &Assignment, name: &str, runs: Vec<Run>) -> Self {
+    pub(super) fn of(assignment: &Assignment, name: &str, runs: Vec<GradedRun>) -> Self {
         let lines = lines(assignment, &runs);
         let touching = runs.iter().filter(|run| touches(run)).count();
         let share = touching as f64 / runs.len().max(1) as f64;
@@ -141,7 +141,7 @@ impl Mark {
             notes: Vec::new(),
             drawn: assignment.tests.iter().map(|_| None).collect(),
         };
-        for Run { test, result, .. } in runs {
+        for GradedRun { test, result, .. } in runs {
             match result {
                 Ok(result) => {
                     once(&mut mark.ended, result.ended.iter());
@@ -162,7 +162,7 @@ impl Mark {
 }
 
 /// The lines of the rubric, their points scaled to the full mark.
-fn lines(assignment: &Assignment, runs: &[Run]) -> Vec<Line> {
+fn lines(assignment: &Assignment, runs: &[GradedRun]) -> Vec<Line> {
     let worth = |test: usize| {
         let tests = assignment.tests.iter();
         let all: f64 = tests.map(|test| test.weight).sum();
@@ -222,7 +222,7 @@ fn once<'a>(notes: &mut Vec<Note>, more: impl Iterator<Item = &'a Note>) {
 }
 
 /// The metrics of a run; none if the program ended early or never drove.
-fn value(run: &Run, metric: &str) -> Option<f64> {
+fn value(run: &GradedRun, metric: &str) -> Option<f64> {
     let result = run.result.as_ref().ok()?;
     if result.ended.is_some() || !result.trace.drove() {
         return None;
@@ -237,7 +237,7 @@ fn value(run: &Run, metric: &str) -> Option<f64> {
         .filter(|value| value.is_finite())
 }
 
-fn touches(run: &Run) -> bool {
+fn touches(run: &GradedRun) -> bool {
     let touched = |result: &RunResult| {
         result
             .metrics
@@ -284,7 +284,7 @@ none = 1
             let mut result = run(&assignment.tests[test].setup, 1).unwrap();
             result.metrics.insert("control_period_s".into(), value);
             result.metrics.insert("contacts".into(), contacts);
-            Run {
+            GradedRun {
                 test,
                 result: Ok(result),
                 seen: None,

@@ -1,11 +1,11 @@
 //! All runs of all hand-ins, on all cores.
 
 use super::assignment::Assignment;
-use super::mark::{Mark, Run, RunError};
+use super::mark::{GradedRun, Mark, RunError};
 use super::program::{self, Seen};
 use crate::files::{FileError, Setup, firmware};
 use crate::note::Note;
-use crate::run::{Run as Running, RunResult, run_by};
+use crate::run::{Run, RunResult, run_by};
 use rayon::prelude::*;
 use rumbo_emulator::image::Image;
 use rumbo_sim::mega::{ACT, Mega};
@@ -45,14 +45,14 @@ pub fn grade(assignment: &Assignment, hand_ins: &[HandIn], done: impl Fn() + Syn
     }
     let mut metrics = assignment.criteria.iter().map(|one| &one.metric);
     let watched = metrics.any(|metric| program::is_of_program(metric));
-    let results: Vec<(usize, Run)> = jobs
+    let results: Vec<(usize, GradedRun)> = jobs
         .par_iter()
         .map(|(index, test, setup, seed)| {
             let drawn = assignment.tests[*test].public.first() == Some(seed);
             let mut seen = (drawn && watched).then(Seen::default);
             let result = one(setup, *seed, drawn, &mut seen);
             done();
-            let run = Run {
+            let run = GradedRun {
                 test: *test,
                 result,
                 seen,
@@ -60,7 +60,7 @@ pub fn grade(assignment: &Assignment, hand_ins: &[HandIn], done: impl Fn() + Syn
             (*index, run)
         })
         .collect();
-    let mut runs: Vec<Vec<Run>> = hand_ins.iter().map(|_| Vec::new()).collect();
+    let mut runs: Vec<Vec<GradedRun>> = hand_ins.iter().map(|_| Vec::new()).collect();
     for (index, run) in results {
         runs[index].push(run);
     }
@@ -99,7 +99,7 @@ const TOIL_PER_S: f64 = 250_000.0;
 
 /// Runs to the end, or until the program exceeds its budget; the same program is ended at the same instant on every
 /// machine. Returns whether it was.
-fn go_on(run: &mut Running<'_>) -> bool {
+fn go_on(run: &mut Run<'_>) -> bool {
     while !run.is_over() {
         run.advance();
         let now_s = run.sim().now_us() as f64 * 1e-6;

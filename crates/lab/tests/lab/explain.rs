@@ -3,8 +3,8 @@
 use rumbo_control::SonarId;
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::run;
-use rumbo_lab::run_log::Source;
-use rumbo_log::{Kind as LogKind, Log};
+use rumbo_lab::run_log::RunSource;
+use rumbo_log::{Log, LogKind};
 use rumbo_session::explain::{Kind, explain};
 use rumbo_session::headless::record_run;
 use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
@@ -57,7 +57,7 @@ fn log(scenario: &str, planted: Planted, seed: u64) -> Log {
         Planted::Set(_) | Planted::Silence(..) | Planted::Slip(_) => {}
     }
     let result = run::run(&setup, seed).unwrap();
-    let source = Source {
+    let source = RunSource {
         kind: LogKind::Run,
         library: &library,
         overrides: &overrides,

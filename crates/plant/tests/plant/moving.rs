@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use rumbo_plant::cone::{Cone, Hearing, nearest};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
-use rumbo_plant::moving::{Body, Course, Motion, Repeat, Route, Velocity, Waypoint};
-use rumbo_plant::plant::{Event, Mount, Plant, Rig, Setup};
+use rumbo_plant::moving::{Body, BodyMotion, Course, Repeat, Route, Velocity, Waypoint};
+use rumbo_plant::plant::{Event, Mount, Mounts, Plant, Setup};
 use rumbo_plant::sonar::{Ping, SonarId};
 use rumbo_plant::world::{Block, Point, ShapeError, Wall, World};
 
@@ -63,9 +63,9 @@ fn plant(world: World) -> Plant {
         ..Mount::default()
     });
     Plant::new(Setup {
-        rig: Rig {
+        rig: Mounts {
             front,
-            ..Rig::default()
+            ..Mounts::default()
         },
         world,
         seed: 3,
@@ -89,7 +89,7 @@ fn a_route_is_gone_once_around_or_back_and_forth() {
         Body::new(square(0.1), Course::Route(route(points, repeat, S))).unwrap()
     };
     let where_is = |body: &Body, t_us| {
-        let Motion { pose, velocity } = body.at(t_us);
+        let BodyMotion { pose, velocity } = body.at(t_us);
         ([pose.x_m, pose.y_m], velocity.m_s)
     };
     let once = body(&there, Repeat::Once);
@@ -149,7 +149,7 @@ proptest! {
         let mut moving = World::new(&[], &[stands]).unwrap();
         let mut still = moving.clone();
         for (place, speed) in boxes {
-            let from = Motion {
+            let from = BodyMotion {
                 pose: Pose { x_m: place[0], y_m: place[1], heading_rad: place[2] },
                 velocity: Velocity { m_s: [speed[0], speed[1]], yaw_rad_s: speed[2] },
             };
@@ -230,7 +230,7 @@ fn a_robot_that_stands_is_pushed_by_what_comes_and_says_how_fast() {
 #[test]
 fn what_goes_away_as_fast_as_the_robot_comes_is_met_softly() {
     let meets = |speed_m_s: f64| {
-        let from = Motion {
+        let from = BodyMotion {
             pose: at(0.5, 0.0),
             velocity: Velocity {
                 m_s: [speed_m_s, 0.0],

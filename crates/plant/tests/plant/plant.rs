@@ -7,7 +7,7 @@ use std::thread;
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::{Event, Mount, Plant, Rig, Setup, State, Truth};
+use rumbo_plant::plant::{Event, Mount, Mounts, Plant, Setup, State, Truth};
 use rumbo_plant::sonar::SonarId;
 use rumbo_plant::world::{Block, Wall, World};
 
@@ -30,8 +30,8 @@ const RIGHT: Mount = Mount {
     on_servo: false,
 };
 
-fn final_rig() -> Rig {
-    Rig {
+fn final_rig() -> Mounts {
+    Mounts {
         left: Some(LEFT),
         right: Some(RIGHT),
         front: Some(FRONT),

@@ -2,7 +2,7 @@
 
 use super::Sim;
 use rumbo_plant::contact::Pose;
-use rumbo_plant::moving::{Body, Course, Motion};
+use rumbo_plant::moving::{Body, BodyMotion, Course};
 use rumbo_plant::sonar::Ping;
 use rumbo_plant::world::{ShapeError, World};
 use std::sync::{Arc, OnceLock};
@@ -14,7 +14,7 @@ impl Sim {
     }
 
     /// Where the body is, and how fast it moves.
-    pub(crate) fn motion(&self) -> Motion {
+    pub(crate) fn motion(&self) -> BodyMotion {
         self.plant.motion(&self.state)
     }
 

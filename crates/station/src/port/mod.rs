@@ -15,7 +15,7 @@ pub use error::PortError;
 pub use pty::Pty;
 pub use write::{WriteError, write_program};
 
-use rumbo_log::{Kind, Manifest};
+use rumbo_log::{LogKind, Manifest};
 pub use rumbo_session::DEFAULT_BAUD;
 use rumbo_session::{LinkNews, Target, TargetError};
 use std::io::{self, Read, Write};
@@ -155,7 +155,7 @@ impl Target for Port {
 
     fn manifest(&self) -> Manifest {
         Manifest {
-            kind: Kind::Robot,
+            kind: LogKind::Robot,
             program: "unknown".into(),
             port: Some(self.address.clone()),
             ..Manifest::default()

@@ -6,8 +6,8 @@ use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::batch::{Batch, Driver};
 use rumbo_experiment::files::{Library, Overrides};
-use rumbo_lab::run_log::Source;
-use rumbo_log::Kind;
+use rumbo_lab::run_log::RunSource;
+use rumbo_log::LogKind;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
 use rumbo_wire::Command;
@@ -20,8 +20,8 @@ fn an_episode_s_log_has_the_robot_the_goal_and_the_truth_and_is_not_run_again() 
     let setup = library.setup("mode8-random", &overrides).unwrap();
     let mut batch = Batch::new(&setup, Driver::Caller, &[4]).unwrap();
     let robot = batch.robot_mut(0).unwrap();
-    let source = Source {
-        kind: Kind::Episode,
+    let source = RunSource {
+        kind: LogKind::Episode,
         library: &library,
         overrides: &overrides,
     };
@@ -45,7 +45,7 @@ fn an_episode_s_log_has_the_robot_the_goal_and_the_truth_and_is_not_run_again() 
     written.unwrap().unwrap().unwrap();
 
     let log = log_file::read(&path).unwrap();
-    assert_eq!(log.manifest.as_ref().unwrap().kind, Kind::Episode);
+    assert_eq!(log.manifest.as_ref().unwrap().kind, LogKind::Episode);
     assert!(log.outcome.is_none() && log.cut.is_none());
     // The last one may wait for a tick that is not here any more.
     assert!((74..=75).contains(&log.rows.len()), "{}", log.rows.len());

@@ -29,7 +29,7 @@ fn manifest(folder: &Path) -> Manifest {
     rumbo_in(folder, &["run", "task.toml", "--out", "o"]);
     let log = log_file::read(&folder.join("o/task-1.mcap")).unwrap();
     Manifest {
-        kind: rumbo_log::Kind::Lab,
+        kind: rumbo_log::LogKind::Lab,
         ..log.manifest.unwrap()
     }
 }
