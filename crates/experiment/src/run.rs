@@ -113,7 +113,7 @@ impl<'a> Run<'a> {
             sims.push(sim);
             members.push(member);
         }
-        let fleet = Fleet::new(&mut sims.iter_mut().collect::<Vec<_>>()).map_err(|error| {
+        let fleet = Fleet::new(&mut sims).map_err(|error| {
             FileError::Setting(format!("scenario {}: {error}", setup.scenario.name))
         })?;
         Ok(Self {
@@ -162,8 +162,7 @@ impl<'a> Run<'a> {
     /// Advances to the end of a sample, or to where a debugger halts the program.
     pub fn advance(&mut self) {
         self.operate();
-        let mut sims: Vec<_> = self.sims.iter_mut().collect();
-        self.fleet.advance(&mut sims, self.sample_us);
+        self.fleet.advance(&mut self.sims, self.sample_us);
         self.draw_levels();
         self.sample();
     }

@@ -303,11 +303,8 @@ impl Target for SimulatedRobot {
             let ended = self.sim.verdict().map(LinkNews::Ended);
             let stands = || {
                 let mega = self.sim.mega()?;
-                let why = format!(
-                    "firmware {}: {}",
-                    mega.firmware().name(),
-                    mega.standstill()?
-                );
+                let (name, why) = (mega.firmware().name(), mega.standstill()?);
+                let why = format!("firmware {name}: {why}");
                 Some(LinkNews::Program(Level::Warning, why))
             };
             let end = ended.or_else(stands);

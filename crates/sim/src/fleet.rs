@@ -12,6 +12,7 @@ use approach::Approaches;
 use rumbo_plant::moving::{Body, Course};
 use rumbo_plant::sonar::Ping;
 use rumbo_plant::world::{Obstacle, ShapeError};
+use std::borrow::BorrowMut;
 
 /// Longest step, and the grid it keeps to [us].
 const STEP_US: u64 = 1_000;
@@ -92,7 +93,8 @@ impl Fleet {
     ///
     /// # Errors
     /// Two of them inside each other, clocks that differ, none, or too many.
-    pub fn new(robots: &mut [&mut Sim]) -> Result<Self, FleetError> {
+    pub fn new<S: BorrowMut<Sim>>(robots: &mut [S]) -> Result<Self, FleetError> {
+        let mut robots: Vec<&mut Sim> = robots.iter_mut().map(BorrowMut::borrow_mut).collect();
         let Some(now_us) = robots.first().map(|first| first.now_us()) else {
             return Err(FleetError::Empty);
         };
@@ -129,16 +131,16 @@ impl Fleet {
     }
 
     /// Advances all robots to this time [us].
-    pub fn advance(&mut self, robots: &mut [&mut Sim], until_us: u64) {
+    pub fn advance<S: BorrowMut<Sim>>(&mut self, robots: &mut [S], until_us: u64) {
         if let [only] = robots {
-            only.advance(until_us);
-            return;
+            return only.borrow_mut().advance(until_us);
         }
+        let mut robots: Vec<&mut Sim> = robots.iter_mut().map(BorrowMut::borrow_mut).collect();
         while let Some(now_us) = robots.first().map(|first| first.now_us())
             && now_us < until_us
         {
             let end_us = ((now_us / STEP_US + 1) * STEP_US).min(until_us);
-            self.meet(robots, now_us);
+            self.meet(&mut robots, now_us);
             for robot in robots.iter_mut() {
                 robot.advance(end_us);
             }

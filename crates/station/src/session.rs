@@ -178,7 +178,8 @@ impl Running {
         let wall_us = self.wall_us();
         let robots = self.robots.iter_mut();
         let stopped = robots.map(|robot| robot.driver.obey([Order::Robot(Command::Stop)], wall_us));
-        stopped.fold(Ok(()), |all, one| all.and(one))
+        // All of them, also after an error.
+        stopped.collect::<Vec<_>>().into_iter().collect()
     }
 
     fn wall_us(&self) -> u64 {

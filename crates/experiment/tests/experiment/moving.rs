@@ -92,13 +92,12 @@ struct Together {
 
 impl Together {
     fn new(mut robots: Vec<Sim>) -> Result<Self, FleetError> {
-        let fleet = Fleet::new(&mut robots.iter_mut().collect::<Vec<_>>())?;
+        let fleet = Fleet::new(&mut robots)?;
         Ok(Self { fleet, robots })
     }
 
     fn advance(&mut self, until_us: u64) {
-        let mut robots: Vec<_> = self.robots.iter_mut().collect();
-        self.fleet.advance(&mut robots, until_us);
+        self.fleet.advance(&mut self.robots, until_us);
     }
 
     fn encounters(&self, robot: usize) -> Vec<Encounter> {
