@@ -228,8 +228,8 @@ fn a_renewed_robot_is_that_of_its_seed_and_the_others_go_on() {
     batch.advance(200);
     fresh.advance(200);
     assert_eq!(
-        of_robot(batch.robots().nth(0).unwrap()),
-        of_robot(fresh.robots().nth(0).unwrap())
+        of_robot(batch.robots().next().unwrap()),
+        of_robot(fresh.robots().next().unwrap())
     );
 }
 
@@ -270,7 +270,7 @@ fn a_recorded_robot_has_the_trace_of_its_run() {
         batch.robot_mut(0).unwrap().record().unwrap();
         batch.advance(run.trace.samples.len() as u32);
         assert_eq!(
-            batch.robots().nth(0).unwrap().trace(),
+            batch.robots().next().unwrap().trace(),
             Some(&run.trace),
             "{scenario}"
         );
@@ -297,7 +297,7 @@ fn recording_changes_no_bit_of_a_driven_robot() {
             batch.robot_mut(0).unwrap().record().unwrap();
             other.advance(20);
             assert!(driven(&mut batch, 60) == driven(&mut other, 60));
-            let trace = batch.robots().nth(0).unwrap().trace().unwrap();
+            let trace = batch.robots().next().unwrap().trace().unwrap();
             assert_eq!(trace.samples.len(), 650);
             assert!((trace.samples[0].t_s - 0.54).abs() < 1e-9);
         });
