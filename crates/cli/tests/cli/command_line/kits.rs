@@ -808,59 +808,58 @@ fn a_new_robot_has_line_sensors_buttons_and_lights_by_names_of_its_own() {
         return;
     };
     let pins = "left_enable=5,left_forward=7,left_backward=8,right_enable=6,right_forward=11,right_backward=9,\
-                line_left=2,line_middle=4,line_right=A0,line_dark=low";
-    let made = rumbo(
-        &bench,
-        &[
-            "new",
-            "robot",
-            "car",
-            "--board",
-            "uno",
-            "--driver",
-            "l298n",
-            "--pins",
-            pins,
-            "--parts",
-            "start=button:12,lamp=led:13",
-        ],
-    );
-    assert!(made.status.success(), "{}", stderr(&made));
-    let sketch = "
-void setup() { for (int pin : {5, 6, 7, 11, 13}) pinMode(pin, OUTPUT); pinMode(12, INPUT_PULLUP); while (digitalRead(12)) ; }
-void loop() {
-  bool left = !digitalRead(2), right = !digitalRead(A0);
-  digitalWrite(13, !digitalRead(4));
-  digitalWrite(7, HIGH); digitalWrite(11, HIGH);
+                line_left=2,line_middle=4,line_right=A0,";
+    // A level, or the time for which a charged pin stays high.
+    for (kind, is_dark) in [
+        ("line_dark=low", "!digitalRead(pin)"),
+        ("line_rc=true", "lasts_us(pin) > 1000"),
+    ] {
+        let made = rumbo(
+            &bench,
+            &[
+                "new",
+                "robot",
+                "car",
+                "--board",
+                "uno",
+                "--driver",
+                "l298n",
+                "--pins",
+                &format!("{pins}{kind}"),
+                "--parts",
+                "start=button:12,lamp=led:13",
+            ],
+        );
+        assert!(made.status.success(), "{}", stderr(&made));
+        let sketch = format!(
+            "
+int lasts_us(byte pin) {{
+  pinMode(pin, OUTPUT); digitalWrite(pin, HIGH); delayMicroseconds(10); pinMode(pin, INPUT);
+  unsigned long begin = micros();
+  while (digitalRead(pin) && micros() - begin < 2500) ;
+  return micros() - begin;
+}}
+bool dark(byte pin) {{ return {is_dark}; }}
+void setup() {{ DDRD |= 0xE0; DDRB |= 0x28; pinMode(12, INPUT_PULLUP); while (digitalRead(12)) ; }}
+void loop() {{
+  bool left = dark(2), right = dark(A0);
+  digitalWrite(13, dark(4)); digitalWrite(7, HIGH); digitalWrite(11, HIGH);
   analogWrite(5, left ? 0 : 90); analogWrite(6, right ? 0 : 90);
-}"
-    .replace("for (int pin : {5, 6, 7, 11, 13}) pinMode(pin, OUTPUT);", "DDRD |= 0xE0; DDRB |= 0x28;");
-    std::fs::write(bench.join("car.ino"), sketch).unwrap();
-    let args = [
-        "run",
-        "free",
-        "--robot",
-        "car.toml",
-        "--world",
-        "line_loop",
-        "--sketch",
-        "car.ino",
-    ];
-    let run = rumbo(
-        &bench,
-        &[
-            &args[..],
-            &["--press", "start@0.5", "--json", "--no-record"],
-        ]
-        .concat(),
-    );
-    let result: serde_json::Value =
-        serde_json::from_str(&stdout(&run)).unwrap_or_else(|_| panic!("{}", stderr(&run)));
-    let metric = |name: &str| result["metrics"][name].as_f64().unwrap();
-    assert!(
-        metric("line_way_m") > 0.5 && metric("line_rms_m") < 0.02,
-        "{result}"
-    );
+}}"
+        );
+        std::fs::write(bench.join("car.ino"), sketch).unwrap();
+        let args = "run free --robot car.toml --world line_loop --sketch car.ino --press start@0.5 --json --no-record";
+        let args: Vec<&str> = args.split(' ').collect();
+        let run = rumbo(&bench, &args);
+        let result: serde_json::Value =
+            serde_json::from_str(&stdout(&run)).unwrap_or_else(|_| panic!("{}", stderr(&run)));
+        let metric = |name: &str| result["metrics"][name].as_f64().unwrap();
+        assert!(
+            metric("line_way_m") > 0.5 && metric("line_rms_m") < 0.02,
+            "{kind} {result}"
+        );
+        std::fs::remove_file(bench.join("car.toml")).unwrap();
+    }
     let unknown = rumbo(&bench, &["new", "robot", "other", "--pins", "lines=2"]);
     assert!(
         stderr(&unknown).contains("with a name of yours line_NAME"),
