@@ -731,6 +731,59 @@ void loop() {
 }
 
 #[test]
+fn a_follower_is_calibrated_by_hand_over_its_line_and_put_on_it() {
+    let Some(bench) = bench("by_hand") else {
+        return;
+    };
+    let sketch = "
+int low[2] = {1023, 1023}, high[2] = {0, 0};
+int share(byte i) { return constrain(map(analogRead(A0 + 2 * i), low[i], high[i], 0, 100), 0, 100); }
+void setup() {
+  DDRD |= 0xE8; DDRB |= 1;
+  while (millis() < 2500)
+    for (byte i = 0; i < 2; i++) {
+      int now = analogRead(A0 + 2 * i);
+      low[i] = min(low[i], now); high[i] = max(high[i], now);
+    }
+  while (high[0] - low[0] < 400 || high[1] - low[1] < 400) ;
+  digitalWrite(3, HIGH); digitalWrite(7, HIGH); digitalWrite(8, HIGH);
+}
+void loop() {
+  int turn = share(1) - share(0);
+  analogWrite(6, constrain(85 - turn, 0, 160)); analogWrite(5, constrain(85 + turn, 0, 160));
+}";
+    std::fs::write(bench.join("car.ino"), sketch).unwrap();
+    let head =
+        "title = \"By hand\"\nrobot = \"kit_elegoo_v4\"\nworld = \"line_loop\"\nduration_s = 8\n";
+    let hand = "[[command]]\nat_s = 0.5\nplace = [0.2, 0.12]\n[[command]]\nat_s = 1\nplace = [0.2, 0.08]\n\
+                [[command]]\nat_s = 2\nplace = [0.3, 0.1, 10]\n";
+    let ways = |scenario: String, more: &[&str]| {
+        std::fs::write(bench.join("floor.toml"), scenario).unwrap();
+        let run = drive(&bench, &[&["--json"], more].concat());
+        let result: serde_json::Value =
+            serde_json::from_str(&stdout(&run)).unwrap_or_else(|_| panic!("{}", stderr(&run)));
+        let metric = |name: &str| result["metrics"][name].as_f64().unwrap_or(0.0);
+        [metric("line_way_m"), metric("line_lost_share")]
+    };
+    let own = ways(head.to_owned(), &[]);
+    assert!(own[0] < 0.2, "nobody has calibrated it: {own:?}");
+    let by_scenario = ways(head.to_owned() + hand, &[]);
+    assert!(
+        by_scenario[0] > 0.5 && by_scenario[1] == 0.0,
+        "{by_scenario:?}"
+    );
+    let options = "--place 0.2,0.12@0.5 --place 0.2,0.08@1 --place 0.3,0.1,10@2";
+    let options: Vec<&str> = options.split(' ').collect();
+    assert_eq!(ways(head.to_owned(), &options), by_scenario);
+    let wrong = rumbo(&bench, &["run", "free", "--place", "0.2@3"]);
+    assert!(
+        stderr(&wrong).contains("X,Y,DEG@SECONDS"),
+        "{}",
+        stderr(&wrong)
+    );
+}
+
+#[test]
 fn the_model_line_follower_goes_once_around_within_1_cm_of_the_line_with_every_drawn_robot() {
     let Some(bench) = bench("line_model") else {
         return;
