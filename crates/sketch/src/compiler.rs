@@ -7,6 +7,7 @@ use crate::error::SketchError;
 use crate::examples::example;
 use crate::headers::{Found, MISSING, Search, mentioned};
 use crate::layout::Layout;
+use crate::libraries::read;
 use crate::limits::Limits;
 use crate::options::{C, CPP, DEBUG, Options, RUN};
 use crate::preprocess;
@@ -391,8 +392,4 @@ fn files_of(folder: &Path) -> Result<Vec<PathBuf>, SketchError> {
         .collect();
     files.sort();
     Ok(files)
-}
-
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>, SketchError> {
-    fs::read(path).map_err(|error| SketchError::file(path, error))
 }

@@ -5,10 +5,9 @@
 //! mentions, which is more, and runs no compiler.
 
 use crate::build::{Build, SKETCH};
-use crate::compiler::read;
 use crate::error::SketchError;
 use crate::layout::Layout;
-use crate::libraries::{Library, spelled};
+use crate::libraries::{Library, read, spelled};
 use crate::preprocess;
 use crate::source::Source;
 use crate::toolchain::Toolchain;

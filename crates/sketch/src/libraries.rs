@@ -40,6 +40,11 @@ impl Library {
     }
 }
 
+/// A file of a library or of the core.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, SketchError> {
+    fs::read(path).map_err(|error| SketchError::file(path, error))
+}
+
 /// The library in one of these folders that has a header; `None` if there is none.
 pub(crate) fn find(folders: &[PathBuf], header: &str) -> Result<Option<Library>, SketchError> {
     if !is_header(header) {

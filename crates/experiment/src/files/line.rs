@@ -114,7 +114,7 @@ fn read_reading(table: &Table<'_, '_>, analogue: bool) -> Reading {
                 "rc",
                 rc.line,
                 "true",
-                "and analogue = true: a sensor gives a time or a voltage",
+                "or analogue = true: a sensor gives a time or a voltage",
             );
             Reading::Discharge
         }
