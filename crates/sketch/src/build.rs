@@ -20,7 +20,7 @@ use crate::source::ending;
 use crate::toolchain::Toolchain;
 use std::ffi::OsString;
 use std::fs;
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -218,6 +218,14 @@ impl<'a> Build<'a> {
         more: &[&Path],
     ) -> Result<(), SketchError> {
         let product = Path::new(OUT).join(makes);
+        // That of the same step before.
+        let path = self.folder.path().join(&product);
+        fs::remove_file(&path)
+            .or_else(|error| match error.kind() {
+                ErrorKind::NotFound => Ok(()),
+                _ => Err(error),
+            })
+            .map_err(|error| SketchError::file(&path, error))?;
         let task = Task {
             build: self.folder.path(),
             inner: SKETCH,

@@ -139,13 +139,15 @@ pub(super) fn put(text: &str) -> Result<TimedText, Failure> {
     let TimedText { at_s, text, .. } = timed_text(text).map_err(|_| wrong())?;
     let numbers = text.split(',').map(|number| number.trim().parse());
     let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().map_err(|_| wrong())?;
-    let is_far = |m: &f64| !(m.abs() <= FARTHEST_M);
-    match numbers[..] {
-        [x_m, y_m] if ![x_m, y_m].iter().any(is_far) => Ok(placed([x_m, y_m, 0.0], at_s)),
-        [x_m, y_m, deg] if ![x_m, y_m].iter().any(is_far) && deg.abs() <= 180.0 => {
-            Ok(placed([x_m, y_m, deg], at_s))
-        }
-        _ => Err(wrong()),
+    let is_near = |m: &f64| m.abs() <= FARTHEST_M;
+    let (x_m, y_m, deg) = match numbers[..] {
+        [x_m, y_m] => (x_m, y_m, 0.0),
+        [x_m, y_m, deg] => (x_m, y_m, deg),
+        _ => return Err(wrong()),
+    };
+    match [x_m, y_m].iter().all(is_near) && (-180.0..=180.0).contains(&deg) {
+        true => Ok(placed([x_m, y_m, deg], at_s)),
+        false => Err(wrong()),
     }
 }
 
