@@ -57,8 +57,8 @@ impl Mega {
             }
             // digitalRead() works on the pin of an analogue one too.
             let level = sensor.level(darkness, level_before);
-            let is_own = sensor.reading != Reading::Discharge;
-            if is_own && (level != level_before || before.is_nan()) {
+            let gives_level = sensor.reading != Reading::Discharge;
+            if gives_level && (level != level_before || before.is_nan()) {
                 self.put(cycle, firmware.board().pin(sensor.pin), level);
             }
             self.floor[index] = (darkness, level);
