@@ -20,7 +20,7 @@ use crate::source::ending;
 use crate::toolchain::Toolchain;
 use std::ffi::OsString;
 use std::fs;
-use std::io::{ErrorKind, Read, Write};
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -220,12 +220,9 @@ impl<'a> Build<'a> {
         let product = Path::new(OUT).join(makes);
         // That of the same step before.
         let path = self.folder.path().join(&product);
-        fs::remove_file(&path)
-            .or_else(|error| match error.kind() {
-                ErrorKind::NotFound => Ok(()),
-                _ => Err(error),
-            })
-            .map_err(|error| SketchError::file(&path, error))?;
+        if path.symlink_metadata().is_ok() {
+            fs::remove_file(&path).map_err(|error| SketchError::file(&path, error))?;
+        }
         let task = Task {
             build: self.folder.path(),
             inner: SKETCH,
