@@ -139,7 +139,7 @@ impl SimulatedRobot {
 /// a hand does.
 pub fn type_to(sim: &mut Sim, usart: u8, bytes: &[u8]) -> bool {
     if usart == HAND {
-        hand::act(sim, bytes);
+        rumbo_experiment::hand::act(sim, bytes);
         return true;
     }
     let Some(mega) = sim.mega_mut() else {
