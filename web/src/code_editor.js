@@ -61,7 +61,8 @@ const THEME = cm.EditorView.theme({
   '.breakpoint': { color: 'var(--bad)' },
   // Its own marks are images, which the page may not load.
   '.cm-lintRange-error': { backgroundImage: 'none', textDecoration: 'underline wavy var(--bad)' },
-  '.cm-lint-marker-error': { content: '"▲"', color: 'var(--bad)', fontSize: '11px' },
+  '.cm-lint-marker-error': { content: 'normal' },
+  '.cm-lint-marker-error::before': { content: '"▲"', color: 'var(--bad)', fontSize: '11px' },
   '.stands': { backgroundColor: 'color-mix(in srgb, var(--warning) 32%, transparent) !important' },
   '.cm-panels, .cm-tooltip': { backgroundColor: 'var(--panel)', color: 'var(--text)', border: '1px solid var(--line)' },
   '.cm-textfield, .cm-button': { backgroundColor: 'var(--field)', backgroundImage: 'none', color: 'inherit', border: '1px solid var(--edge)' },
