@@ -6,7 +6,7 @@
 import { Debugger } from './debugger.js';
 import { saveFile } from './dialog.js';
 import { create, element, setText } from './dom.js';
-import { placeOf, sameFiles } from './source.js';
+import { placeOf, plainName, sameFiles } from './source.js';
 import { said, t } from './text.js';
 import { isSite } from './worker_link.js';
 
@@ -123,7 +123,7 @@ export class CodePanel {
       if (sketch.examples.includes('wall')) this.#ask('wall');
       return;
     }
-    this.#name = sketch.name;
+    this.#name = plainName(sketch.name);
     this.#served = sketch.files;
     this.#examples.value = sketch.examples.includes(sketch.name) && sketch.name !== this.#program?.name ? sketch.name : '';
     const draft = stored(sketch.name);
@@ -211,14 +211,14 @@ export class CodePanel {
     this.#shown = shown;
     this.#problems(state.program);
     // Its file was saved, or another one dropped.
-    if (phase !== 'compiling' && !this.#differs && (watched || name.replace(/\.ino$/, '') !== this.#name)) this.#ask();
+    if (phase !== 'compiling' && !this.#differs && (watched || plainName(name) !== this.#name)) this.#ask();
   }
 
   /** @param {NonNullable<State['program']>} program */
   #problems({ name, complaints }) {
     /** @type {Map<string, import('./code_editor.js').Problem[]>} */
     const problems = new Map();
-    for (const { place, text } of (name.replace(/\.ino$/, '') === this.#name && complaints) || []) {
+    for (const { place, text } of (plainName(name) === this.#name && complaints) || []) {
       const at = placeOf(place);
       if (at) problems.set(at.file, [...problems.get(at.file) ?? [], { line: at.line, column: at.column, text: said(text) }]);
     }

@@ -10,6 +10,9 @@ export function placeOf(place) {
   return file === '' ? null : { file, line: Number(line), column: column ? Number(column) : null };
 }
 
+/** A sketch's name as the lab takes it. @param {string} name */
+export const plainName = (name) => name.replace(/^example:|\.ino$/g, '').replace(/^\.|[^A-Za-z0-9_. -]/g, '_');
+
 /** The same files with the same texts. @param {SketchFile[]} one @param {SketchFile[]} other */
 export function sameFiles(one, other) {
   const sorted = (/** @type {SketchFile[]} */ files) => JSON.stringify(files.map(({ name, text }) => [name, text]).sort());

@@ -2,12 +2,16 @@
 /** What the code pane and the debugger do without a page. */
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Requests, placeOf, sameFiles } from '../src/source.js';
+import { Requests, placeOf, plainName, sameFiles } from '../src/source.js';
 
 test('a place in a file has its line, and perhaps a column; what is none leads nowhere', () => {
   assert.deepEqual(placeOf('src/my wall.ino:12:7'), { file: 'src/my wall.ino', line: 12, column: 7 });
   assert.deepEqual(placeOf('wall.ino:12'), { file: 'wall.ino', line: 12, column: null });
   assert.deepEqual([placeOf('wall.ino'), placeOf(null)], [null, null]);
+});
+
+test('a name is one that the lab takes', () => {
+  assert.deepEqual(['example:wall', 'mine.ino', 'año 2'].map(plainName), ['wall', 'mine', 'a_o 2']);
 });
 
 test('files are the same in any order, and differ by a character or a name', () => {
