@@ -118,6 +118,19 @@ impl Compiler {
         Self::with(board, RUN, toolchain, sandbox, cache)
     }
 
+    /// The same for a debugger, as [`image_to_debug`].
+    ///
+    /// # Errors
+    /// As [`Compiler::new`].
+    pub fn to_debug(
+        board: Board,
+        toolchain: Toolchain,
+        sandbox: Sandbox,
+        cache: PathBuf,
+    ) -> Result<Self, SketchError> {
+        Self::with(board, DEBUG, toolchain, sandbox, cache)
+    }
+
     fn with(
         board: Board,
         options: Options,

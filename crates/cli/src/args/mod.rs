@@ -50,7 +50,7 @@ pub(crate) struct Cli {
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Drive a simulated robot from a dashboard in the browser
+    /// Drive a simulated robot from a dashboard in the browser, which also edits, runs and debugs its sketch
     Lab(LabArgs),
     /// Drive a real robot from the same dashboard, over a serial port or TCP
     Connect(ConnectArgs),
