@@ -15,6 +15,7 @@ const KEYS = () => [
   [t('+ − 0, arrow keys'), t('in the map: zoom, fit, move, and Enter picks the point in the middle; in the plots: zoom and move in time')],
   [t('fingers'), t('map and plots: one moves, two zoom')],
   [t('K , .'), t('replay: play or pause, one frame back, one frame on')],
+  ['F8, F9, F10', t('code: go on or pause, breakpoint, step over; Ctrl+Enter runs it, Escape and then Tab leaves it')],
   ['? , F1', t('this page')],
 ];
 

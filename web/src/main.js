@@ -7,6 +7,7 @@
 import { Alarm } from './alarm.js';
 import { CalibrationDialog } from './calibration_dialog.js';
 import { CheckupDialog } from './checkup_dialog.js';
+import { CodePanel } from './code_panel.js';
 import { Consoles } from './consoles.js';
 import { create, element, onFrame, setText } from './dom.js';
 import { makeEnlargeable } from './enlarge.js';
@@ -168,6 +169,7 @@ const panel = new CommandPanel(send, map);
 const experiment = new ExperimentPanel(send);
 const lessons = new Lessons(send);
 const editor = new WorldEditor(send, map);
+const code = new CodePanel(send, (t_s) => timeline.lookAt(t_s ?? Infinity));
 const machine = new Machine(store);
 const law = new LawPanel(send, store);
 const meter = new LinkMeter();
@@ -322,6 +324,7 @@ function receive(message) {
       if (simulated && !isEmbedded && !isOwn(state) && !state.replay && !document.body.classList.contains('viewer')) tour.offer();
       tour.show(state);
       program.show(state);
+      code.show(state, message.run);
       parts.show(state.program?.parts ?? [], (signal) => store.readings.truth.columns.get(signal)?.at(-1) ?? null);
       profile.show(state);
       document.body.classList.toggle('own', isOwn(state));
@@ -383,6 +386,12 @@ function receive(message) {
       break;
     case 'world':
       editor.receive(message);
+      break;
+    case 'sketch':
+      code.receive(message);
+      break;
+    case 'debug':
+      code.debugger.receive(message.messages);
       break;
     case 'control':
       seat.show(message);

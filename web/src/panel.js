@@ -55,7 +55,8 @@ export class CommandPanel {
     // Space stops, wherever the focus is, before any other effect there. Only in a text field it is a space.
     for (const type of /** @type {const} */ (['keydown', 'keyup'])) {
       addEventListener(type, (event) => {
-        const typing = event.target instanceof HTMLTextAreaElement || (event.target instanceof HTMLInputElement && event.target.type === 'text' && event.target.inputMode !== 'decimal');
+        const typing = event.target instanceof HTMLTextAreaElement || (event.target instanceof HTMLInputElement && event.target.type === 'text' && event.target.inputMode !== 'decimal')
+          || (event.composedPath()[0] instanceof HTMLElement && /** @type {HTMLElement} */ (event.composedPath()[0]).isContentEditable);
         if (event.code !== 'Space' || typing) return;
         event.preventDefault();
         event.stopPropagation();

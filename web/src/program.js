@@ -2,7 +2,7 @@
 /** The student's own program: its name, whether it runs, and what the compiler rejects. */
 import { fileButton } from './dialog.js';
 import { create, element, setText } from './dom.js';
-import { t } from './text.js';
+import { said, t } from './text.js';
 import { isSite } from './worker_link.js';
 
 /** @typedef {import('./types.js').State} State */
@@ -13,6 +13,7 @@ export const isOwn = (state) => Boolean(state.simulated && state.robot.text);
 /** What the program does, and how good that is. @param {State} state @returns {[string, 'good' | 'warning']} */
 export function phaseWords({ program }) {
   if (program?.phase === 'compiling') return [t('compiling…'), 'warning'];
+  if (program?.held?.stands) return [t('stands: time stands still'), 'warning'];
   return program?.phase === 'rejected' ? [t('does not compile'), 'warning'] : [t('program runs'), 'good'];
 }
 
@@ -94,6 +95,6 @@ export class ProgramPanel {
     this.#shown = all;
     this.#list.hidden = complaints.length === 0;
     this.#list.replaceChildren(...complaints.map(({ place, text, line }) => create('li', {},
-      create('b', { textContent: place ?? '' }), ` ${text}`, line === null ? '' : create('code', { textContent: line }))));
+      place !== null && !isSite ? create('button', { type: 'button', className: 'link', value: place, textContent: place }) : create('b', { textContent: place ?? '' }), ` ${said(text)}`, line === null ? '' : create('code', { textContent: line }))));
   }
 }

@@ -31,7 +31,7 @@ export class Seat {
 }
 
 /** What a page may send without control. */
-const FREE = ['stop', 'take_control', 'release_control'];
+const FREE = ['stop', 'take_control', 'release_control', 'sketch'];
 /** How long the refusal is shown [ms]. */
 const SHOWN_MS = 2_500;
 

@@ -5,6 +5,7 @@
  *
  * `{}` in a text stands for a value. The part after a bar, as in `off|motor`, separates meanings of one English word.
  */
+import { CODE } from './spanish/code.js';
 import { FILES } from './spanish/files.js';
 import { GUIDE } from './spanish/guide.js';
 import { PAGE } from './spanish/page.js';
@@ -14,7 +15,7 @@ import { ROBOT, UNDERSCORED } from './spanish/robot.js';
 import { SCENARIOS } from './spanish/scenarios.js';
 
 /** Every text with its Spanish. @type {Record<string, string>} */
-export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...PROGRAM, ...SCENARIOS, ...GUIDE, ...FILES };
+export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...PROGRAM, ...SCENARIOS, ...GUIDE, ...FILES, ...CODE };
 
 /** The languages, by the code that browsers have for them. */
 export const LANGUAGES = /** @type {const} */ ({ en: 'English', es: 'Español' });

@@ -16,16 +16,16 @@ export class Timeline {
   constructor(store, redraw) {
     this.#store = store;
     this.#redraw = redraw;
-    this.#range.addEventListener('input', () => this.#look(this.#range.value === this.#range.max ? Infinity : this.#range.valueAsNumber));
+    this.#range.addEventListener('input', () => this.lookAt(this.#range.value === this.#range.max ? Infinity : this.#range.valueAsNumber));
   }
 
   /** Back to the newest. */
   follow() {
-    this.#look(Infinity);
+    this.lookAt(Infinity);
   }
 
-  /** @param {number} at_s */
-  #look(at_s) {
+  /** Shows the map, the numbers and the state of then; infinite: the newest. @param {number} at_s */
+  lookAt(at_s) {
     this.at_s = this.#store.playhead_s = at_s;
     document.body.classList.toggle('looking-back', at_s !== Infinity);
     this.#redraw();

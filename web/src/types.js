@@ -93,7 +93,7 @@
  * @property {{number: number} & ({phase: 'running', since_s: number} | {phase: 'done', findings: Findings} | {phase: 'failed', why: string})} [calibration]
  * @property {Experiment} [experiment] The scenario that commands the robot, or has done so in this run.
  * @property {boolean} [motors_cut] STOP or OFF cut the supply of the motors of a program that may ignore them.
- * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', watched: boolean, parts?: Part[], complaints?: {place: string | null, text: string, line: string | null}[], profile?: Profile}} [program] Of an emulated robot; what the compiler rejects of it; where its time goes, while that is counted.
+ * @property {{name: string, link_usart: number | null, phase: 'running' | 'compiling' | 'rejected', watched: boolean, parts?: Part[], complaints?: {place: string | null, text: string, line: string | null}[], profile?: Profile, held?: HeldState}} [program] Of an emulated robot; what the compiler rejects of it; where its time goes, while that is counted.
  * @property {{name: string, duration_s: number}} [replay] A log is shown; t_s is where.
  * @property {{connected: boolean, telemetry_hz: number, down_load: number, up_load: number, baud: number, round_trip_ms: number | null,
  *   crc_errors_down: number, crc_errors_up: number, frames_lost: number, dropped: number, unacknowledged: number,
@@ -123,6 +123,10 @@
  * @typedef {{ticket: number, model: import('./world_shapes.js').World | null, toml: string, problem: string | null, driven: boolean}} EditedWorld A world to edit: what its file holds, its text, what is wrong with it.
  *
  * @typedef {{name: string, kind: 'button' | 'switch' | 'potentiometer' | 'led' | 'buzzer' | 'infrared' | 'mpu6050' | 'ssd1306' | 'hd44780', percent: number, address?: number, keys?: string[]}} Part Something at a pin of an emulated robot, or at an address of its two-wire bus.
+ * @typedef {{stands: boolean, t_us: number, back_us: number}} HeldState A program in the hands of the debugger, where in its time it is, and how far back.
+ * @typedef {{name: string, text: string}} SketchFile
+ * @typedef {{ticket: number, name: string, files: SketchFile[], examples: string[]}} ShownSketch The source of a program.
+ * @typedef {{type: 'response' | 'event', event?: string, request_seq?: number, success?: boolean, message?: string, body?: any}} DebugMessage Of the Debug Adapter Protocol.
  * @typedef {{usart: number, text: string}} ConsoleText Output of a USART of an emulated chip.
  *
  * @typedef {{type: 'hello', version: string, columns: string[], modes: ModeEntry[], robots?: string[], robot: number}
@@ -135,6 +139,8 @@
  *   | {type: 'bytes', bytes: LinkBytes[]}
  *   | {type: 'consoles', run: number, said: ConsoleText[]}
  *   | ({type: 'world'} & EditedWorld)
+ *   | ({type: 'sketch'} & ShownSketch)
+ *   | {type: 'debug', messages: DebugMessage[]}
  *   | {type: 'control', seat: Seat, page: number, holder: number | null, pages: number}
  *   | {type: 'error', text: string}} FromServer
  *
@@ -154,6 +160,9 @@
  *   | {type: 'rig', rig: string}
  *   | {type: 'set_param', id: number, value: number}
  *   | {type: 'program', name: string, data: string}
+ *   | {type: 'program', name: string, files: SketchFile[], debug: boolean}
+ *   | {type: 'sketch', ticket: number, example?: string}
+ *   | {type: 'debug', request: object}
  *   | {type: 'profile', on: boolean}
  *   | {type: 'world', ticket: number, act: 'show' | 'check' | 'drive', text: string}
  *   | {type: 'type', usart: number, text: string, ending: string}

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { test } from 'node:test';
+import { CODE } from '../src/spanish/code.js';
 import { FILES } from '../src/spanish/files.js';
 import { GUIDE } from '../src/spanish/guide.js';
 import { PAGE } from '../src/spanish/page.js';
@@ -11,7 +12,7 @@ import { PROGRAM } from '../src/spanish/program.js';
 import { ROBOT } from '../src/spanish/robot.js';
 import { SCENARIOS } from '../src/spanish/scenarios.js';
 
-const TABLES = [PAGE, ROBOT, PROGRAM, PARAMETERS, SCENARIOS, GUIDE, FILES];
+const TABLES = [PAGE, ROBOT, PROGRAM, PARAMETERS, SCENARIOS, GUIDE, FILES, CODE];
 /** @type {Record<string, string>} */
 const SPANISH = Object.assign({}, ...TABLES);
 

@@ -98,6 +98,7 @@ pub(crate) fn is_by_hand(order: &Order) -> bool {
             | Order::ReleaseControl
             | Order::RestartGhost
             | Order::Profile(_)
+            | Order::Sketch(..)
             | Order::World(WorldOrder {
                 act: WorldAct::Show | WorldAct::Check,
                 ..

@@ -44,11 +44,12 @@ fn simulated(args: &mut LabArgs) -> Result<SimulatedRobot, Failure> {
     let robot = args.setting.robot.as_deref();
     args.image.compile(robot, Some(&args.scenario))?;
     let mut robot = SimulatedRobot::new(overrides(args), choice(args, &args.scenario))?;
-    robot.make_dropped_by(workshop::make_dropped);
+    robot.take_sketches(workshop::SKETCHES);
     if let (Some(given), Some(board)) = (args.image.given(), robot.chip_board()) {
         let watch = |path| Workshop::watch(path, board).map(|it| Box::new(it) as _);
         let workshop = args.image.watched().map(watch).transpose();
-        robot.own_program(OwnProgram::new(&given, workshop.map_err(Failure::input)?));
+        let program = OwnProgram::new(&given, workshop.map_err(Failure::input)?);
+        robot.own_program(program.from_source(move || workshop::files(&given)));
     }
     if let Some(port) = args.gdb {
         robot.debug(debugging(port, args)?);

@@ -25,6 +25,7 @@ mod ghost;
 mod grade;
 mod identify;
 mod import;
+mod in_hand;
 mod interrupt;
 mod junit;
 mod lab;

@@ -32,6 +32,7 @@ fn typed(manifest: &Manifest) -> Vec<TimedText> {
     let mut texts = lines(&manifest.texts, Port::Link);
     texts.extend(lines(&manifest.usb_texts, Port::Usb));
     let parts = lines(&manifest.part_texts, Port::Parts).into_iter();
+    let parts = parts.chain(lines(&manifest.hand_texts, Port::Hand));
     texts.extend(parts.map(|text| TimedText {
         ending: LineEnding::None,
         ..text
@@ -56,6 +57,7 @@ fn check_ranges(log: &Path, manifest: &Manifest) -> Result<(), Failure> {
         ("texts", &manifest.texts),
         ("usb_texts", &manifest.usb_texts),
         ("part_texts", &manifest.part_texts),
+        ("hand_texts", &manifest.hand_texts),
     ] {
         if texts.len() > MOST_TEXTS {
             let range = format!("at most {MOST_TEXTS} lines");

@@ -25,7 +25,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let texts = args.commands.iter().chain(&args.usb).cloned();
     let texts = texts.map(|text| TimedText { ending, ..text });
     let overrides = Overrides {
-        texts: texts.chain(args.press.iter().flatten().cloned()).collect(),
+        texts: texts
+            .chain(args.press.iter().flatten().chain(&args.place).cloned())
+            .collect(),
         ..args
             .setting
             .overrides(args.program, &args.image, &args.parameters)

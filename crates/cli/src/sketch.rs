@@ -85,15 +85,19 @@ pub(crate) fn compiler(board: &Board) -> Result<Compiler, SketchError> {
     Compiler::trusting(target(board), libraries())
 }
 
-/// A compiler for sketches of others, in the sandbox.
-pub(crate) fn walled_compiler(board: &Board) -> Result<Compiler, SketchError> {
+/// A compiler for sketches of others, in the sandbox; for a debugger or to run.
+pub(crate) fn walled_compiler(board: &Board, debug: bool) -> Result<Compiler, SketchError> {
     let toolchain = Toolchain::find()?;
     let limits = Limits {
         time: DROPPED,
         ..Limits::default()
     };
     let sandbox = Sandbox::walled(&toolchain, limits)?;
-    Compiler::new(target(board), toolchain, sandbox, cache())
+    let compiler = match debug {
+        true => Compiler::to_debug,
+        false => Compiler::new,
+    };
+    compiler(target(board), toolchain, sandbox, cache())
 }
 
 /// Keeps an image that was given as bytes beside the compiled sketches, by its checksum.

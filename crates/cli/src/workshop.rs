@@ -4,12 +4,15 @@
 //! The files are read and compared, not their times or the system's notices: an editor may write in place, or a new file
 //! that it renames, and a file saved without a change changes nothing.
 
+use crate::in_hand::attach;
 use crate::sketch;
-use rumbo_lab::{Made, problem};
+use rumbo_lab::{Made, Sketches, problem};
 use rumbo_log::Complaint;
-use rumbo_session::TargetError;
+use rumbo_session::{GivenProgram, TargetError};
 use rumbo_sim::boards::Board;
-use rumbo_sketch::{Compiler, Diagnostic, Given, SketchError, Source, given};
+use rumbo_sketch::{
+    Compiler, Diagnostic, EXAMPLE, Given, SketchError, Source, example, examples, given,
+};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -82,14 +85,31 @@ impl rumbo_lab::Workshop for Workshop {
     }
 }
 
-/// Compiles a sketch of somebody else's once, in the sandbox, or keeps an image; by the name of its file.
-pub(crate) fn make_dropped(
-    board: Option<&'static Board>,
-    name: String,
-    content: Vec<u8>,
+/// What the lab knows of sketches.
+pub(crate) const SKETCHES: Sketches = Sketches {
+    make: make_given,
+    examples: || examples().into_iter().map(|(name, _)| name).collect(),
+    example: |name| Some(example(name).ok()?.files.into_iter().collect()),
+};
+
+/// The files of a user's sketch as they are now; none of an image.
+pub(crate) fn files(name: &str) -> Vec<(String, Vec<u8>)> {
+    let source = match name.strip_prefix(EXAMPLE) {
+        Some(name) => example(name).ok(),
+        None => match given(Path::new(name), true) {
+            Ok(Given::Sketch(source)) => Some(source),
+            _ => None,
+        },
+    };
+    source.map_or_else(Vec::new, |source| source.files.into_iter().collect())
+}
+
+/// Compiles a sketch of somebody else's once, in the sandbox, or keeps an image; by the names of its files.
+fn make_given(
+    board: &'static Board,
+    program: GivenProgram,
 ) -> Result<Box<dyn rumbo_lab::Workshop>, TargetError> {
-    let board = board.ok_or(TargetError::NoChip)?;
-    match Workshop::once(move || dropped(board, &name, content)) {
+    match Workshop::once(move || given_by_page(board, program)) {
         Ok(workshop) => Ok(Box::new(workshop)),
         Err(error) => Err(TargetError::Setup(error.to_string())),
     }
@@ -146,23 +166,40 @@ fn make(contents: &Contents, board: &Board, compiler: &mut Option<Compiler>) -> 
     }
 }
 
-fn dropped(board: &Board, name: &str, content: Vec<u8>) -> Made {
-    let made = match Path::new(name).extension().and_then(|kind| kind.to_str()) {
-        Some(kind @ ("elf" | "hex")) => sketch::keep_image(&content, kind).map(Made::Image),
+fn given_by_page(board: &Board, program: GivenProgram) -> Made {
+    let kind = |name: &str| {
+        let kind = Path::new(name).extension().and_then(|kind| kind.to_str());
+        kind.filter(|kind| matches!(*kind, "elf" | "hex"))
+            .map(str::to_owned)
+    };
+    let made = match &program.files[..] {
+        [(name, content)] if kind(name).is_some() => {
+            sketch::keep_image(content, &kind(name).unwrap_or_default()).map(Made::Image)
+        }
         _ => {
-            let stem = Path::new(name).file_stem().unwrap_or_default();
+            let stem = Path::new(&program.name).file_stem().unwrap_or_default();
             let source = Source {
                 name: stem.to_string_lossy().into_owned(),
-                files: [(name.to_owned(), content)].into(),
+                files: program.files.into_iter().collect(),
             };
-            let compiled = sketch::walled_compiler(board);
+            let compiled = sketch::walled_compiler(board, program.debug);
             match compiled.and_then(|compiler| compiler.compile(&source, &[])) {
                 Err(error) => Ok(rejected(error, &source)),
+                Ok(image) if program.debug => in_hand(image.path, &source),
                 Ok(image) => Ok(Made::Image(image.path)),
             }
         }
     };
     made.unwrap_or_else(|error: std::io::Error| Made::Rejected(vec![problem(error.to_string())]))
+}
+
+/// An image with its debugger.
+fn in_hand(image: PathBuf, source: &Source) -> std::io::Result<Made> {
+    let files: Vec<String> = source.files.keys().cloned().collect();
+    Ok(match attach(&std::fs::read(&image)?, &files) {
+        Ok(attach) => Made::Debugged(image, attach),
+        Err(error) => Made::Rejected(vec![problem(error.to_string())]),
+    })
 }
 
 fn rejected(error: SketchError, source: &Source) -> Made {

@@ -10,23 +10,27 @@ use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::gdb::World;
 use rumbo_emulator::observe::Watchpoint;
 use rumbo_emulator::observe::trace::What;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Most snapshots; then every second one of the older ones goes.
 const MOST_SNAPSHOTS: usize = 1_000;
 /// Of which so many last ones stay.
 const DENSE: usize = 250;
+/// Changes that are remembered, each with a decoded program of its own, 1 MB; the past begins at the first of them.
+const MOST_CHANGES: usize = 64;
 /// Most snapshots of a stretch that is looked through at a time.
 const LONGEST_STRETCH: usize = 64;
 /// Parts of an interval that are looked through from its end [cycles].
 const WINDOWS: [u64; 3] = [1_000, 10_000, u64::MAX];
 
+/// Bytes that the program had sent in each stream.
+type Said = BTreeMap<u8, u64>;
+
 /// A world at the beginning of an interval.
 #[derive(Clone)]
 struct Snapshot<W> {
     world: W,
-    /// Bytes that the program had sent.
-    said: u64,
+    said: Said,
     /// A person has changed something here.
     is_changed: bool,
 }
@@ -41,7 +45,7 @@ impl<W: World> Snapshot<W> {
 pub(crate) struct History<W> {
     /// As it stands.
     now: W,
-    said: u64,
+    said: Said,
     /// The beginning of this interval.
     base: Snapshot<W>,
     /// `now` was halted since.
@@ -51,27 +55,27 @@ pub(crate) struct History<W> {
     stops: BTreeSet<u32>,
     watches: Vec<Watchpoint>,
     /// Bytes of the program that were given on, and those to give.
-    given: u64,
-    serial: Vec<u8>,
+    given: Said,
+    output: Vec<(u8, Vec<u8>)>,
 }
 
 impl<W: World> History<W> {
     pub(crate) fn new(world: W) -> Self {
         let base = Snapshot {
             world: world.clone(),
-            said: 0,
+            said: Said::new(),
             is_changed: true,
         };
         History {
             now: world,
-            said: 0,
+            said: Said::new(),
             past: vec![base.clone()],
             base,
             has_halted: false,
             stops: BTreeSet::new(),
             watches: Vec::new(),
-            given: 0,
-            serial: Vec::new(),
+            given: Said::new(),
+            output: Vec::new(),
         }
     }
 
@@ -88,8 +92,8 @@ impl<W: World> History<W> {
     }
 
     /// What the program has sent, each byte once, however often it is run again.
-    pub(crate) fn take_serial(&mut self) -> Vec<u8> {
-        std::mem::take(&mut self.serial)
+    pub(crate) fn take_output(&mut self) -> Vec<(u8, Vec<u8>)> {
+        std::mem::take(&mut self.output)
     }
 
     /// Stops there from now on, and nowhere else.
@@ -148,35 +152,46 @@ impl<W: World> History<W> {
         disarm(&mut world, &self.stops, &self.watches);
         self.base = Snapshot {
             world,
-            said: self.said,
+            said: self.said.clone(),
             is_changed: true,
         };
         self.past.push(self.base.clone());
+        let changes = self.past.iter().rev().enumerate();
+        let mut changes = changes.filter(|(_, snapshot)| snapshot.is_changed);
+        if let Some((after, _)) = changes.nth(MOST_CHANGES - 1) {
+            self.past.drain(..self.past.len() - 1 - after);
+        }
         self.has_halted = false;
-        self.given = self.said;
+        self.given = self.said.clone();
         done
     }
 
     fn hear(&mut self) {
-        let bytes = self.now.take_serial();
-        self.said += bytes.len() as u64;
-        let fresh = self.said.saturating_sub(self.given).min(bytes.len() as u64) as usize;
-        self.given += fresh as u64;
-        self.serial.extend(&bytes[bytes.len() - fresh..]);
+        for (stream, bytes) in self.now.take_output() {
+            let said = self.said.entry(stream).or_default();
+            *said += bytes.len() as u64;
+            let given = self.given.entry(stream).or_default();
+            let fresh = said.saturating_sub(*given).min(bytes.len() as u64) as usize;
+            *given += fresh as u64;
+            if fresh > 0 {
+                self.output
+                    .push((stream, bytes[bytes.len() - fresh..].to_vec()));
+            }
+        }
     }
 
     fn end_interval(&mut self) {
         // With breakpoints too, so that all snapshots share the program's memory without them.
         if self.has_halted || !self.stops.is_empty() || !self.watches.is_empty() {
             self.base.world.go();
-            self.base.world.take_serial();
+            self.base.world.take_output();
             self.now = self.base.world.clone();
             arm(&mut self.now, &self.stops, &self.watches);
             self.has_halted = false;
         } else {
             self.base.world = self.now.clone();
         }
-        self.base.said = self.said;
+        self.base.said = self.said.clone();
         self.base.is_changed = false;
         self.past.push(self.base.clone());
         if self.past.len() > MOST_SNAPSHOTS {
@@ -200,7 +215,7 @@ impl<W: World> History<W> {
         loop {
             let mut next = base.clone();
             let stopped = next.world.go();
-            next.said += next.world.take_serial().len() as u64;
+            count(&mut next.said, &next.world.take_output());
             next.is_changed = false;
             if next.cycle() > cycle
                 || next.cycle() == base.cycle()
@@ -216,11 +231,11 @@ impl<W: World> History<W> {
     pub(crate) fn travel(&mut self, cycle: u64) {
         self.base = self.before(cycle);
         self.now = self.base.world.clone();
-        self.said = self.base.said;
+        self.said = self.base.said.clone();
         self.has_halted = self.cycle() < cycle;
         if self.has_halted {
             self.now.go_to(cycle);
-            self.said += self.now.take_serial().len() as u64;
+            count(&mut self.said, &self.now.take_output());
         }
         arm(&mut self.now, &self.stops, &self.watches);
     }
@@ -228,7 +243,7 @@ impl<W: World> History<W> {
     /// Goes to the beginning; what the program sends from there on is given on again.
     pub(crate) fn restart(&mut self) {
         self.travel(self.first());
-        self.given = self.said;
+        self.given = self.said.clone();
     }
 
     /// The first cycle that there is.
@@ -297,6 +312,12 @@ impl<W: World> History<W> {
             }
         }
         None
+    }
+}
+
+fn count(said: &mut Said, output: &[(u8, Vec<u8>)]) {
+    for (stream, bytes) in output {
+        *said.entry(*stream).or_default() += bytes.len() as u64;
     }
 }
 

@@ -23,6 +23,45 @@ pub enum Demand {
     },
 }
 
+/// A counter that counts in one go, as long as no event comes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counter {
+    /// What it read in a cycle.
+    pub count: u16,
+    /// That cycle, by a clock that begins elsewhere.
+    pub cycle: u64,
+    /// How far that clock is behind the CPU's.
+    pub offset: u64,
+    /// It counts every power of two of cycles; `None` if it stands.
+    pub divisor: Option<u64>,
+    /// It counts down.
+    pub is_down: bool,
+    /// Ticks from `cycle` on in which it does not turn back.
+    pub ticks: u64,
+    /// Its high byte is latched, to be read at the next address.
+    pub is_wide: bool,
+}
+
+impl Counter {
+    /// What it reads in a cycle to come; `None` if that is too far ahead.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, cycle: u64) -> Option<u16> {
+        let ticks = match self.divisor {
+            None => 0,
+            Some(divisor) => {
+                let shift = divisor.trailing_zeros();
+                (cycle.checked_sub(self.offset)? >> shift).checked_sub(self.cycle >> shift)?
+            }
+        };
+        match (ticks < self.ticks, self.is_down) {
+            (false, _) => None,
+            (_, false) => self.count.checked_add(ticks as u16),
+            (_, true) => self.count.checked_sub(ticks as u16),
+        }
+    }
+}
+
 /// What SPM does to the flash.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Stored {
@@ -43,6 +82,11 @@ pub trait Io {
     /// ([`Io::deadline`]); 0: not even the next one.
     fn steady_until(&self, _: u16, _: u64) -> u64 {
         0
+    }
+
+    /// The counter at this address, which is never steady.
+    fn counter(&self, _: u16) -> Option<Counter> {
+        None
     }
 
     /// Writes a register.

@@ -6,15 +6,15 @@ use crate::run::of_seed;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::gdb::{Machine, World};
-use rumbo_sim::Sim;
-use rumbo_sim::mega::{Mega, USB};
+use rumbo_sim::emulated::Emulated;
+use rumbo_sim::mega::USB;
 use rumbo_sim::trace::SAMPLE_US;
 use std::sync::Arc;
 
 /// A robot and what its scenario sends to it: step for step as in a run.
 #[derive(Clone)]
 pub struct Debugged {
-    sim: Sim,
+    world: Emulated,
     operator: Operator<Arc<Setup>>,
     /// End of the current sample [us].
     sample_us: u64,
@@ -35,96 +35,67 @@ impl Debugged {
         }
         let setup = of_seed(setup, seed)?;
         let mut sim = setup.sim(seed)?;
-        if sim.mega().is_none() {
-            return Err(FileError::Setting(
-                "there is no program image to debug".into(),
-            ));
-        }
         let mut operator = Operator::new(setup.clone());
         operator.brief(&mut sim)?;
+        let none = || FileError::Setting("there is no program image to debug".into());
         let end_us = (setup.scenario.duration_s * 1e6) as u64;
         Ok(Debugged {
             sample_us: sim.now_us(),
-            sim,
+            world: Emulated::of(sim).ok_or_else(none)?,
             operator,
             end_us,
         })
-    }
-
-    fn mega(&self) -> &Mega {
-        match self.sim.mega() {
-            Some(mega) => mega,
-            None => unreachable!("there was one at the beginning"),
-        }
-    }
-
-    fn mega_mut(&mut self) -> &mut Mega {
-        match self.sim.mega_mut() {
-            Some(mega) => mega,
-            None => unreachable!("there was one at the beginning"),
-        }
     }
 }
 
 impl Machine for Debugged {
     fn chip(&self) -> &Chip {
-        self.mega().chip()
+        self.world.chip()
     }
 
     fn chip_mut(&mut self) -> &mut Chip {
-        self.mega_mut().chip_mut()
+        self.world.mega_mut().chip_mut()
     }
 
     fn go(&mut self) -> Stopped {
-        if self.sim.now_us() >= self.sample_us {
-            self.operator.step(&mut self.sim);
-            self.sample_us = (self.sim.now_us() + SAMPLE_US).min(self.end_us);
+        if self.now_us() >= self.sample_us {
+            self.operator.step(self.world.sim_mut());
+            self.sample_us = (self.now_us() + SAMPLE_US).min(self.end_us);
         }
-        self.sim.advance(self.sample_us);
-        if let Some(stopped) = self.mega_mut().take_halt() {
-            return stopped;
-        }
-        match self.chip().cpu().verdict() {
-            Some(verdict) => Stopped::Ended(verdict.clone()),
-            None => Stopped::Reached,
-        }
+        self.world.advance(self.sample_us)
     }
 
     fn step(&mut self) -> Stopped {
-        self.mega_mut().step();
+        self.world.mega_mut().step();
         self.go()
     }
 
     fn is_over(&self) -> bool {
-        self.sim.now_us() >= self.end_us || self.sim.verdict().is_some()
+        self.now_us() >= self.end_us || self.world.sim().verdict().is_some()
     }
 }
 
 impl World for Debugged {
     fn go_to(&mut self, cycle: u64) -> Stopped {
-        self.mega_mut().halt_at(Some(cycle));
+        self.world.mega_mut().halt_at(Some(cycle));
         let stopped = self.go();
-        self.mega_mut().halt_at(None);
+        self.world.mega_mut().halt_at(None);
         stopped
     }
 
     fn now_us(&self) -> u64 {
-        self.sim.now_us()
+        self.world.sim().now_us()
     }
 
-    fn take_serial(&mut self) -> Vec<u8> {
-        self.mega_mut().take_console(USB)
+    fn take_output(&mut self) -> Vec<(u8, Vec<u8>)> {
+        vec![(USB, self.world.mega_mut().take_console(USB))]
     }
 
     fn type_in(&mut self, bytes: &[u8]) {
-        self.mega_mut().type_in(USB, bytes);
+        self.world.mega_mut().type_in(USB, bytes);
     }
 
     fn pins(&self) -> Vec<(String, bool)> {
-        let devices = self.chip().devices();
-        let signals = self.mega().firmware().signals().into_iter();
-        signals
-            .map(|(name, pin)| (name, devices.level(pin)))
-            .collect()
+        self.world.pins()
     }
 }

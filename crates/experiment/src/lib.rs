@@ -16,6 +16,7 @@ pub mod debugged;
 pub mod files;
 #[cfg(feature = "host")]
 pub mod grade;
+pub mod hand;
 pub mod metrics;
 pub mod note;
 pub mod observe;

@@ -8,7 +8,7 @@ use crate::robot::type_to;
 use crate::sight;
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, fleet_around};
 use rumbo_log::{Choice, Manifest, Other, Scene, Source, Truth};
-use rumbo_session::{Abilities, LinkNews, Shown, Target, TargetError};
+use rumbo_session::{Abilities, GivenProgram, LinkNews, Shown, Target, TargetError};
 use rumbo_sim::Sim;
 use rumbo_sim::fleet::Fleet;
 use rumbo_wire::Command;
@@ -280,7 +280,7 @@ impl Target for FleetRobot {
         self.sim(|sim| sim.supply_motors(on));
     }
 
-    fn run_program(&mut self, _name: String, _content: Vec<u8>) -> Result<(), TargetError> {
+    fn run_program(&mut self, _program: GivenProgram) -> Result<(), TargetError> {
         Err(TargetError::Several)
     }
 

@@ -59,11 +59,12 @@ pub fn of(kind: LogKind, setup: &Setup, overrides: &Overrides, seed: u64) -> Man
         texts: lines(&overrides.texts, Port::Link),
         usb_texts: lines(&overrides.texts, Port::Usb),
         part_texts: lines(&overrides.texts, Port::Parts),
+        hand_texts: lines(&overrides.texts, Port::Hand),
         // One for all of a command.
         line_ending: overrides
             .texts
             .iter()
-            .find(|timed| timed.port != Port::Parts)
+            .find(|timed| matches!(timed.port, Port::Link | Port::Usb))
             .map(|timed| timed.ending.name().to_owned()),
         files,
         ..Manifest::default()

@@ -1,10 +1,11 @@
 //! The program of the lab's emulated robot, and what makes its images.
 
+use crate::in_hand::Attach;
 use crate::manifest::hash_of;
 use rumbo_emulator::image::Image;
 use rumbo_experiment::files::{FileError, Setup, firmware};
 use rumbo_log::{Complaint, ProgramPhase};
-use rumbo_session::TargetError;
+use rumbo_session::{GivenProgram, SketchFile, TargetError};
 use rumbo_sim::boards::Board;
 use rumbo_sim::mega::firmware::Firmware;
 use std::path::{Path, PathBuf};
@@ -17,20 +18,42 @@ pub trait Workshop: Send {
 }
 
 /// What a workshop says.
-#[derive(Debug)]
 pub enum Made {
     /// The program has changed and is being compiled.
     Begun,
     /// The file of the new image.
     Image(PathBuf),
+    /// The same, and a debugger for it.
+    Debugged(PathBuf, Attach),
     /// Why there is none.
     Rejected(Vec<Complaint>),
 }
 
-/// A workshop for a program that was dropped on the page, for this emulated board, if there is one: the name of its
-/// file and its content.
-pub type Make =
-    fn(Option<&'static Board>, String, Vec<u8>) -> Result<Box<dyn Workshop>, TargetError>;
+/// A workshop for a program of the page, for this board.
+pub type Make = fn(&'static Board, GivenProgram) -> Result<Box<dyn Workshop>, TargetError>;
+
+/// Files by name.
+type Files = Vec<(String, Vec<u8>)>;
+
+/// What is known of sketches where there is a compiler.
+#[derive(Clone, Copy)]
+pub struct Sketches {
+    /// Makes what the page hands in.
+    pub make: Make,
+    /// Names of the examples.
+    pub examples: fn() -> Vec<String>,
+    /// The files of one.
+    pub example: fn(&str) -> Option<Files>,
+}
+
+/// Files as a page shows them: those that are text.
+pub(crate) fn shown(files: Files) -> Vec<SketchFile> {
+    let text = |(name, bytes)| {
+        let text = String::from_utf8(bytes).ok()?;
+        Some(SketchFile { name, text })
+    };
+    files.into_iter().filter_map(text).collect()
+}
 
 /// What is wrong with no line in particular.
 #[must_use]
@@ -83,6 +106,8 @@ pub struct OwnProgram {
     pub(crate) watched: bool,
     /// Nothing is made where the program is no file of the user's.
     pub(crate) workshop: Option<Box<dyn Workshop>>,
+    /// Gives its source as it is now.
+    pub(crate) source: Option<Box<dyn Fn() -> Files + Send>>,
 }
 
 impl OwnProgram {
@@ -96,6 +121,16 @@ impl OwnProgram {
             complaints: Vec::new(),
             watched: workshop.is_some(),
             workshop,
+            source: None,
+        }
+    }
+
+    /// With what gives its source as it is now.
+    #[must_use]
+    pub fn from_source(self, source: impl Fn() -> Files + Send + 'static) -> Self {
+        Self {
+            source: Some(Box::new(source)),
+            ..self
         }
     }
 

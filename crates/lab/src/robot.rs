@@ -1,24 +1,29 @@
 //! The simulated robot behind the interface of a session's target.
 
+mod debugging;
 mod playing;
 mod programs;
 
 use crate::hand::{self, HAND};
+use crate::in_hand::InHand;
 use crate::play::Experiment;
 use crate::prepare::{Prepared, prepare};
-use crate::program::{Held, Make, OwnProgram};
+use crate::program::{Held, OwnProgram, Sketches};
 use crate::sight;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::Params;
-use rumbo_emulator::observe::profile::Profile;
 use rumbo_experiment::files::{FileError, Library, Overrides};
 use rumbo_log::{Burst, Choice, ExperimentState, Level, Manifest, ProgramState, Scene, Truth};
-use rumbo_session::{Abilities, EditedWorld, LinkNews, Shown, Standing, Target, TargetError};
+use rumbo_session::{
+    Abilities, EditedWorld, GivenProgram, LinkNews, Shown, ShownSketch, Standing, Target,
+    TargetError,
+};
 use rumbo_sim::Sim;
 use rumbo_sim::boards::Board;
 use rumbo_sim::debugging::Debugging;
 use rumbo_sim::mega::{Mega, USB};
 use rumbo_wire::Command;
+use serde_json::Value;
 use std::collections::VecDeque;
 
 /// Another program at the USB port of an emulated Mega.
@@ -39,10 +44,12 @@ pub struct SimulatedRobot {
     pub(crate) held: Option<Held>,
     pub(crate) sim: Sim,
     debugging: Option<Debugging>,
+    /// The page's debugger has the program; then `sim` is a copy of what it holds.
+    pub(crate) in_hand: Option<InHand>,
     usb: Option<Box<dyn Cable>>,
     /// The program that the user gave, if it is one for the emulated Mega.
     pub(crate) program: Option<OwnProgram>,
-    pub(crate) make: Option<Make>,
+    pub(crate) sketches: Option<Sketches>,
     pub(crate) manifest: Manifest,
     mode: ModeId,
     /// When the instruments are read next \[us\].
@@ -93,9 +100,10 @@ impl SimulatedRobot {
             held: None,
             sim,
             debugging: None,
+            in_hand: None,
             usb: None,
             program: None,
-            make: None,
+            sketches: None,
             manifest,
             mode,
             reading_due_us: 0,
@@ -123,9 +131,9 @@ impl SimulatedRobot {
         self.program = Some(program);
     }
 
-    /// Makes images of the programs that are dropped on the page. Without it only images are taken.
-    pub fn make_dropped_by(&mut self, make: Make) {
-        self.make = Some(make);
+    /// Makes images of the programs of the page, and shows it examples. Without it only images are taken.
+    pub fn take_sketches(&mut self, sketches: Sketches) {
+        self.sketches = Some(sketches);
     }
 
     /// The board of the emulated chip, if there is one.
@@ -139,7 +147,7 @@ impl SimulatedRobot {
 /// a hand does.
 pub fn type_to(sim: &mut Sim, usart: u8, bytes: &[u8]) -> bool {
     if usart == HAND {
-        hand::act(sim, bytes);
+        rumbo_experiment::hand::act(sim, bytes);
         return true;
     }
     let Some(mega) = sim.mega_mut() else {
@@ -188,10 +196,16 @@ impl SimulatedRobot {
 
 impl Target for SimulatedRobot {
     fn now_us(&self) -> u64 {
-        self.sim.now_us()
+        let reached_us = self.in_hand.as_ref().map(InHand::reached_us);
+        reached_us.unwrap_or_else(|| self.sim.now_us())
     }
 
     fn advance(&mut self, dt_us: u64) -> Result<(), TargetError> {
+        if let Some(in_hand) = &mut self.in_hand {
+            in_hand.pass();
+            self.look();
+            return Ok(());
+        }
         if let (Some(usb), Some(mega)) = (&mut self.usb, self.sim.mega_mut()) {
             mega.type_in(USB, usb.read());
         }
@@ -210,7 +224,7 @@ impl Target for SimulatedRobot {
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), TargetError> {
         if !self.plays() {
-            self.sim.send(bytes);
+            self.act(|sim| sim.send(bytes));
         }
         Ok(())
     }
@@ -219,7 +233,9 @@ impl Target for SimulatedRobot {
         if let Some(experiment) = &mut self.experiment {
             experiment.receive(into);
         }
-        if !self.plays() {
+        if let Some(in_hand) = &mut self.in_hand {
+            in_hand.receive(into);
+        } else if !self.plays() {
             self.sim.receive(into);
         }
     }
@@ -264,10 +280,17 @@ impl Target for SimulatedRobot {
     }
 
     fn truth(&self) -> Option<Truth> {
-        Some(sight::truth(&self.sim))
+        Some(match &self.in_hand {
+            Some(in_hand) => in_hand.truth(),
+            None => sight::truth(&self.sim),
+        })
     }
 
     fn shown(&mut self) -> Vec<Shown> {
+        if let Some(in_hand) = &mut self.in_hand {
+            let shown = in_hand.take_shown().into_iter();
+            return shown.chain(hand::moved(&self.sim)).collect();
+        }
         match sight::reading_due(&self.sim, &mut self.reading_due_us) {
             true => {
                 let shown = sight::shown(&mut self.sim);
@@ -282,7 +305,10 @@ impl Target for SimulatedRobot {
     }
 
     fn consoles(&mut self) -> Vec<(u8, Vec<u8>)> {
-        let said = sight::consoles(&mut self.sim);
+        let said = match &mut self.in_hand {
+            Some(in_hand) => in_hand.take_consoles(),
+            None => sight::consoles(&mut self.sim),
+        };
         if let (Some(usb), Some((USB, bytes))) = (&mut self.usb, said.first()) {
             usb.write(bytes);
         }
@@ -315,7 +341,7 @@ impl Target for SimulatedRobot {
     }
 
     fn type_in(&mut self, usart: u8, text: &str) -> Result<(), TargetError> {
-        match type_to(&mut self.sim, usart, text.as_bytes()) {
+        match self.act(|sim| type_to(sim, usart, text.as_bytes())) {
             true => Ok(()),
             false => Err(TargetError::NoChip),
         }
@@ -325,17 +351,33 @@ impl Target for SimulatedRobot {
         if self.sim.mega().is_none() {
             return Err(TargetError::NoChip);
         }
+        if self.in_hand.is_some() {
+            return Err(TargetError::Debugged);
+        }
         self.profiling = on;
         self.begin_profile();
         Ok(())
     }
 
     fn supply_motors(&mut self, on: bool) {
-        self.sim.supply_motors(on);
+        self.act(|sim| sim.supply_motors(on));
     }
 
-    fn run_program(&mut self, name: String, content: Vec<u8>) -> Result<(), TargetError> {
-        self.drop_program(name, content)
+    fn run_program(&mut self, program: GivenProgram) -> Result<(), TargetError> {
+        self.take_program(program)
+    }
+
+    fn sketch(&mut self, example: Option<&str>) -> ShownSketch {
+        self.source(example)
+    }
+
+    fn ask_debugger(&mut self, request: &Value) -> Result<(), TargetError> {
+        self.pass_to_debugger(request)
+    }
+
+    fn take_debug(&mut self) -> Vec<Value> {
+        let in_hand = self.in_hand.as_mut();
+        in_hand.map(InHand::take_messages).unwrap_or_default()
     }
 
     fn first_commands(&self) -> Vec<Command> {
@@ -376,24 +418,9 @@ impl SimulatedRobot {
         self.experiment.as_ref().is_some_and(Experiment::goes_on)
     }
 
-    /// Counts the cycles of the program at the pins from zero, if they are to be counted.
-    fn begin_profile(&mut self) {
-        let Some(mega) = self.sim.mega_mut() else {
-            return;
-        };
-        let counts = self
-            .profiling
-            .then(|| Profile::new(mega.firmware().image()));
-        let observers = mega.chip_mut().observers_mut();
-        match counts {
-            Some(counts) => observers.profile(counts),
-            None => observers.end_profile(),
-        }
-    }
-
     /// Takes another simulation, at its start.
     pub(crate) fn start_with(&mut self, sim: Sim, manifest: Manifest) {
-        self.sim = sim;
+        (self.sim, self.in_hand) = (sim, None);
         if let Some(debugging) = &mut self.debugging {
             debugging.forget();
         }

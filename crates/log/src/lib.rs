@@ -66,8 +66,8 @@ pub use scene::{
 pub use signals::{Cell, EARLIER_MS, Row, SIGNALS, Sample, Signal, Spread};
 pub use state::{
     CalibrationPhase, CalibrationState, Complaint, End, ExperimentPhase, ExperimentState, Finding,
-    Findings, FunctionShare, InterruptShare, LimitState, LinkState, PartState, ProgramPhase,
-    ProgramProfile, ProgramState, ReplayState, RobotState, State, Task,
+    Findings, FunctionShare, HeldState, InterruptShare, LimitState, LinkState, PartState,
+    ProgramPhase, ProgramProfile, ProgramState, ReplayState, RobotState, State, Task,
 };
 pub use summary::Summary;
 pub use writer::LogWriter;

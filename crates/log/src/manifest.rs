@@ -65,6 +65,9 @@ pub struct Manifest {
     /// What was done with buttons, switches and potentiometers, `name=value`, with its times \[s\].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub part_texts: Vec<(f64, String)>,
+    /// Where a hand put the robot, `robot=X Y HEADING` in m and rad, with its times \[s\].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub hand_texts: Vec<(f64, String)>,
     /// What was sent behind each of those lines, by name; LF where it is missing.
     pub line_ending: Option<String>,
     /// What the robot's EEPROM held at the start, as hexadecimal digits; `None` where it was erased.

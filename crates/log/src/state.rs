@@ -110,6 +110,20 @@ pub struct ProgramState {
     /// Where its time goes, while that is measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProgramProfile>,
+    /// It is in the hands of the page's debugger.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held: Option<HeldState>,
+}
+
+/// A program in the hands of a debugger.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HeldState {
+    /// It stands, and the robot's time with it.
+    pub stands: bool,
+    /// Where in its time it is \[us\].
+    pub t_us: u64,
+    /// How far it has gone back \[us\].
+    pub back_us: u64,
 }
 
 /// Something at a pin that a person works or looks at.

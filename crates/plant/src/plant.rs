@@ -491,12 +491,18 @@ impl Plant {
             forward_m_s: state.speed[0],
             yaw_rad_s: state.speed[1],
             range_m,
-            battery_v: self.drivetrain.battery_v(&state.drivetrain),
+            battery_v: self.battery_v(state),
             battery_a: state.drivetrain.battery.current_a,
             servo_rad: state.servo.angle_rad,
             contacts: state.contact.contacts,
             touching: state.contact.touching(),
         }
+    }
+
+    /// Terminal voltage of the battery.
+    #[must_use]
+    pub fn battery_v(&self, state: &State) -> f64 {
+        self.drivetrain.battery_v(&state.drivetrain)
     }
 
     /// Speeds of both wheels, left and right, forward positive.

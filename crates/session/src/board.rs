@@ -8,9 +8,11 @@ mod ring;
 
 use crate::console::{ConsoleText, PARTS_CONSOLE, readable};
 use crate::event::Event;
+use crate::program::ShownSketch;
 use crate::world::EditedWorld;
 use ring::{Ring, Versioned};
 use rumbo_log::{Burst, Entry, LoggedEvent, ParameterState, Reading, Row, Scene, Source, State};
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Samples kept: ten minutes of telemetry at 25 Hz.
@@ -23,6 +25,8 @@ pub const EVENTS_KEPT: usize = 1_000;
 const CONSOLES_KEPT: usize = 2_000;
 /// Pieces of the link's raw bytes kept: some seconds of both directions.
 const BURSTS_KEPT: usize = 600;
+/// Messages of the debugger kept: a page asks for the next ones when it has these.
+const MESSAGES_KEPT: usize = 100;
 
 /// Arrival of the newest samples: time of day \[ms since 1970\] and the target's time \[ms\]. Gives the age of what a
 /// page shows.
@@ -46,6 +50,8 @@ pub struct Board {
     parameters: Versioned<Vec<ParameterState>>,
     state: Versioned<State>,
     world: Versioned<EditedWorld>,
+    sketch: Versioned<ShownSketch>,
+    debug: Ring<Value>,
 }
 
 /// How far a page has read.
@@ -63,6 +69,8 @@ pub struct Cursor {
     parameters: u64,
     state: u64,
     world: u64,
+    sketch: u64,
+    debug: u64,
 }
 
 /// What is new to a page.
@@ -78,6 +86,10 @@ pub struct News {
     pub state: Option<State>,
     /// A world that a page edits.
     pub world: Option<EditedWorld>,
+    /// The source of a program.
+    pub sketch: Option<ShownSketch>,
+    /// What the debugger of the program says.
+    pub debug: Vec<Value>,
     /// Signals.
     pub samples: Vec<Row>,
     /// Signals beside the telemetry.
@@ -112,6 +124,8 @@ impl Default for Board {
             parameters: Versioned::default(),
             state: Versioned::default(),
             world: Versioned::default(),
+            sketch: Versioned::default(),
+            debug: Ring::new(MESSAGES_KEPT),
         }
     }
 }
@@ -131,6 +145,7 @@ impl Board {
                     self.displays.set(BTreeMap::new());
                 }
                 self.bytes.clear();
+                self.debug.clear();
                 false
             }
             Event::Commanded(..) => false,
@@ -140,6 +155,11 @@ impl Board {
             }
             Event::Console(said) => self.hear(said.clone()),
             Event::World(world) => self.world.set(world.clone()),
+            Event::Sketch(sketch) => self.sketch.set(sketch.clone()),
+            Event::Debug(message) => {
+                self.debug.push(message.clone());
+                true
+            }
             Event::Entry(entry) => self.show(entry),
         }
     }
@@ -211,6 +231,7 @@ impl Board {
             });
         }
         let (bytes, _) = self.bytes.read(&mut cursor.bytes);
+        let (debug, _) = self.debug.read(&mut cursor.debug);
         let first_time = cursor.run == 0;
         cursor.run = self.run;
         News {
@@ -219,6 +240,8 @@ impl Board {
             parameters: self.parameters.newer(&mut cursor.parameters),
             state: self.state.newer(&mut cursor.state),
             world: self.world.newer(&mut cursor.world),
+            sketch: self.sketch.newer(&mut cursor.sketch),
+            debug,
             samples,
             readings,
             received: self.received,

@@ -161,10 +161,21 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
                 let sent = self.target.type_in(usart, &line);
                 self.session.typed(usart, &line, sent, now);
             }
-            Ask::Program(name, content) => {
-                if let Err(why) = self.target.run_program(name, content) {
+            Ask::Program(program) => {
+                if let Err(why) = self.target.run_program(program) {
                     self.note(Level::Warning, format!("program: refused, {why}"), wall_us);
                 }
+            }
+            Ask::Sketch(ticket, example) => {
+                let mut sketch = self.target.sketch(example.as_deref());
+                sketch.ticket = ticket;
+                self.host.publish(Event::Sketch(sketch));
+            }
+            Ask::Debug(request) => {
+                if let Err(why) = self.target.ask_debugger(&request) {
+                    self.note(Level::Warning, format!("debugger: {why}"), wall_us);
+                }
+                self.pass_debug();
             }
             Ask::Profile(on) => {
                 if let Err(why) = self.target.profile(on) {
@@ -291,9 +302,17 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
         }
     }
 
+    /// Passes on what the debugger says.
+    fn pass_debug(&mut self) {
+        for message in self.target.take_debug() {
+            self.host.publish(Event::Debug(message));
+        }
+    }
+
     /// Publishes what is new.
     pub fn update(&mut self, wall_us: u64) {
         self.news(wall_us);
+        self.pass_debug();
         let going = Going {
             speed: self.pace.speed,
             achieved_speed: self.pace.achieved(),

@@ -29,6 +29,10 @@ pub enum TargetError {
     Several,
     /// The name is not that of a program's file.
     NotAProgram,
+    /// A debugger has its program.
+    Debugged,
+    /// No debugger holds its program, or a page may not ask that of it.
+    NotDebugged,
     /// No ghost runs beside it.
     NoGhost,
     /// The log has no signals, so a ghost has nothing to follow.
@@ -64,6 +68,10 @@ impl fmt::Display for TargetError {
             ),
             Self::NotAProgram => {
                 f.write_str("only an .ino, .elf or .hex file is a program for the Mega")
+            }
+            Self::Debugged => f.write_str("a debugger has the program; end that first"),
+            Self::NotDebugged => {
+                f.write_str("the program is not being debugged, or a page may not ask that; begin with Debug")
             }
             Self::NoGhost => f.write_str("there is none; start with --ghost"),
             Self::NoSignals => f.write_str("the log has no signals"),

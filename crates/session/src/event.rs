@@ -1,9 +1,11 @@
 //! The events a session publishes: each subscriber takes what it needs.
 
 use crate::console::ConsoleText;
+use crate::program::ShownSketch;
 use crate::world::EditedWorld;
 use rumbo_log::Entry;
 use rumbo_wire::Command;
+use serde_json::Value;
 use std::sync::Arc;
 
 /// Something to show or to record.
@@ -20,6 +22,10 @@ pub enum Event {
     Commanded(u64, Vec<Command>),
     /// What a page asked of a world that it edits.
     World(EditedWorld),
+    /// The source of a program that a page asked for.
+    Sketch(ShownSketch),
+    /// What the debugger of the program says, in the Debug Adapter Protocol.
+    Debug(Value),
     /// The next samples arrived at this time of the session \[ms\].
     Received(i64),
 }

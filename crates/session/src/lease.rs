@@ -82,6 +82,7 @@ impl Lease {
                 self.release(page);
                 return Ok(());
             }
+            Order::Sketch(..) => return Ok(()),
             Order::TakeControl if may_control => self.holder = Some(page),
             _ if may_control => {
                 self.holder.get_or_insert(page);
@@ -133,6 +134,9 @@ mod tests {
         assert_eq!(asked, [true, false, false]);
         assert_eq!(seats(&lease), [Seat::Driver, Seat::Passenger, Seat::Viewer]);
         assert!(lease.admit(&Order::TakeControl, viewer).is_err());
+        // Code may be looked at, not run.
+        assert!(lease.admit(&Order::Sketch(1, None), viewer).is_ok());
+        assert!(lease.admit(&Order::Debug("".into()), viewer).is_err());
         assert!(lease.admit(&Order::TakeControl, second).is_ok());
         assert_eq!(lease.view(first).seat, Seat::Passenger);
         assert!(lease.admit(&ARM, first).is_err());

@@ -27,6 +27,7 @@ mod origin;
 mod pace;
 mod page;
 mod printed;
+mod program;
 mod replay;
 mod robot_clock;
 mod round_trip;
@@ -51,6 +52,7 @@ pub use orders::{BadOrder, MAX_ORDER, MAX_SPEED, Order, SHORT_ORDER, WORLD_ORDER
 pub use pace::{Pace, SLICE_US};
 pub use page::{LinkBytes, ReadingGroup, ToPage};
 pub use printed::plotter_row;
+pub use program::{GivenProgram, ShownSketch, SketchFile};
 pub use replay::Replay;
 pub use session::{Ask, Going, Now, Session, Sight};
 pub use target::{Abilities, About, Ghost, LinkNews, Shown, Standing, Target};

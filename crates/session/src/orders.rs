@@ -1,8 +1,7 @@
 //! Orders of a page: parses JSON text into a checked order.
 
+use crate::program::{GivenProgram, SketchFile};
 use crate::world::{WorldAct, WorldOrder};
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use rumbo_control::mode::waypoints::{MAX_WAYPOINTS, Waypoint};
 use rumbo_control::mode::{ModeId, Movement};
 use rumbo_control::params::ParamId;
@@ -11,6 +10,7 @@ use rumbo_control::{Velocity, Wheels};
 use rumbo_log::Choice;
 use rumbo_wire::{Command, Level, LineEnding};
 use serde::Deserialize;
+use serde_json::Value;
 use std::fmt;
 use std::str::FromStr;
 
@@ -59,8 +59,12 @@ pub enum Order {
     ReleaseControl,
     /// Start the ghost again where the robot is.
     RestartGhost,
-    /// Run this program on the emulated Mega: the name of its file, which is no path, and what is in it.
-    Program(String, Vec<u8>),
+    /// Run this program on the emulated chip.
+    Program(GivenProgram),
+    /// Show the source of the program that runs, or of an example by its name, in answer to this ticket.
+    Sketch(u32, Option<String>),
+    /// A request of the Debug Adapter Protocol to the debugger of the program that runs.
+    Debug(Value),
     /// Count the cycles of the program on the emulated chip, from zero, or no longer.
     Profile(bool),
     /// Show, check or drive in a world that the page edits.
@@ -170,7 +174,19 @@ enum Message {
     },
     Program {
         name: String,
-        data: String,
+        /// An only file, in base 64.
+        data: Option<String>,
+        #[serde(default)]
+        files: Vec<SketchFile>,
+        #[serde(default)]
+        debug: bool,
+    },
+    Sketch {
+        ticket: u32,
+        example: Option<String>,
+    },
+    Debug {
+        request: Value,
     },
     Profile {
         on: bool,
@@ -316,7 +332,14 @@ impl FromStr for Order {
                     "factor {factor} is not within 0 to {MAX_SPEED}"
                 )));
             }
-            Message::Program { name, data } => program(name, &data)?,
+            Message::Program {
+                name,
+                data,
+                files,
+                debug,
+            } => Order::Program(GivenProgram::of(name, data, files, debug).map_err(BadOrder)?),
+            Message::Sketch { ticket, example } => Order::Sketch(ticket, example),
+            Message::Debug { request } => Order::Debug(request),
             Message::Profile { on } => Order::Profile(on),
             Message::World { ticket, act, text } => Order::World(WorldOrder { ticket, act, text }),
             Message::Seek { t_s } if t_s.is_finite() => Order::Seek(t_s),
@@ -346,20 +369,6 @@ impl FromStr for Order {
         };
         Ok(order)
     }
-}
-
-/// A program with a name that is only a name.
-fn program(name: String, data: &str) -> Result<Order, BadOrder> {
-    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.' | ' ');
-    if name.len() > MAX_NAME || name.starts_with('.') || !name.chars().all(plain) {
-        return Err(BadOrder(
-            "a file's name has letters, digits, _, - and . only".into(),
-        ));
-    }
-    let data = STANDARD
-        .decode(data)
-        .map_err(|error| BadOrder(error.to_string()))?;
-    Ok(Order::Program(name, data))
 }
 
 /// A route in the commands that make it.

@@ -4,9 +4,11 @@ use crate::board::{Arrival, News};
 use crate::catalogue::{self, ModeEntry};
 use crate::console::ConsoleText;
 use crate::lease::View;
+use crate::program::ShownSketch;
 use crate::world::EditedWorld;
 use rumbo_log::{Burst, Cell, LoggedEvent, ParameterState, Reading, Row, Scene, Source, State};
 use serde::Serialize;
+use serde_json::Value;
 
 /// Rows of samples in one message.
 const ROWS_PER_MESSAGE: usize = 250;
@@ -52,6 +54,13 @@ pub enum ToPage<'a> {
     },
     /// What a page asked of a world that it edits.
     World(&'a EditedWorld),
+    /// The source of a program that a page asked for.
+    Sketch(&'a ShownSketch),
+    /// What the debugger of the program says.
+    Debug {
+        /// Messages of the Debug Adapter Protocol, in order.
+        messages: &'a [Value],
+    },
     /// Rows of signals; the page discards those of another run.
     Samples {
         /// Number of the run.
@@ -169,6 +178,8 @@ impl News {
             state,
         });
         let world = self.world.iter().map(ToPage::World);
+        let sketch = self.sketch.iter().map(ToPage::Sketch);
+        let debug = some(&self.debug).map(|messages| ToPage::Debug { messages });
         let parameters = self.parameters.iter();
         let parameters = parameters.map(|parameters| ToPage::Parameters { parameters });
         let events = some(&self.events).map(|events| ToPage::Events { events });
@@ -196,6 +207,8 @@ impl News {
         scene
             .chain(state)
             .chain(world)
+            .chain(sketch)
+            .chain(debug)
             .chain(parameters)
             .chain(events)
             .chain(said)

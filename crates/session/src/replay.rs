@@ -130,7 +130,9 @@ impl Replay {
             | Order::Velocity(_)
             | Order::Route(_)
             | Order::Type(..)
-            | Order::Program(..)
+            | Order::Program(_)
+            | Order::Sketch(..)
+            | Order::Debug(_)
             | Order::Profile(_)
             | Order::Play
             | Order::World(_) => {

@@ -16,6 +16,7 @@ use crate::guest::Guest;
 use crate::observer::Observer;
 use crate::observer::describe::{Around, describe};
 use crate::orders::Order;
+use crate::program::GivenProgram;
 use crate::target::{About, LinkNews, Shown, Standing};
 use crate::watch::LinkWatch;
 use crate::world::WorldOrder;
@@ -24,6 +25,7 @@ use rumbo_log::{
     Burst, CalibrationState, Choice, ExperimentState, Level, ProgramState, State, Truth,
 };
 use rumbo_wire::{Command, GUEST_SESSION};
+use serde_json::Value;
 
 /// The slow state is published this often, and at once when it matters \[us\].
 const STATE_PERIOD_US: u64 = 200_000;
@@ -57,7 +59,11 @@ pub enum Ask {
     /// Put the ghost there; then [`Session::ghost_restarted`].
     Ghost(Standing),
     /// Run this program; why not is reported as a note.
-    Program(String, Vec<u8>),
+    Program(GivenProgram),
+    /// Show the source of its program, or of an example.
+    Sketch(u32, Option<String>),
+    /// A request to the debugger of its program.
+    Debug(Value),
     /// Count the cycles of its program, or no longer.
     Profile(bool),
     /// Cut the supply of its motors, or give it back.
@@ -245,7 +251,9 @@ impl Session {
             Order::Play => self.play_begun(Err(TargetError::NoReset), 0, now),
             Order::TakeControl | Order::ReleaseControl => {}
             Order::RestartGhost => return Some(Ask::Ghost(self.observer.standing())),
-            Order::Program(name, data) => return Some(Ask::Program(name, data)),
+            Order::Program(program) => return Some(Ask::Program(program)),
+            Order::Sketch(ticket, example) => return Some(Ask::Sketch(ticket, example)),
+            Order::Debug(request) => return Some(Ask::Debug(request)),
             Order::Profile(on) => return Some(Ask::Profile(on)),
             Order::Seek(_) | Order::Step(_) => {
                 let text = "refused, this is no replay of a log";

@@ -5,6 +5,7 @@
 //! known of a robot beyond those bytes is only displayed: commands and measurements take the link.
 
 use crate::error::TargetError;
+use crate::program::{GivenProgram, ShownSketch};
 use crate::world::EditedWorld;
 use rumbo_control::Fault;
 use rumbo_control::mode::ModeId;
@@ -13,6 +14,7 @@ use rumbo_log::{
     Burst, Choice, ExperimentState, Level, Manifest, MapPose, ProgramState, Scene, Source, Truth,
 };
 use rumbo_wire::Command;
+use serde_json::Value;
 
 /// What can be done with a target besides speaking to its robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -190,12 +192,30 @@ pub trait Target: Send {
     /// Cuts the supply of the motors, or gives it back; it is there at a start. Only where [`Abilities::cut_off`] says so.
     fn supply_motors(&mut self, _on: bool) {}
 
-    /// Runs another program, of this file name and content, as soon as it is compiled.
+    /// Runs another program as soon as it is compiled.
     ///
     /// # Errors
     /// If this robot takes none.
-    fn run_program(&mut self, _name: String, _content: Vec<u8>) -> Result<(), TargetError> {
+    fn run_program(&mut self, _program: GivenProgram) -> Result<(), TargetError> {
         Err(TargetError::NoPrograms)
+    }
+
+    /// The source of its program, or of an example by its name.
+    fn sketch(&mut self, _example: Option<&str>) -> ShownSketch {
+        ShownSketch::default()
+    }
+
+    /// A request of the Debug Adapter Protocol to the debugger of its program; [`Target::take_debug`] has the response.
+    ///
+    /// # Errors
+    /// If none holds the program, or the request is none of those that a page may give.
+    fn ask_debugger(&mut self, _request: &Value) -> Result<(), TargetError> {
+        Err(TargetError::NotDebugged)
+    }
+
+    /// What the debugger has said since the last call.
+    fn take_debug(&mut self) -> Vec<Value> {
+        Vec::new()
     }
 
     /// Counts the cycles of the program of an emulated chip from zero, or no longer; [`Target::program`] shows them.

@@ -1,6 +1,7 @@
 //! A debugger that attaches to a running simulation and may detach again: robot and world are frozen while it holds the
 //! program. For the lab, which advances the simulation in slices of time.
 
+use crate::emulated::Emulated;
 use crate::sim::Sim;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
@@ -65,12 +66,12 @@ impl Debugging {
             return;
         };
         session.machine_mut().until_us = until_us;
-        std::mem::swap(sim, &mut session.machine_mut().sim);
+        std::mem::swap(sim, session.machine_mut().world.sim_mut());
         let mut progress = Progress::Ran;
-        while progress == Progress::Ran && session.machine_mut().sim.now_us() < until_us {
+        while progress == Progress::Ran && session.machine_mut().world.sim().now_us() < until_us {
             progress = session.turn();
         }
-        std::mem::swap(sim, &mut session.machine_mut().sim);
+        std::mem::swap(sim, session.machine_mut().world.sim_mut());
         self.announce(progress, sim);
     }
 
@@ -109,10 +110,10 @@ impl Debugging {
         let Ok((connection, _)) = self.listener.accept() else {
             return;
         };
-        let held = Held {
-            sim: sim.clone(),
-            until_us: 0,
+        let Some(world) = Emulated::of(sim.clone()) else {
+            return;
         };
+        let held = Held { world, until_us: 0 };
         let session = connection
             .set_nonblocking(false)
             .and_then(|()| Session::new(held, connection));
@@ -136,53 +137,29 @@ fn place(sim: &Sim) -> String {
 
 /// A simulation in the hands of a debugger. Between its turns it is a stand-in: the real one is with its owner.
 struct Held {
-    sim: Sim,
+    world: Emulated,
     /// The owner's time goes up to here [us].
     until_us: u64,
 }
 
-impl Held {
-    fn go_on(&mut self) -> Stopped {
-        let next_us = self.sim.now_us() + TURN_US;
-        // An instruction may lie across the end.
-        let until_us = next_us.min(self.until_us.max(self.sim.now_us() + 1));
-        self.sim.advance(until_us);
-        let Some(mega) = self.sim.mega_mut() else {
-            return Stopped::Reached;
-        };
-        if let Some(stopped) = mega.take_halt() {
-            return stopped;
-        }
-        match mega.chip().cpu().verdict() {
-            Some(verdict) => Stopped::Ended(verdict.clone()),
-            None => Stopped::Reached,
-        }
-    }
-}
-
 impl Machine for Held {
     fn chip(&self) -> &Chip {
-        match self.sim.mega() {
-            Some(mega) => mega.chip(),
-            None => unreachable!("a debugger is let in only where there is one"),
-        }
+        self.world.chip()
     }
 
     fn chip_mut(&mut self) -> &mut Chip {
-        match self.sim.mega_mut() {
-            Some(mega) => mega.chip_mut(),
-            None => unreachable!("a debugger is let in only where there is one"),
-        }
+        self.world.mega_mut().chip_mut()
     }
 
     fn go(&mut self) -> Stopped {
-        self.go_on()
+        let now_us = self.world.sim().now_us();
+        // An instruction may lie across the end.
+        let until_us = self.until_us.max(now_us + 1);
+        self.world.advance(until_us.min(now_us + TURN_US))
     }
 
     fn step(&mut self) -> Stopped {
-        if let Some(mega) = self.sim.mega_mut() {
-            mega.step();
-        }
-        self.go_on()
+        self.world.mega_mut().step();
+        self.go()
     }
 }

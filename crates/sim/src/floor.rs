@@ -1,15 +1,18 @@
 //! Dark lines on the floor, and what reflectance sensors below the robot see of them.
 //!
 //! A sensor sees a spot; what share of it is dark grows from 0 to 1 across the edge of a line. Spot and voltages are those of
-//! TCRT5000 modules by their data sheet (Vishay 83760) and usual circuit, not identified from recordings.
+//! TCRT5000 modules by their data sheet (Vishay 83760) and usual circuit, not identified from recordings. Arrays such as
+//! Pololu's QTR-RC give a time: the program charges a capacitor at the pin, which the reflected light discharges.
 
 use rumbo_plant::contact::Pose;
 
 /// Width of the spot \[m\]: the data sheet's working distance of 2.5 mm sees about that.
 const SPOT_M: f64 = 0.004;
 /// Voltages of an analogue module over a light and a dark floor \[V\].
-const LIGHT_V: f64 = 0.4;
-const DARK_V: f64 = 4.4;
+pub const USUAL_V: [f64; 2] = [0.4, 4.4];
+/// Times to discharge over a light and a dark floor \[us\]: "a few dozen microseconds" to "several milliseconds"
+/// (Pololu, QTR-1RC).
+const DISCHARGE_US: [f64; 2] = [120.0, 4_000.0];
 /// Standard deviation of its voltage \[V\]: two counts of the converter.
 pub(crate) const NOISE_V: f64 = 0.01;
 /// A comparator switches this far beyond the middle.
@@ -35,6 +38,17 @@ impl Line {
     }
 }
 
+/// What a reflectance sensor gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
+    /// A level.
+    Level,
+    /// A voltage, over a light and over a dark floor \[V\].
+    Volts([f64; 2]),
+    /// The time for which the charged pin stays high.
+    Discharge,
+}
+
 /// A reflectance sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineSensor {
@@ -44,8 +58,8 @@ pub struct LineSensor {
     pub at_m: [f64; 2],
     /// The board's pin.
     pub pin: u8,
-    /// It gives a voltage, not a level.
-    pub analogue: bool,
+    /// What it gives.
+    pub reading: Reading,
     /// A dark floor is high.
     pub dark_high: bool,
 }
@@ -62,14 +76,14 @@ impl LineSensor {
         ]
     }
 
-    /// The voltage of an analogue one.
-    pub(crate) fn volts(&self, darkness: f64) -> f64 {
+    /// The voltage of an analogue one, of what it gives over a light and over a dark floor.
+    pub(crate) fn volts(&self, [light_v, dark_v]: [f64; 2], darkness: f64) -> f64 {
         let high = if self.dark_high {
             darkness
         } else {
             1.0 - darkness
         };
-        LIGHT_V + high * (DARK_V - LIGHT_V)
+        light_v + high * (dark_v - light_v)
     }
 
     /// The level of another one, which was at a level before.
@@ -82,6 +96,12 @@ impl LineSensor {
         };
         (darkness > edge) == self.dark_high
     }
+}
+
+/// How long a charged pin stays high \[us\]: the currents of the light and the dark share of the spot add.
+pub(crate) fn discharge_us(darkness: f64) -> f64 {
+    let [light_us, dark_us] = DISCHARGE_US;
+    1.0 / ((1.0 - darkness) / light_us + darkness / dark_us)
 }
 
 /// The place on a line that is nearest to a point.

@@ -11,6 +11,7 @@ pub mod bus;
 mod config;
 pub mod debugging;
 pub mod drivers;
+pub mod emulated;
 mod error;
 pub mod fleet;
 pub mod floor;

@@ -33,6 +33,13 @@ pub(crate) const IMAGE: &str = "sketch.elf";
 /// Most complaints kept of a compilation.
 const MOST_COMPLAINTS: usize = 200;
 
+/// How far a build is.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Mark {
+    objects: usize,
+    complaints: usize,
+}
+
 /// One compilation, in its own folder: the sketch beside its products.
 pub(crate) struct Build<'a> {
     board: Board,
@@ -48,7 +55,6 @@ pub(crate) struct Build<'a> {
     /// Their names in the folder of products.
     pub(crate) objects: Vec<String>,
     pub(crate) complaints: Vec<Diagnostic>,
-    failed: Option<SketchError>,
 }
 
 impl<'a> Build<'a> {
@@ -58,7 +64,6 @@ impl<'a> Build<'a> {
         toolchain: &'a Toolchain,
         sandbox: &'a Sandbox,
         within: &Path,
-        libraries: Vec<PathBuf>,
     ) -> Result<Self, SketchError> {
         let wrong = |error| SketchError::file(within, error);
         let folder = tempfile::Builder::new()
@@ -74,12 +79,11 @@ impl<'a> Build<'a> {
             toolchain,
             sandbox,
             folder,
-            libraries,
+            libraries: Vec::new(),
             own: Vec::new(),
             deadline: Instant::now() + sandbox.limits().time,
             objects: Vec::new(),
             complaints: Vec::new(),
-            failed: None,
         })
     }
 
@@ -92,29 +96,47 @@ impl<'a> Build<'a> {
         write().map_err(|error| SketchError::file(&path, error))
     }
 
-    /// Compiles a file of the sketch, if it is one to be compiled, by a name that no file of a sketch may have.
-    pub(crate) fn own(
-        &mut self,
-        name: &str,
-        bytes: &[u8],
-        flags: &[&str],
-    ) -> Result<(), SketchError> {
+    /// Puts a file of the sketch, if it is one to be compiled, by a name that no file of a sketch may have.
+    pub(crate) fn own(&self, name: &str, bytes: &[u8]) -> Result<Option<PathBuf>, SketchError> {
         let path = Path::new(name);
         let Some(ending) = source_ending(path) else {
-            return Ok(());
+            return Ok(None);
         };
-        let ours = format!("rumbo~{}.{ending}", self.objects.len());
-        let ours = path.with_file_name(ours).to_string_lossy().into_owned();
+        let ours = path.with_file_name(format!("rumbo~{}.{ending}", self.objects.len()));
         let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
         let line = format!("#line 1 \"{name}\"\n");
-        self.put(SKETCH, &ours, &[line.as_bytes(), text].concat())?;
-        self.object(ours.as_ref(), flags);
-        Ok(())
+        let bytes = [line.as_bytes(), text].concat();
+        self.put(SKETCH, &ours.to_string_lossy(), &bytes)?;
+        Ok(Some(ours))
     }
 
     /// Headers of the sketch are looked for in this folder of it too.
     pub(crate) fn look_in(&mut self, folder: String) {
         self.own.push(folder);
+    }
+
+    /// Headers are looked for in these folders of a library too.
+    pub(crate) fn look_in_library(&mut self, folders: &[PathBuf]) {
+        self.libraries.extend_from_slice(folders);
+    }
+
+    /// How far it is.
+    pub(crate) fn mark(&self) -> Mark {
+        Mark {
+            objects: self.objects.len(),
+            complaints: self.complaints.len(),
+        }
+    }
+
+    /// Takes back what came after a mark.
+    pub(crate) fn back_to(&mut self, mark: Mark) {
+        self.objects.truncate(mark.objects);
+        self.complaints.truncate(mark.complaints);
+    }
+
+    /// What was said after a mark.
+    pub(crate) fn said_since(&self, mark: Mark) -> &[Diagnostic] {
+        self.complaints.get(mark.complaints..).unwrap_or_default()
     }
 
     /// The options for a file, and where headers are.
@@ -141,8 +163,7 @@ impl<'a> Build<'a> {
         args
     }
 
-    /// A file of ours after the preprocessor, with marks of where each line is from; `None` if that fails, which the
-    /// compiler then reports.
+    /// A file of ours after the preprocessor, with marks of where each line is from; `None` if it complains.
     pub(crate) fn preprocessed(
         &mut self,
         file: &str,
@@ -152,13 +173,11 @@ impl<'a> Build<'a> {
         let from = seen(MAIN, file);
         let mut args = self.args(&[&["-E", "-w"], flags].concat(), Path::new(&from));
         args.extend([from, "-o".into(), seen(OUT, product)]);
-        let before = self.complaints.len();
-        let done = self.run(&self.toolchain.gcc, &args, product, &[]);
-        if self.complaints.len() > before {
-            self.complaints.truncate(before);
+        let before = self.mark();
+        self.run(&self.toolchain.gcc, &args, product, &[])?;
+        if !self.said_since(before).is_empty() {
             return Ok(None);
         }
-        done?;
         let mut text = Vec::new();
         let file = self.product(product)?;
         (&file)
@@ -168,16 +187,13 @@ impl<'a> Build<'a> {
     }
 
     /// Compiles one file, of ours or of a library; an error does not keep the others from being compiled, so that all errors are seen.
-    pub(crate) fn object(&mut self, file: &Path, flags: &[&str]) {
+    pub(crate) fn object(&mut self, file: &Path, flags: &[&str]) -> Result<(), SketchError> {
         let object = format!("{}.o", self.objects.len());
         let mut args = self.args(&[self.options.object, flags].concat(), file);
         args.extend([OsString::from(file), "-o".into(), seen(OUT, &object)]);
-        if self.failed.is_none()
-            && let Err(error) = self.run(&self.toolchain.gcc, &args, &object, &[])
-        {
-            self.failed = Some(error);
-        }
+        self.run(&self.toolchain.gcc, &args, &object, &[])?;
         self.objects.push(object);
+        Ok(())
     }
 
     /// Links all products with an archive of the core.
@@ -202,6 +218,11 @@ impl<'a> Build<'a> {
         more: &[&Path],
     ) -> Result<(), SketchError> {
         let product = Path::new(OUT).join(makes);
+        // That of the same step before.
+        let path = self.folder.path().join(&product);
+        if path.symlink_metadata().is_ok() {
+            fs::remove_file(&path).map_err(|error| SketchError::file(&path, error))?;
+        }
         let task = Task {
             build: self.folder.path(),
             inner: SKETCH,
@@ -250,10 +271,7 @@ impl<'a> Build<'a> {
     }
 
     /// Whether there was no error so far.
-    pub(crate) fn finish(&mut self) -> Result<(), SketchError> {
-        if let Some(error) = self.failed.take() {
-            return Err(error);
-        }
+    pub(crate) fn finish(&self) -> Result<(), SketchError> {
         let errors = self.complaints.iter();
         let errors: Vec<Diagnostic> = errors
             .filter(|one| one.severity == Severity::Error)

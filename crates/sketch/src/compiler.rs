@@ -1,12 +1,13 @@
 //! Compiles core, libraries and a sketch; products are cached by the hash of all inputs.
 
 use crate::board::Board;
-use crate::build::{Build, IMAGE, MAIN, OUT, SKETCH, seen, source_ending};
+use crate::build::{Build, IMAGE, MAIN, Mark, OUT, SKETCH, seen, source_ending};
 use crate::diagnostics::Diagnostic;
 use crate::error::SketchError;
 use crate::examples::example;
-use crate::layout::{Beside, Layout};
-use crate::libraries::{Library, spelled};
+use crate::headers::{Found, MISSING, Search, mentioned};
+use crate::layout::Layout;
+use crate::libraries::read;
 use crate::limits::Limits;
 use crate::options::{C, CPP, DEBUG, Options, RUN};
 use crate::preprocess;
@@ -14,21 +15,12 @@ use crate::sandbox::Sandbox;
 use crate::source::{Given, Source, given};
 use crate::toolchain::Toolchain;
 use sha2::{Digest, Sha256};
-use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Part of every key: products of another layout are another's.
-const LAYOUT: &str = "preprocessed";
-/// How the compiler ends that it misses a header.
-const MISSING: &str = ": No such file or directory";
-/// Folder of a build with headers that include others.
-const SPELLED: &str = "rumbo~spelled";
-/// Headers as they are included, and as they are called.
-type Spelled = BTreeMap<String, String>;
-/// Most headers that a sketch may include by different names: FastLED has some thousands.
-const MOST_HEADERS: usize = 10_000;
+const LAYOUT: &str = "missed headers";
 
 /// Compiles sketches.
 #[derive(Clone, Debug)]
@@ -126,6 +118,19 @@ impl Compiler {
         Self::with(board, RUN, toolchain, sandbox, cache)
     }
 
+    /// The same for a debugger, as [`image_to_debug`].
+    ///
+    /// # Errors
+    /// As [`Compiler::new`].
+    pub fn to_debug(
+        board: Board,
+        toolchain: Toolchain,
+        sandbox: Sandbox,
+        cache: PathBuf,
+    ) -> Result<Self, SketchError> {
+        Self::with(board, DEBUG, toolchain, sandbox, cache)
+    }
+
     fn with(
         board: Board,
         options: Options,
@@ -175,60 +180,12 @@ impl Compiler {
     /// If the compiler rejects it, or it exceeds a limit.
     pub fn compile(&self, source: &Source, macros: &[&str]) -> Result<Image, SketchError> {
         source.check()?;
-        let mut spelled = Spelled::new();
-        loop {
-            let result = self.attempt(source, macros, &spelled);
-            let more = match &result {
-                Err(SketchError::Rejected(errors)) => self.other_spellings(source, errors),
-                _ => Spelled::new(),
-            };
-            let before = spelled.len();
-            spelled.extend(more);
-            if spelled.len() == before {
-                return result;
-            }
-        }
-    }
-
-    /// Headers that were not found, and how they are spelled where there is one: on Windows and macOS `servo.h` is `Servo.h`,
-    /// and many sketches are from there.
-    fn other_spellings(&self, source: &Source, errors: &[Diagnostic]) -> Spelled {
-        let missing = errors
-            .iter()
-            .filter_map(|error| error.text.split_once(MISSING));
-        let found = missing.filter_map(|(header, _)| {
-            let mut own = source.files.keys();
-            let own = own.find(|name| name.eq_ignore_ascii_case(header)).cloned();
-            let core = || spelled(&self.toolchain.core.join("cores/arduino"), header);
-            let library = || self.toolchain.spelled(header);
-            let real = own.or_else(core).or_else(library)?;
-            Some((header.to_owned(), real))
-        });
-        found.collect()
-    }
-
-    /// Compiles once, with headers by other names.
-    fn attempt(
-        &self,
-        source: &Source,
-        macros: &[&str],
-        spelled: &Spelled,
-    ) -> Result<Image, SketchError> {
         let layout = Layout::of(source);
         let main = preprocess::join(source, layout.main);
         if main.is_none() && !layout.own.iter().any(|name| is_source(name)) {
             return Err(SketchError::NoSketch(source.name.clone()));
         }
-        let needed = self.libraries_of(source, &layout, spelled)?;
-        let mut key = self.key(macros);
-        for (name, bytes) in &source.files {
-            part(&mut key, name.as_bytes());
-            part(&mut key, bytes);
-        }
-        part(&mut key, source.name.as_bytes());
-        for file in needed.installed.iter().flat_map(|library| &library.files) {
-            part(&mut key, &read(file)?);
-        }
+        let key = self.key_of(source, &layout, macros)?;
         let image = self.cache.join(hex(key)).join(file_name(&source.name));
         if image.is_file() {
             return Ok(Image {
@@ -237,55 +194,11 @@ impl Compiler {
                 warnings: Vec::new(),
             });
         }
-        let folders = needed
-            .installed
-            .iter()
-            .flat_map(|library| library.include.clone());
-        let mut build = self.build(&self.sandbox, folders.collect())?;
+        let mut build = self.build(&self.sandbox)?;
         for (name, bytes) in &source.files {
             build.put(SKETCH, name, bytes)?;
         }
-        for library in &needed.beside {
-            build.look_in(library.headers.clone());
-        }
-        for (header, real) in spelled {
-            build.put(
-                SKETCH,
-                &format!("{SPELLED}/{header}"),
-                format!("#include <{real}>\n").as_bytes(),
-            )?;
-            build.look_in(SPELLED.to_owned());
-        }
-        let headers = layout.headers.iter().flat_map(|folder| ["-I", *folder]);
-        let seen_by_own: Vec<&str> = macros.iter().copied().chain(headers).collect();
-        let own = [&seen_by_own[..], &["-Wall", "-Wextra"]].concat();
-        if let Some(joined) = main {
-            build.put(MAIN, "joined.cpp", joined.as_bytes())?;
-            let preprocessed = build.preprocessed("joined.cpp", &seen_by_own)?;
-            let text = preprocess::with_declarations(&joined, preprocessed.as_deref());
-            build.put(MAIN, "main.ino.cpp", text.as_bytes())?;
-            build.object(Path::new(&seen(MAIN, "main.ino.cpp")), &own);
-        }
-        let compile = |build: &mut Build<'_>, name: &str, flags: &[&str]| {
-            build.own(
-                name,
-                source.files.get(name).map_or(&[], Vec::as_slice),
-                flags,
-            )
-        };
-        for name in &layout.own {
-            compile(&mut build, name, &own)?;
-        }
-        // Nobody mends a library's warnings here.
-        let quiet = [macros, &["-w"]].concat();
-        for name in needed.beside.iter().flat_map(|library| &library.files) {
-            compile(&mut build, name, &quiet)?;
-        }
-        for file in needed.installed.iter().flat_map(|library| &library.files) {
-            if source_ending(file).is_some() {
-                build.object(file, &quiet);
-            }
-        }
+        self.objects(&mut build, source, &layout, main.as_deref(), macros)?;
         build.finish().map_err(|error| self.with_places(error))?;
         build.link(&self.core)?;
         build.keep(IMAGE, &image)?;
@@ -296,17 +209,76 @@ impl Compiler {
         })
     }
 
-    fn build<'a>(
-        &'a self,
-        sandbox: &'a Sandbox,
-        folders: Vec<PathBuf>,
-    ) -> Result<Build<'a>, SketchError> {
+    /// Compiles a sketch, and the libraries whose headers the compiler misses.
+    fn objects(
+        &self,
+        build: &mut Build<'_>,
+        source: &Source,
+        layout: &Layout<'_>,
+        main: Option<&str>,
+        macros: &[&str],
+    ) -> Result<(), SketchError> {
+        let mut search = Search::new(&self.toolchain, self.own_libraries(), source, layout);
+        let headers = layout.headers.iter().flat_map(|folder| ["-I", *folder]);
+        let seen_by_own: Vec<&str> = macros.iter().copied().chain(headers).collect();
+        let own = [&seen_by_own[..], &["-Wall", "-Wextra"]].concat();
+        if let Some(joined) = main {
+            build.put(MAIN, "joined.cpp", joined.as_bytes())?;
+            let preprocessed = search.step(build, |build| {
+                build.preprocessed("joined.cpp", &seen_by_own)
+            })?;
+            // What is wrong the compiler says again, at its place in the sketch.
+            build.back_to(Mark::default());
+            let text = preprocess::with_declarations(joined, preprocessed.as_deref());
+            build.put(MAIN, "main.ino.cpp", text.as_bytes())?;
+            let file = seen(MAIN, "main.ino.cpp");
+            search.step(build, |build| build.object(Path::new(&file), &own))?;
+        }
+        let compile =
+            |search: &mut Search<'_>, build: &mut Build<'_>, name: &str, flags: &[&str]| {
+                let bytes = source.files.get(name).map_or(&[][..], Vec::as_slice);
+                match build.own(name, bytes)? {
+                    Some(file) => search.step(build, |build| build.object(&file, flags)),
+                    None => Ok(()),
+                }
+            };
+        for name in &layout.own {
+            compile(&mut search, build, name, &own)?;
+        }
+        // Nobody mends a library's warnings here.
+        let quiet = [macros, &["-w"]].concat();
+        while let Some(library) = search.next() {
+            match library {
+                Found::Beside(index) => {
+                    for name in &layout.libraries[index].files {
+                        compile(&mut search, build, name, &quiet)?;
+                    }
+                }
+                Found::Installed(library) => {
+                    for file in library
+                        .files
+                        .iter()
+                        .filter(|file| source_ending(file).is_some())
+                    {
+                        search.step(build, |build| build.object(file, &quiet))?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Where our libraries are put.
+    fn own_libraries(&self) -> PathBuf {
+        self.cache.join("libraries")
+    }
+
+    fn build<'a>(&'a self, sandbox: &'a Sandbox) -> Result<Build<'a>, SketchError> {
         Build::new(
             (self.board, self.options),
             &self.toolchain,
             sandbox,
             &self.cache,
-            folders,
         )
     }
 
@@ -339,9 +311,9 @@ impl Compiler {
         }
         // Trusted source: no isolation, and a generous time limit.
         let trusting = Sandbox::trusting(Limits::default());
-        let mut build = self.build(&trusting, Vec::new())?;
+        let mut build = self.build(&trusting)?;
         for file in files.iter().filter(|file| source_ending(file).is_some()) {
-            build.object(file, &["-w"]);
+            build.object(file, &["-w"])?;
         }
         build.finish()?;
         let mut args: Vec<OsString> = vec!["rcs".into(), seen(OUT, "core.a")];
@@ -378,84 +350,24 @@ impl Compiler {
         key
     }
 
-    /// The libraries that a sketch includes, and those that they include.
-    fn libraries_of<'a>(
+    /// The key of a sketch's image: all files that it mentions.
+    fn key_of(
         &self,
         source: &Source,
-        layout: &'a Layout<'_>,
-        spelled: &Spelled,
-    ) -> Result<Needed<'a>, SketchError> {
-        let ours = self.cache.join("libraries");
-        let mut headers = Headers::default();
-        let own = |names: &[&str], headers: &mut Headers| {
-            let files = names.iter().filter_map(|name| source.files.get(*name));
-            files
-                .into_iter()
-                .try_for_each(|bytes| headers.note(bytes, source))
-        };
-        own(&layout.own, &mut headers)?;
-        let (mut beside, mut installed) = (BTreeSet::new(), Vec::<Library>::new());
-        while let Some(header) = headers.next.pop() {
-            let header = spelled.get(&header).cloned().unwrap_or(header);
-            if let Some(index) = layout.library(&header) {
-                if beside.insert(index) {
-                    own(&layout.libraries[index].files, &mut headers)?;
-                }
-                continue;
-            }
-            let Some(library) = self.toolchain.library(&header, &ours)? else {
-                continue;
-            };
-            if installed.contains(&library) {
-                continue;
-            }
-            for file in &library.files {
-                headers.note(&read(file)?, source)?;
-            }
-            installed.push(library);
+        layout: &Layout<'_>,
+        macros: &[&str],
+    ) -> Result<Sha256, SketchError> {
+        let mut key = self.key(macros);
+        for (name, bytes) in &source.files {
+            part(&mut key, name.as_bytes());
+            part(&mut key, bytes);
         }
-        installed.sort_by(|a, b| a.include.cmp(&b.include));
-        Ok(Needed {
-            beside: beside
-                .into_iter()
-                .map(|index| &layout.libraries[index])
-                .collect(),
-            installed,
-        })
+        part(&mut key, source.name.as_bytes());
+        for file in mentioned(&self.toolchain, &self.own_libraries(), source, layout)? {
+            part(&mut key, &read(&file)?);
+        }
+        Ok(key)
     }
-}
-
-/// The headers that are included somewhere.
-#[derive(Default)]
-struct Headers {
-    all: BTreeSet<String>,
-    /// Those not looked for yet.
-    next: Vec<String>,
-}
-
-impl Headers {
-    /// Notes those of a file but for the sketch's own.
-    fn note(&mut self, file: &[u8], source: &Source) -> Result<(), SketchError> {
-        let text = String::from_utf8_lossy(file);
-        for name in preprocess::includes(&text) {
-            if !source.files.contains_key(name) && self.all.insert(name.to_owned()) {
-                self.next.push(name.to_owned());
-            }
-        }
-        match self.all.len() > MOST_HEADERS {
-            true => Err(SketchError::Refused(format!(
-                "the sketch includes more than {MOST_HEADERS} different headers"
-            ))),
-            false => Ok(()),
-        }
-    }
-}
-
-/// The libraries that a sketch needs.
-struct Needed<'a> {
-    /// Those beside it.
-    beside: Vec<&'a Beside<'a>>,
-    installed: Vec<Library>,
 }
 
 /// Whether a file is compiled by itself.
@@ -493,8 +405,4 @@ fn files_of(folder: &Path) -> Result<Vec<PathBuf>, SketchError> {
         .collect();
     files.sort();
     Ok(files)
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, SketchError> {
-    fs::read(path).map_err(|error| SketchError::file(path, error))
 }

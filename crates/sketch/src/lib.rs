@@ -20,6 +20,7 @@ mod error;
 #[cfg(all(test, target_os = "linux"))]
 mod escape;
 mod examples;
+mod headers;
 mod layout;
 mod libraries;
 pub mod limits;

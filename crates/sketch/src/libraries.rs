@@ -2,7 +2,7 @@
 //!
 //! A library with `library.properties` and `src/` has its headers there, and all below `src/` is compiled; any other has
 //! them in its own folder, of which and of `utility/` the files are compiled. Of several with a header the one is taken
-//! whose folder is called like it, else one whose folder begins so, else the first.
+//! that says it is for the chip, then whose folder is called like it, else begins so, else the first.
 
 use crate::error::SketchError;
 use crate::source::ending;
@@ -40,6 +40,11 @@ impl Library {
     }
 }
 
+/// A file of a library or of the core.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, SketchError> {
+    fs::read(path).map_err(|error| SketchError::file(path, error))
+}
+
 /// The library in one of these folders that has a header; `None` if there is none.
 pub(crate) fn find(folders: &[PathBuf], header: &str) -> Result<Option<Library>, SketchError> {
     if !is_header(header) {
@@ -47,7 +52,7 @@ pub(crate) fn find(folders: &[PathBuf], header: &str) -> Result<Option<Library>,
     }
     let stem = Path::new(header).file_stem().unwrap_or_default();
     let stem = stem.to_string_lossy().to_lowercase();
-    let mut found: Vec<(u8, PathBuf, bool)> = Vec::new();
+    let mut found: Vec<((bool, u8), PathBuf, bool)> = Vec::new();
     for folder in folders {
         let Ok(entries) = fs::read_dir(folder) else {
             continue;
@@ -56,7 +61,7 @@ pub(crate) fn find(folders: &[PathBuf], header: &str) -> Result<Option<Library>,
         inside.sort();
         for library in inside {
             let (include, recursive) = layout(&library);
-            if !include.join(header).is_file() || !is_for_avr(&library) {
+            if !include.join(header).is_file() {
                 continue;
             }
             let name = library.file_name().unwrap_or_default();
@@ -66,7 +71,8 @@ pub(crate) fn find(folders: &[PathBuf], header: &str) -> Result<Option<Library>,
                 false if name.starts_with(&stem) => 1,
                 false => 2,
             };
-            found.push((rank, include, recursive));
+            // One that names other chips is taken where nothing else has the header.
+            found.push(((!is_for_avr(&library), rank), include, recursive));
         }
     }
     // The first of the best: folders come in their order.
@@ -173,7 +179,10 @@ mod tests {
         let horn = found("Horn.h").unwrap();
         assert_eq!(horn.include, [root.path().join("Horn/src")]);
         assert!(horn.files.iter().any(|file| file.ends_with("avr/Horn.cpp")));
-        assert_eq!(found("Radio.h"), None, "it is for another chip");
+        assert!(
+            found("Radio.h").is_some(),
+            "for another chip, and the only one"
+        );
         for strange in ["../Horn/src/Horn.h", "/etc/x.h", "Horn.cpp", "", "Horn/"] {
             assert_eq!(found(strange), None, "{strange}");
         }

@@ -2,8 +2,8 @@
 //! the first.
 //!
 //! Functions are those behind the compiler's own preprocessor: what stands in a branch that is not compiled is none, and
-//! its braces do not count. What a macro alone makes is left to the macro. Where the preprocessor fails, the text itself
-//! is looked at, and the compiler says what is wrong.
+//! its braces do not count; what a macro makes is one. Where the preprocessor fails, the text itself is looked at, and
+//! the compiler says what is wrong.
 
 use crate::source::Source;
 
@@ -30,15 +30,22 @@ pub(crate) fn join(source: &Source, folder: &str) -> Option<String> {
     (!parts.is_empty()).then_some(text)
 }
 
-/// Headers that a source includes, or imports, which the compiler takes too.
+/// Headers that a source includes, or imports, which the compiler takes too, or names in a macro.
 pub(crate) fn includes(text: &str) -> impl Iterator<Item = &str> {
     let directives = text
         .lines()
         .filter_map(|line| line.trim().strip_prefix('#'));
     let rests = directives.filter_map(|line| {
         let line = line.trim_start();
-        line.strip_prefix("include")
+        let named = || {
+            line.strip_prefix("define")?
+                .find(['<', '"'])
+                .map(|at| &line["define".len() + at..])
+        };
+        let included = line.strip_prefix("include");
+        included
             .or_else(|| line.strip_prefix("import"))
+            .or_else(named)
     });
     rests.filter_map(|rest| {
         let quoted = rest.trim().strip_prefix(['<', '"'])?;
@@ -53,8 +60,7 @@ pub(crate) fn with_declarations(joined: &str, preprocessed: Option<&str>) -> Str
         Some(text) => {
             let (text, lines) = own_lines(text, &places);
             let head = |(at, head): (usize, String)| {
-                let place = *lines.get(text[..at].matches('\n').count())?;
-                places.has_name(place, &head).then_some((place, head))
+                Some((*lines.get(text[..at].matches('\n').count())?, head))
             };
             functions(&text).into_iter().filter_map(head).collect()
         }
@@ -117,23 +123,7 @@ impl<'a> Places<'a> {
         let lines = text.split_inclusive('\n').take(line - 1);
         begin + lines.map(str::len).sum::<usize>()
     }
-
-    /// Whether a function's name stands where its head begins, and is not made by a macro there.
-    fn has_name(&self, (file, line): Place<'_>, head: &str) -> bool {
-        let name = head.split('(').next().unwrap_or_default().trim_end();
-        let name = name
-            .rsplit(|c: char| !c.is_alphanumeric() && c != '_')
-            .next();
-        let text = self.text(file).map_or("", |(_, text)| text);
-        let lines = text.lines().skip(line - 1).take(HEAD_LINES);
-        let mut words =
-            lines.flat_map(|line| line.split(|c: char| !c.is_alphanumeric() && c != '_'));
-        name.is_some_and(|name| words.any(|word| word == name))
-    }
 }
-
-/// A head has its name within so many lines.
-const HEAD_LINES: usize = 10;
 
 /// The lines of the sketch's own files in a preprocessed text, and where each is from.
 fn own_lines<'a>(preprocessed: &str, places: &Places<'a>) -> (String, Vec<Place<'a>>) {
@@ -160,7 +150,9 @@ fn own_lines<'a>(preprocessed: &str, places: &Places<'a>) -> (String, Vec<Place<
 fn functions(text: &str) -> Vec<(usize, String)> {
     let blank = blanked(text);
     let mut found = Vec::new();
-    let (mut depth, mut start) = (0usize, 0);
+    // Where the declaration before began, and where this one does.
+    let (mut before, mut start) = (0, 0);
+    let mut depth = 0usize;
     for (at, character) in blank.char_indices() {
         match character {
             '{' => {
@@ -172,7 +164,10 @@ fn functions(text: &str) -> Vec<(usize, String)> {
                 };
                 let begin = at - head.len();
                 let declared = behind_attributes(head).trim_end();
-                if is_function(declared) && !text[begin..at].contains("extern \"") {
+                // ISR() declares its function as C's before, on the same line.
+                let is_own = depth != 0 || text[start..begin].contains('\n');
+                let from = if is_own { begin } else { before };
+                if is_function(declared) && !text[from..at].contains("extern \"") {
                     let words: Vec<&str> = declared.split_whitespace().collect();
                     found.push((begin, words.join(" ")));
                 }
@@ -180,9 +175,9 @@ fn functions(text: &str) -> Vec<(usize, String)> {
             }
             '}' => {
                 depth = depth.saturating_sub(1);
-                start = at + 1;
+                (before, start) = (at + 1, at + 1);
             }
-            ';' if depth == 0 => start = at + 1,
+            ';' if depth == 0 => (before, start) = (start, at + 1),
             _ => {}
         }
     }
@@ -192,13 +187,14 @@ fn functions(text: &str) -> Vec<(usize, String)> {
 /// `type name(arguments)`, and neither a class, an interrupt routine, an initialiser, a member nor a type.
 fn is_function(head: &str) -> bool {
     let name = head.split('(').next().unwrap_or_default();
+    let own = name.split_whitespace().next_back().unwrap_or_default();
     head.ends_with(')')
         && !head.starts_with("typedef")
         && !name.ends_with("__attribute__")
         && !name.ends_with("__attribute__ ")
         && name.split_whitespace().count() >= 2
         && !head.contains('=')
-        && !name.contains("::")
+        && !own.contains("::")
 }
 
 /// What follows the attributes at the beginning of a head; the definition has them.

@@ -175,9 +175,9 @@ async fn take_orders(
             }
         };
         let admitted = match order {
-            Order::Program(..) if !hub.local => {
-                Err("refused: a program is taken only where no other computer reaches the page")
-            }
+            Order::Program(_) | Order::Sketch(..) | Order::Debug(_) if !hub.local => Err(
+                "refused: programs are taken and shown only where no other computer reaches the page",
+            ),
             _ => place.admit(&order),
         };
         if let Err(why) = admitted {

@@ -118,7 +118,7 @@ export const PAGE = {
   'Enlarge the panel': 'Ampliar el panel', 'Put the panel back (Escape)': 'Devolver el panel a su sitio (Escape)',
   // One's own program.
   'starts again when it is saved': 'empieza de nuevo al guardarlo', 'Errors of the compiler': 'Errores del compilador', 'compiling…': 'compilando…', 'does not compile': 'no compila', 'program runs': 'programa en marcha',
-  'The robot is switched off until the program compiles. Correct it and save.': 'El robot está apagado hasta que el programa compile. Corrígelo y guárdalo.',
+  'The robot is switched off until the program compiles. Correct it, and save or run it.': 'El robot está apagado hasta que el programa compile. Corrígelo, y guárdalo o ejecútalo.',
   '{}: not sent, a program has at most {} MB': '{}: no enviado, un programa tiene como mucho {} MB', 'drop another .ino, .elf or .hex here': 'suelta aquí otro .ino, .elf o .hex',
   'Plot the numbers that this port prints': 'Dibuja los números que escribe este puerto', 'Plot numbers': 'Dibujar números', '{} (Bluetooth)': '{} (Bluetooth)', 'STOP and OFF cut the supply of the motors, ON gives it back; the program gets them as text, too': 'STOP y OFF cortan la alimentación de los motores, ON la devuelve; al programa le llegan además como texto', 'motors without supply': 'motores sin alimentación', 'motors supplied': 'motores con alimentación', 'sonars': 'sonares',
   'levels of pins, 0 to 1': 'niveles de los pines, 0 a 1', 'encoders, edges': 'encoders, flancos', 'pulses, µs': 'pulsos, µs', 'printed by the program': 'escritas por el programa',

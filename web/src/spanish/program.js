@@ -46,6 +46,7 @@ export const PROGRAM = {
   'its data sheet (TI SLRS008)': 'su hoja de datos (TI SLRS008)', 'its data sheet (TI SLVSAR1)': 'su hoja de datos (TI SLVSAR1)', 'its data sheet (Toshiba TB6612FNG, 2014-10-01)': 'su hoja de datos (Toshiba TB6612FNG, 2014-10-01)',
   'the data sheet of the L293D (TI SLRS008)': 'la hoja de datos del L293D (TI SLRS008)', 'the data sheet of the TB6612FNG': 'la hoja de datos del TB6612FNG',
   'line sensors: TCRT5000 modules by their data sheet, not identified': 'sensores de línea: módulos TCRT5000 según su hoja de datos, sin identificar',
+  'line sensors: QTR-RC by what Pololu says of it, not identified': 'sensores de línea: QTR-RC según lo que dice Pololu, sin identificar',
   'accelerometer and gyroscope: MPU-6050 by its data sheet, not identified': 'acelerómetro y giróscopo: MPU-6050 según su hoja de datos, sin identificar',
   'sensors for obstacles: by what their sellers and Sharp\'s data sheet say, not identified': 'sensores de obstáculos: según sus vendedores y la hoja de datos de Sharp, sin identificar',
   'two BTS7960 a motor (IBT-2)': 'dos BTS7960 por motor (IBT-2)', 'its data sheet (Infineon, 2004-12-07)': 'su hoja de datos (Infineon, 2004-12-07)',

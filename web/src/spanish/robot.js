@@ -230,7 +230,7 @@ export const ROBOT = {
   'compiler: {}': 'compilador: {}', 'program: refused, {}': 'programa: rechazado, {}', 'only an .ino, .elf or .hex file is a program for the Mega': 'solo un archivo .ino, .elf o .hex es un programa para el Mega',
   'here are several robots, and a program from the page runs on one alone; set robots to 1, or choose a scenario with one':
     'aquí hay varios robots, y un programa de la página va en uno solo; pon robots en 1 o elige un escenario con uno',
-  'refused: a program is taken only where no other computer reaches the page': 'rechazado: solo se acepta un programa donde ningún otro ordenador alcanza la página',
+  'refused: programs are taken and shown only where no other computer reaches the page': 'rechazado: los programas solo se aceptan y se enseñan donde ningún otro ordenador alcanza la página',
   'the program does not compile; correct it and save': 'el programa no compila; corrígelo y guárdalo', 'this robot takes no program from a page': 'este robot no acepta programas desde una página',
   'recording to {}': 'grabando en {}', 'not recording: {}': 'no se graba: {}', 'recording ended: the log cannot be written ({}); is the disk full?': 'fin de la grabación: no se puede escribir ({}); ¿disco lleno?',
   'recording: the disk is slow; entries missing in the log: {}': 'grabación: el disco es lento; entradas que faltan: {}',

@@ -31,6 +31,10 @@ for (const [colorScheme, driven] of /** @type {const} */ ([['dark', test], ['lig
       await page.locator('#editor').waitFor();
       assert.deepEqual(await violations(page, '#editor'), [], 'world editor');
       await page.locator('#edit-world').click();
+      await page.locator('#code-open').click();
+      await page.locator('#code-editor .cm-line').first().waitFor();
+      assert.deepEqual(await violations(page, '#code-section'), [], 'code');
+      await page.locator('#code-open').click();
       await page.locator('#help').click();
       assert.deepEqual(await violations(page, '#help-dialog'), [], 'help');
       await page.keyboard.press('Escape');

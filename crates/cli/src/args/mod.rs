@@ -50,7 +50,7 @@ pub(crate) struct Cli {
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Drive a simulated robot from a dashboard in the browser
+    /// Drive a simulated robot from a dashboard in the browser, which also edits, runs and debugs its sketch
     Lab(LabArgs),
     /// Drive a real robot from the same dashboard, over a serial port or TCP
     Connect(ConnectArgs),
@@ -153,8 +153,8 @@ pub(crate) struct NewArgs {
     #[arg(long, value_name = "DRIVER", value_parser = values::driver_named)]
     pub(crate) driver: Option<(&'static Driver, bool)>,
     /// Pins of the robot's signals, e.g. left_forward=7,servo=9,front_echo=A1; line sensors from left to right, by names of yours,
-    /// as line_left=2,line_right=A1, and line_dark=low; so infrared ones for obstacles, obstacle_left=3, and sharp_front=A0;
-    /// link_baud=38400 is the rate of a Bluetooth module
+    /// as line_left=2,line_right=A1; of all of them line_dark=low, line_rc=true (QTR-RC), line_light_v=0.2, line_dark_v=4.8; so
+    /// infrared ones for obstacles, obstacle_left=3, and sharp_front=A0; link_baud=38400 is the rate of a Bluetooth module
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,
     /// Wheels, 2 or 4; the two of a side are driven alike

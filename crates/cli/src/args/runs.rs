@@ -1,7 +1,7 @@
 //! Options of the commands that run experiments and fit numbers: `run`, `experiments`, `identify`, `calibrate`.
 
 use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, ProgramName, SeedArgs, SettingArgs};
-use super::values::{line_ending, press, timed_text, usb_text};
+use super::values::{line_ending, press, put, timed_text, usb_text};
 use clap::{Args, ValueEnum};
 use rumbo_experiment::files::TimedText;
 use rumbo_wire::LineEnding;
@@ -65,6 +65,9 @@ pub(crate) struct RunArgs {
     /// repeated
     #[arg(long, value_name = "NAME@SECONDS", value_parser = press, requires = "image")]
     pub(crate) press: Vec<Vec<TimedText>>,
+    /// Where a hand puts the robot at a time, x and y in m, heading in degrees, e.g. '0.2,0.1,90@3'; may be repeated
+    #[arg(long, value_name = "X,Y,DEG@SECONDS", value_parser = put, allow_hyphen_values = true)]
+    pub(crate) place: Vec<TimedText>,
     /// What is sent behind each of these lines, as in the Serial Monitor: none, for single letters, lf, cr or crlf
     #[arg(long, value_name = "ENDING", value_parser = line_ending, default_value = "lf")]
     pub(crate) line_ending: LineEnding,

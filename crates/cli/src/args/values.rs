@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
 use rumbo_experiment::files::new_robot::{JUMPERS, LINE, LINK_BAUD, OBSTACLE, SHARP};
-use rumbo_experiment::files::{Port, TimedText, check_line, parameters, pressed};
+use rumbo_experiment::files::{Port, TimedText, check_line, parameters, placed, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Driver};
 use rumbo_sim::wiring::SIGNALS;
@@ -123,6 +123,31 @@ pub(super) fn press(text: &str) -> Result<Vec<TimedText>, Failure> {
     match (name.trim(), value.trim()) {
         ("", _) | (_, "") => Err(wrong()),
         (name, value) => Ok(pressed(name, Some(value), at_s)),
+    }
+}
+
+/// How far from the world's origin a hand puts it \[m\].
+const FARTHEST_M: f64 = 50.0;
+
+/// Where a hand puts the robot, and when: `0.2,0.1,90@3`.
+pub(super) fn put(text: &str) -> Result<TimedText, Failure> {
+    let wrong = || {
+        Failure::input(
+            "write it as X,Y@SECONDS or X,Y,DEG@SECONDS, in m and degrees within -180..180",
+        )
+    };
+    let TimedText { at_s, text, .. } = timed_text(text).map_err(|_| wrong())?;
+    let numbers = text.split(',').map(|number| number.trim().parse());
+    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let is_near = |m: &f64| m.abs() <= FARTHEST_M;
+    let (x_m, y_m, deg) = match numbers[..] {
+        [x_m, y_m] => (x_m, y_m, 0.0),
+        [x_m, y_m, deg] => (x_m, y_m, deg),
+        _ => return Err(wrong()),
+    };
+    match [x_m, y_m].iter().all(is_near) && (-180.0..=180.0).contains(&deg) {
+        true => Ok(placed([x_m, y_m, deg], at_s)),
+        false => Err(wrong()),
     }
 }
 

@@ -134,14 +134,14 @@ impl<W: World> Debugger<W> {
         std::mem::take(&mut self.logged)
     }
 
-    /// Drains what the program has sent to its USB port.
-    pub fn take_serial(&mut self) -> Vec<u8> {
-        self.history.take_serial()
+    /// Drains what the program has sent, each byte once, with the numbers of its streams.
+    pub fn take_output(&mut self) -> Vec<(u8, Vec<u8>)> {
+        self.history.take_output()
     }
 
-    /// Sends bytes there.
-    pub fn type_in(&mut self, bytes: &[u8]) {
-        self.history.change(|world| world.type_in(bytes));
+    /// Changes the world: a new past begins.
+    pub fn change<T>(&mut self, change: impl FnOnce(&mut W) -> T) -> T {
+        self.history.change(change)
     }
 
     /// Lets the program run.
@@ -199,6 +199,10 @@ impl<W: World> Debugger<W> {
             return Ok(Some(self.ended(&stopped).unwrap_or(Reason::Step)));
         }
         let plan = self.plan(step)?;
+        // A stop where it stands does not count.
+        if plan.calls.contains(&(self.address() / 2)) {
+            return Ok(self.enter(plan));
+        }
         self.follow(plan);
         Ok(None)
     }
@@ -342,7 +346,7 @@ impl<W: World> Debugger<W> {
                 });
             }
             if hit.is_empty() && plan.calls.contains(&word) && self.is_in(plan.cfa) {
-                self.enter(plan);
+                return self.enter(plan);
             }
         }
         (!hit.is_empty()).then_some(Reason::Breakpoint(hit))
@@ -361,10 +365,10 @@ impl<W: World> Debugger<W> {
         returned || plan.stops.contains(&word) && self.is_in(plan.cfa)
     }
 
-    /// Follows a call into a function with lines; over any other.
-    fn enter(&mut self, plan: Plan) {
+    /// Follows a call into a function with lines, where it may stand already; over any other.
+    fn enter(&mut self, plan: Plan) -> Option<Reason> {
         let before = self.chip().cpu().program_counter();
-        self.history.step();
+        let stopped = self.history.step();
         let entry = self.address();
         let function = self
             .symbols
@@ -372,6 +376,10 @@ impl<W: World> Debugger<W> {
             .filter(|function| function.entry == entry);
         let body = function.map(|function| self.symbols.body(function));
         let next = match body.filter(|_| entry / 2 != before) {
+            Some(body) if body == entry => {
+                self.pause();
+                return Some(self.ended(&stopped).unwrap_or(Reason::Step));
+            }
             Some(body) => Plan {
                 stops: [body / 2].into(),
                 ..Plan::default()
@@ -379,6 +387,7 @@ impl<W: World> Debugger<W> {
             None => plan,
         };
         self.follow(next);
+        None
     }
 }
 

@@ -16,6 +16,7 @@ use serde_json::{Value, json};
 pub(super) enum Reference {
     Locals(usize),
     Globals,
+    Libraries,
     Registers(usize),
     Peripherals,
     Pins,
@@ -84,6 +85,7 @@ impl<H: Host> Adapter<H> {
         for (name, reference, is_wanted) in [
             ("Locals", Reference::Locals(frame), true),
             ("Globals", Reference::Globals, true),
+            ("Core and libraries", Reference::Libraries, true),
             ("Pins", Reference::Pins, true),
             ("I/O registers", Reference::Peripherals, has_registers),
             ("CPU", Reference::Registers(frame), true),
@@ -132,7 +134,11 @@ impl<H: Host> Adapter<H> {
         };
         let (frame, mut values) = match &reference {
             Reference::Locals(frame) => (*frame, locals(stack.get(*frame))),
-            Reference::Globals => (0, named(debugger.symbols.listed().collect())),
+            Reference::Globals | Reference::Libraries => {
+                let own = matches!(reference, Reference::Globals);
+                let listed = debugger.symbols.listed();
+                (0, named(listed.filter(|each| each.is_own == own).collect()))
+            }
             Reference::Peripherals => (0, named(debugger.symbols.registers.iter().collect())),
             Reference::Parts(frame, name, value) => {
                 let parts = memory.parts(value).into_iter();
@@ -152,7 +158,7 @@ impl<H: Host> Adapter<H> {
                 return Ok(json!({"variables": pins.collect::<Vec<_>>()}));
             }
         };
-        if let Reference::Globals = reference {
+        if let Reference::Globals | Reference::Libraries = reference {
             values.sort_by(|a, b| a.0.cmp(&b.0));
         }
         let hex = matches!(reference, Reference::Peripherals);
@@ -195,7 +201,9 @@ impl<H: Host> Adapter<H> {
     pub(super) fn evaluate(&mut self, place: &Place) -> Result<Value, String> {
         let text = place.expression.trim();
         if let (Some(typed), true) = (text.strip_prefix(TO_PROGRAM), place.context == "repl") {
-            self.debugger()?.type_in(format!("{typed}\n").as_bytes());
+            let line = format!("{typed}\n");
+            self.debugger()?
+                .change(|world| world.type_in(line.as_bytes()));
             return Ok(json!({"result": "", "variablesReference": 0}));
         }
         let text = match assignment(text) {
@@ -242,7 +250,9 @@ impl<H: Host> Adapter<H> {
         }
         match self.referred(place.variables_reference)? {
             Reference::Locals(frame) => Ok((frame, place.name.clone())),
-            Reference::Globals | Reference::Peripherals => Ok((0, place.name.clone())),
+            Reference::Globals | Reference::Libraries | Reference::Peripherals => {
+                Ok((0, place.name.clone()))
+            }
             Reference::Parts(frame, name, _) => Ok((frame, joined(&name, &place.name))),
             Reference::Registers(_) => {
                 Err("registers can be set in the innermost frame only".into())

@@ -1,7 +1,7 @@
 //! The debugger as an editor drives it: requests of the Debug Adapter Protocol in, responses and events out, as bytes.
 //!
 //! The caller passes what the client sends to [`Adapter::receive`], calls [`Adapter::turn`] as long as the program runs,
-//! and sends what [`Adapter::take_output`] gives.
+//! and sends what [`Adapter::take_output`] gives. Or it has whole messages: [`Adapter::ask`], [`Adapter::take_messages`].
 
 mod breakpoints;
 mod disassembly;
@@ -14,9 +14,12 @@ use crate::control::{Debugger, Reason, Step};
 use inspect::Reference;
 use message::{Frames, Initialize, Request, Stepping, framed};
 use rumbo_emulator::gdb::World;
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
+/// The stream of the USB port.
+const USB: u8 = 0;
 /// The only thread.
 const THREAD: i64 = 1;
 
@@ -30,6 +33,11 @@ pub trait Host {
     /// # Errors
     /// What is wrong with the program or its setting, and what to do.
     fn launch(&mut self, launch: &Launch) -> Result<(Debugger<Self::World>, Vec<String>), String>;
+
+    /// Takes what the program has sent in a stream; `false`: the client shows what comes from the USB port.
+    fn take(&mut self, _stream: u8, _bytes: &[u8]) -> bool {
+        false
+    }
 }
 
 /// An adapter with its client.
@@ -45,7 +53,7 @@ pub struct Adapter<H: Host> {
     exception: Option<String>,
     next_breakpoint: u64,
     seq: i64,
-    output: Vec<u8>,
+    output: Vec<Value>,
     /// What follows the response: an event, a stop.
     later: Option<&'static str>,
     stop: Option<Reason>,
@@ -75,6 +83,14 @@ impl<H: Host> Adapter<H> {
         }
     }
 
+    /// An adapter of a program that is there already: its client begins with breakpoints, and stops at the first line.
+    pub fn holding(host: H, debugger: Debugger<H::World>) -> Self {
+        let mut adapter = Self::new(host);
+        adapter.debugger = Some(debugger);
+        adapter.launch.stop_on_entry = true;
+        adapter
+    }
+
     /// The session is over.
     pub fn is_done(&self) -> bool {
         self.is_done
@@ -87,7 +103,27 @@ impl<H: Host> Adapter<H> {
 
     /// Drains what is to be sent to the client.
     pub fn take_output(&mut self) -> Vec<u8> {
+        self.take_messages().iter().flat_map(framed).collect()
+    }
+
+    /// The same as messages.
+    pub fn take_messages(&mut self) -> Vec<Value> {
         std::mem::take(&mut self.output)
+    }
+
+    /// Who prepared the program.
+    pub fn host(&mut self) -> &mut H {
+        &mut self.host
+    }
+
+    /// The debugger, while there is a program.
+    pub fn held(&self) -> Option<&Debugger<H::World>> {
+        self.debugger.as_ref()
+    }
+
+    /// The same, to act on it.
+    pub fn held_mut(&mut self) -> Option<&mut Debugger<H::World>> {
+        self.debugger.as_mut()
     }
 
     /// Takes bytes of the client.
@@ -97,28 +133,42 @@ impl<H: Host> Adapter<H> {
     pub fn receive(&mut self, bytes: &[u8]) -> Result<(), String> {
         self.frames.take(bytes);
         while let Some(request) = self.frames.next()? {
-            let answer = self.answer(&request);
-            let mut response = json!({
-                "type": "response", "request_seq": request.seq, "command": request.command, "success": answer.is_ok(),
-            });
-            match answer {
-                Ok(Value::Null) => {}
-                Ok(body) => response["body"] = body,
-                Err(error) => {
-                    response["message"] = json!(error);
-                    response["body"] = json!({"error": {"id": 1, "format": "{text}", "variables": {"text": error}, "showUser": true}});
-                }
-            }
-            self.send(response);
-            self.tell();
-            if let Some(name) = self.later.take() {
-                self.event(name, json!({}));
-            }
-            if let Some(reason) = self.stop.take() {
-                self.stopped(&reason);
-            }
+            self.respond(&request);
         }
         Ok(())
+    }
+
+    /// Takes a request.
+    ///
+    /// # Errors
+    /// It is none.
+    pub fn ask(&mut self, request: &Value) -> Result<(), String> {
+        let request = Request::deserialize(request);
+        self.respond(&request.map_err(|error| format!("a message that is no request: {error}"))?);
+        Ok(())
+    }
+
+    fn respond(&mut self, request: &Request) {
+        let answer = self.answer(request);
+        let mut response = json!({
+            "type": "response", "request_seq": request.seq, "command": request.command, "success": answer.is_ok(),
+        });
+        match answer {
+            Ok(Value::Null) => {}
+            Ok(body) => response["body"] = body,
+            Err(error) => {
+                response["message"] = json!(error);
+                response["body"] = json!({"error": {"id": 1, "format": "{text}", "variables": {"text": error}, "showUser": true}});
+            }
+        }
+        self.send(response);
+        self.tell();
+        if let Some(name) = self.later.take() {
+            self.event(name, json!({}));
+        }
+        if let Some(reason) = self.stop.take() {
+            self.stopped(&reason);
+        }
     }
 
     /// Lets the program run for an interval of its time, if it runs.
@@ -136,7 +186,7 @@ impl<H: Host> Adapter<H> {
     fn send(&mut self, mut message: Value) {
         self.seq += 1;
         message["seq"] = json!(self.seq);
-        self.output.extend(framed(&message));
+        self.output.push(message);
     }
 
     fn event(&mut self, name: &str, body: Value) {
@@ -148,10 +198,12 @@ impl<H: Host> Adapter<H> {
         let Some(debugger) = &mut self.debugger else {
             return;
         };
-        let (serial, log) = (debugger.take_serial(), debugger.take_log());
-        if !serial.is_empty() {
-            let text = String::from_utf8_lossy(&serial).replace("\r\n", "\n");
-            self.event("output", json!({"category": "stdout", "output": text}));
+        let (output, log) = (debugger.take_output(), debugger.take_log());
+        for (stream, bytes) in output {
+            if !self.host.take(stream, &bytes) && stream == USB {
+                let text = String::from_utf8_lossy(&bytes).replace("\r\n", "\n");
+                self.event("output", json!({"category": "stdout", "output": text}));
+            }
         }
         for line in log {
             self.event(

@@ -103,7 +103,11 @@ impl Symbols {
         let (lines, files) = Lines::read(&dwarf, &units, find)?;
         let dies = Dies::read(&dwarf, &units)?;
         let mut types = Types::default();
-        let (functions, globals) = scopes::read(&dies, &mut types, &files);
+        let (functions, mut globals) = scopes::read(&dies, &mut types, &files);
+        for global in &mut globals {
+            let mut of_unit = files[global.unit].values();
+            global.is_own = of_unit.any(|file| lines.files[*file].path.is_some());
+        }
         // Those of the chip are in a unit of avr-libc's own, without a file.
         let of_chip = |variable: &Variable| units[variable.unit].name.is_none();
         let (mut registers, globals): (Vec<_>, _) = globals.into_iter().partition(of_chip);

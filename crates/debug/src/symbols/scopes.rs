@@ -32,6 +32,8 @@ pub(crate) struct Variable {
     pub(crate) place: Place,
     pub(crate) unit: usize,
     pub(crate) is_parameter: bool,
+    /// Of a file that is found, and not of the core or a library.
+    pub(crate) is_own: bool,
 }
 
 /// A scope.
@@ -199,6 +201,7 @@ impl ScopeReader<'_> {
             place: place.unwrap_or_default(),
             unit: die.unit,
             is_parameter: die.tag() == constants::DW_TAG_formal_parameter,
+            is_own: false,
         })
     }
 

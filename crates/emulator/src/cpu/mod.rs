@@ -18,8 +18,10 @@
 mod astray;
 mod bus;
 mod execute;
+mod lanes;
 mod runs;
 pub mod touch;
+mod uses;
 mod wait;
 
 use crate::decode::{Code, FLASH_WORDS, LONGEST_RUN, Op, decode};

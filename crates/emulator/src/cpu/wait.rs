@@ -3,14 +3,17 @@
 //!
 //! Now and then the CPU runs on instruction by instruction and keeps what it changes. Where registers, status, stack
 //! pointer and memory are again what they were at the same instruction, and nothing was read that is going to be
-//! different by then ([`Io::steady_until`]), the next rounds are copies of this one up to the next event. What a caller
-//! can see is the same to the cycle. A search without success is tried again after a pause that grows.
+//! different by then ([`Io::steady_until`]), the next rounds are copies of this one up to the next event. Where something
+//! counts, or a running counter is read, as in `delay`, the next rounds that are alike are found by [`super::lanes`]. What a
+//! caller can see is the same to the cycle. A search without success is tried again after a pause that grows.
 
 use super::Cpu;
-use super::touch::touch;
+use super::lanes::{Alike, Ran, Step};
+use super::uses::S;
 use crate::decode::{Code, Op};
 use crate::io::Io;
 use crate::registers::{EIND, RAMPZ, SPH, SPL, SREG};
+use crate::status::Status;
 
 /// Instructions of one search, and after which of them it begins again from where it then is.
 const SEARCH: usize = 320;
@@ -38,6 +41,8 @@ pub(super) struct Search {
     arrived: bool,
     /// Cycles of rounds that did not run.
     left_out: u64,
+    /// Empty between searches: the room is kept.
+    steps: Vec<Step>,
 }
 
 /// A loop that has waited.
@@ -56,6 +61,7 @@ impl Default for Search {
             marked: true,
             arrived: false,
             left_out: 0,
+            steps: Vec::new(),
         }
     }
 }
@@ -75,6 +81,10 @@ impl Search {
 /// The state at the beginning of a round, and what the round does with the rest of the world.
 struct Round {
     program_counter: u32,
+    /// What ran since.
+    steps: Vec<Step>,
+    /// A counter that runs was read, first here.
+    counter: Option<u32>,
     /// The lowest word in it, by which a loop is known.
     lowest: u32,
     cycle: u64,
@@ -90,9 +100,11 @@ struct Round {
 }
 
 impl Round {
-    fn from(cpu: &Cpu) -> Round {
+    fn from(cpu: &Cpu, steps: Vec<Step>) -> Round {
         Round {
             program_counter: cpu.program_counter,
+            steps,
+            counter: None,
             lowest: cpu.program_counter,
             cycle: cpu.cycle,
             registers: *cpu.registers(),
@@ -105,19 +117,49 @@ impl Round {
         }
     }
 
-    /// Everything is as it was.
-    fn is_closed(&self, cpu: &Cpu) -> bool {
-        let stores = &self.stores[..self.stored];
-        let first =
-            |index: usize, address| stores[..index].iter().all(|(other, _)| *other != address);
-        self.registers == *cpu.registers()
-            && self.status == cpu.status.bits()
-            && self.stack_pointer == cpu.stack_pointer()
+    /// Begins again where the CPU is.
+    fn restart(&mut self, cpu: &Cpu) {
+        let mut steps = std::mem::take(&mut self.steps);
+        steps.clear();
+        *self = Round::from(cpu, steps);
+    }
+
+    /// The stack and what only long jumps change are as they were.
+    fn is_level(&self, cpu: &Cpu) -> bool {
+        self.stack_pointer == cpu.stack_pointer()
             && self.extended == [cpu.rampz, cpu.eind]
             && !cpu.shadow
-            && stores.iter().enumerate().all(|(index, (address, before))| {
-                !first(index, *address) || cpu.in_sram(*address) == Some(*before)
-            })
+    }
+
+    /// All else is too.
+    fn is_closed(&self, cpu: &Cpu) -> bool {
+        self.counter.is_none()
+            && self.registers == *cpu.registers()
+            && self.status == cpu.status.bits()
+            && self
+                .stores()
+                .all(|(address, before)| cpu.in_sram(address) == Some(before))
+    }
+
+    /// Addresses that were stored to, each once.
+    fn stores(&self) -> impl Iterator<Item = (u16, u8)> {
+        let stores = &self.stores[..self.stored];
+        let first = |(index, (address, _)): &(usize, &(u16, u8))| {
+            stores[..*index].iter().all(|(other, _)| other != address)
+        };
+        stores
+            .iter()
+            .enumerate()
+            .filter(first)
+            .map(|(_, store)| *store)
+    }
+
+    /// How many rounds like this one follow before `limit`.
+    fn alike<I: Io>(&self, cpu: &Cpu, io: &I, limit: u64) -> Option<Alike> {
+        let stores: Vec<_> = self.stores().collect();
+        let steps = &self.steps;
+        let stores = &stores;
+        Ran { steps, cpu, stores }.alike(io, limit, SPAN)
     }
 
     /// Takes note of what the instruction is about to do; `None` if rounds with it cannot be told from each other.
@@ -136,7 +178,10 @@ impl Round {
             return None;
         }
         self.lowest = self.lowest.min(cpu.program_counter);
-        let Some(touch) = touch(cpu, op) else {
+        let step = Step::next(cpu, op);
+        let touch = step.touch;
+        self.steps.push(step);
+        let Some(touch) = touch else {
             return Some(());
         };
         for address in (touch.address..).take(usize::from(touch.bytes)) {
@@ -151,11 +196,16 @@ impl Round {
                 (None, RAMPZ | EIND) if cpu.is_far => {}
                 (None, _) => {
                     let until = io.steady_until(address, cpu.cycle);
-                    self.steady_until = self.steady_until.min(until);
+                    if until == 0 {
+                        io.counter(address)?;
+                        self.counter.get_or_insert(cpu.program_counter);
+                    } else {
+                        self.steady_until = self.steady_until.min(until);
+                    }
                 }
             }
         }
-        (self.steady_until > 0).then_some(())
+        Some(())
     }
 }
 
@@ -165,7 +215,7 @@ impl Cpu {
         self.search.left_out
     }
 
-    fn in_sram(&self, address: u16) -> Option<u8> {
+    pub(super) fn in_sram(&self, address: u16) -> Option<u8> {
         let index = usize::from(address.wrapping_sub(self.sram_start));
         self.sram.get(index).copied()
     }
@@ -187,13 +237,21 @@ impl Cpu {
     #[inline(never)]
     fn leave_out_rounds<I: Io>(&mut self, io: &mut I, until: u64) {
         let known = std::mem::take(&mut self.search.arrived).then_some(self.program_counter);
-        let found = self.search_rounds(io, until);
+        let steps = std::mem::take(&mut self.search.steps);
+        let mut round = Round::from(self, steps);
+        let found = self.search_rounds(io, until, &mut round);
+        round.steps.clear();
+        self.search.steps = round.steps;
         let search = &mut self.search;
         match (known, found) {
-            (None, Some(word)) if search.loops.len() < LOOPS && !search.begins_at(word) => {
+            (None, Some(word)) if !search.begins_at(word) => {
                 search.pause = PAUSE;
                 search.loops.push(Loop { word, failures: 0 });
+                let oldest = (search.loops.len() > LOOPS).then(|| search.loops.remove(0));
                 self.predecode_around(word);
+                if let Some(oldest) = oldest {
+                    self.predecode_around(oldest.word);
+                }
             }
             (None, _) => {
                 search.not_before = self.cycle + search.pause;
@@ -246,11 +304,11 @@ impl Cpu {
         self.search.arrived
     }
 
-    /// Runs some instructions; if they are rounds of a loop that waits, leaves out the next ones. Returns the loop's
-    /// lowest word.
-    fn search_rounds<I: Io>(&mut self, io: &mut I, until: u64) -> Option<u32> {
+    /// Runs some instructions; if they are rounds of a loop that waits, leaves out the next ones. Returns the word by which
+    /// the loop is known.
+    fn search_rounds<I: Io>(&mut self, io: &mut I, until: u64, round: &mut Round) -> Option<u32> {
         let restarts = self.restarts;
-        let mut round = Round::from(self);
+        let (mut counter, mut again) = (None, false);
         for count in 0..SEARCH {
             let limit = io.deadline(self.status.interrupts).min(until);
             let held = self.shadow;
@@ -268,19 +326,62 @@ impl Cpu {
                 return None;
             }
             if self.program_counter == round.program_counter {
-                if round.is_closed(self) {
-                    let period = self.cycle - round.cycle;
+                if round.is_level(self) {
                     let limit = limit.min(round.steady_until);
-                    let left_out = limit.saturating_sub(self.cycle) / period * period;
-                    self.cycle += left_out;
-                    self.search.left_out += left_out;
-                    return Some(round.lowest);
+                    if round.is_closed(self) {
+                        let period = self.cycle - round.cycle;
+                        self.leave_out(limit.saturating_sub(self.cycle) / period * period);
+                        return Some(round.lowest);
+                    }
+                    // The second round of a loop that just polls is closed.
+                    let alike = if again || round.counter.is_some() {
+                        round.alike(self, io, limit)
+                    } else {
+                        None
+                    };
+                    if let Some(alike) = alike {
+                        self.leave_out_all_but_one(&alike, self.cycle - round.cycle);
+                        return Some(round.counter.unwrap_or(round.program_counter));
+                    }
                 }
-                round = Round::from(self);
-            } else if FRESH_STARTS.contains(&count) {
-                round = Round::from(self);
+                // Where a counter is read, what was read before is used up.
+                counter = round.counter.filter(|word| *word != round.program_counter);
+                again = true;
+                round.restart(self);
+            } else if FRESH_STARTS.contains(&count) || counter == Some(self.program_counter) {
+                (counter, again) = (None, false);
+                round.restart(self);
             }
         }
         None
+    }
+
+    fn leave_out(&mut self, cycles: u64) {
+        self.cycle += cycles;
+        self.search.left_out += cycles;
+    }
+
+    /// The last of them runs: it leaves behind what no other round needs.
+    fn leave_out_all_but_one(&mut self, alike: &Alike, period: u64) {
+        let (registers, flags) = alike
+            .registers
+            .iter()
+            .partition::<Vec<_>, _>(|(key, _)| *key < 32);
+        for (register, value) in registers {
+            self.registers_mut()[register] = value;
+        }
+        let mut bits = self.status.bits();
+        for (key, value) in flags {
+            bits = bits & !(1 << (key - 32)) | value << (key - 32);
+            bits = bits & !S | (bits << 2 ^ bits << 1) & S;
+        }
+        self.status = Status::from_bits(bits);
+        for (address, value) in &alike.cells {
+            let index = usize::from(address.wrapping_sub(self.sram_start));
+            if let Some(byte) = self.sram.get_mut(index) {
+                *byte = *value;
+            }
+        }
+        self.leave_out((alike.rounds - 1) * period);
     }
 }

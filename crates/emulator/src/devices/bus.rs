@@ -5,7 +5,7 @@ use super::map::{Owner, is_flags};
 use super::ports::{self, Change};
 use super::system::Sleep;
 use super::{Core, Devices, Unmodelled, timer};
-use crate::io::{Access, Demand, Io, Stored};
+use crate::io::{Access, Counter, Demand, Io, Stored};
 use crate::registers::{ADCH, ADCL, EECR, MCUCR, TWAR, XMCRA};
 
 impl Devices {
@@ -123,6 +123,13 @@ impl Io for Devices {
             Owner::Nobody => self.strange.contains(&address),
         };
         if steady { u64::MAX } else { 0 }
+    }
+
+    fn counter(&self, address: u16) -> Option<Counter> {
+        match self.owner(address) {
+            Owner::Timer(index) => self.timers[usize::from(index)].counter(&self.core, address),
+            _ => None,
+        }
     }
 
     fn write(&mut self, address: u16, value: u8, at: Access) {

@@ -46,10 +46,10 @@ pub trait World: Machine + Clone {
     /// Simulated time [us].
     fn now_us(&self) -> u64;
 
-    /// What the program has sent to its USB port since the last call.
-    fn take_serial(&mut self) -> Vec<u8>;
+    /// What the program has sent since the last call, each with the number of its stream: 0 is the USB port.
+    fn take_output(&mut self) -> Vec<(u8, Vec<u8>)>;
 
-    /// Sends bytes there.
+    /// Sends bytes to the USB port.
     fn type_in(&mut self, bytes: &[u8]);
 
     /// The board's pins that are named, and their levels.

@@ -114,6 +114,12 @@ pub(crate) fn read_commands(
             table.finish();
             continue;
         }
+        if table.has(typed::PLACE) {
+            texts.extend(typed::read_place(&table, at_s));
+            earliest_s = at_s.max(earliest_s);
+            table.finish();
+            continue;
+        }
         if let Some(port) = typed::PORTS.into_iter().find(|(key, _)| table.has(key)) {
             texts.extend(read_typed(&table, at_s, port));
             earliest_s = at_s.max(earliest_s);

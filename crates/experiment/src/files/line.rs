@@ -9,13 +9,15 @@
 //! [wiring.mine.line]       # of a robot: a name, a pin, and where it is
 //! left = { pin = 2, x_m = 0.08, y_m = 0.015 }
 //! right = { pin = "A1", x_m = 0.08, y_m = -0.015, analogue = true, dark = "low" }
+//! far = { pin = "A2", x_m = 0.08, y_m = -0.03, analogue = true, light_v = 0.2, dark_v = 4.8 }
+//! beside = { pin = 4, x_m = 0.08, y_m = 0.03, rc = true }    # a time: QTR-RC
 //! ```
 
 use super::parts::is_free;
 use super::pin::read_pin;
 use super::read::{Allowed, Table};
 use super::value::PLACE;
-use rumbo_sim::floor::{Line, LineSensor};
+use rumbo_sim::floor::{Line, LineSensor, Reading, USUAL_V};
 use rumbo_sim::wiring::Wiring;
 
 /// Most lines of a world, and corners of one.
@@ -24,6 +26,8 @@ const MOST_POINTS: usize = 500;
 const WIDTH: Allowed = Allowed::new(0.002, 0.2, "m");
 /// Position of a sensor on the body.
 pub(super) const MOUNT: Allowed = Allowed::new(-0.5, 0.5, "m");
+/// Voltages at a pin.
+const SUPPLY: Allowed = Allowed::new(0.0, 5.0, "V");
 /// That of usual tape.
 const TAPE_M: f64 = 0.019;
 
@@ -91,12 +95,42 @@ pub(super) fn read_mounted(table: &Table<'_, '_>, wiring: &Wiring) -> (bool, Opt
     (analogue, pin, at_m)
 }
 
+/// What a sensor gives.
+fn read_reading(table: &Table<'_, '_>, analogue: bool) -> Reading {
+    let mut volts = USUAL_V;
+    for (key, volts) in ["light_v", "dark_v"].into_iter().zip(&mut volts) {
+        let Some(number) = table.placed_number(key, SUPPLY) else {
+            continue;
+        };
+        *volts = number.value;
+        if !analogue {
+            let remedy = "is of a sensor with analogue = true";
+            table.complain(key, number.line, &number.value.to_string(), remedy);
+        }
+    }
+    match (table.flag("rc").filter(|rc| rc.value), analogue) {
+        (Some(rc), true) => {
+            table.complain(
+                "rc",
+                rc.line,
+                "true",
+                "or analogue = true: a sensor gives a time or a voltage",
+            );
+            Reading::Discharge
+        }
+        (Some(_), false) => Reading::Discharge,
+        (None, true) => Reading::Volts(volts),
+        (None, false) => Reading::Level,
+    }
+}
+
 /// Reads the line sensors into a wiring.
 pub(super) fn read_line_sensors(table: &Table<'_, '_>, wiring: &mut Wiring) {
     for key in table.keys() {
         let own = table.table(key.value);
         let (analogue, pin, at_m) = read_mounted(&own, wiring);
         let dark_high = read_level(&own, "dark").unwrap_or(true);
+        let reading = read_reading(&own, analogue);
         own.finish();
         let Some(pin) = pin else { continue };
         is_free(&own, "pin", pin, wiring);
@@ -104,7 +138,7 @@ pub(super) fn read_line_sensors(table: &Table<'_, '_>, wiring: &mut Wiring) {
             name: key.value.to_owned(),
             at_m,
             pin,
-            analogue,
+            reading,
             dark_high,
         });
     }

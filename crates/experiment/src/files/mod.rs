@@ -52,6 +52,6 @@ pub use scenario::{Bounds, Member, NativeProgram, ScenarioFile, Spread, Start};
 pub use setup::{Overrides, Setup, goal_seen_from};
 pub use start::fleet_around;
 pub(crate) use typed::read_value;
-pub use typed::{Port, TimedText, check_line, pressed};
+pub use typed::{Port, TimedText, check_line, placed, pressed};
 pub use word::WordError;
 pub use world::{Arena, WorldFile};

@@ -16,8 +16,13 @@ const OWN: &str = "own";
 
 /// How the name of a line sensor begins among the pins, before a name of its own.
 pub const LINE: &str = "line_";
-/// Says in place of a line sensor that a dark floor is `low` or `high`.
-const DARK: &str = "line_dark";
+/// What may be said of all line sensors in place of one, and the key that says it: `line_dark=low`.
+const OF_LINES: [(&str, &str); 4] = [
+    ("line_dark", "dark"),
+    ("line_rc", "rc"),
+    ("line_light_v", "light_v"),
+    ("line_dark_v", "dark_v"),
+];
 /// Rate of the Bluetooth module in place of a pin \[baud\].
 pub const LINK_BAUD: &str = "link_baud";
 /// Line sensors are so far apart \[m\]; two stand beside the tape, one on each side.
@@ -257,9 +262,26 @@ impl NewRobot {
 
     /// Line sensors, from left to right as they were given.
     fn line_sensors(&self) -> String {
-        let named = |signal: &str| self.pins.iter().find(|(own, _)| own == signal);
-        let dark = named(DARK).map_or_else(String::new, |(_, level)| format!(", dark = {level:?}"));
-        let sensors = self.pins.iter().filter(|(signal, _)| signal != DARK);
+        let of_lines = |signal: &str| OF_LINES.iter().find(|(own, _)| *own == signal);
+        // Voltages are those of the analogue ones.
+        let said = |analogue: bool| -> String {
+            let said = self.pins.iter().filter_map(|(signal, value)| {
+                let key = of_lines(signal)?.1;
+                let is_plain = value == "true" || value.parse::<f64>().is_ok();
+                let value = if is_plain {
+                    value.clone()
+                } else {
+                    format!("{value:?}")
+                };
+                (analogue || !key.ends_with("_v")).then(|| format!(", {key} = {value}"))
+            });
+            said.collect()
+        };
+        let rc = self.pins.iter().any(|(signal, _)| signal == "line_rc");
+        let sensors = self
+            .pins
+            .iter()
+            .filter(|(signal, _)| of_lines(signal).is_none());
         let sensors = sensors.filter_map(|(signal, pin)| Some((signal.strip_prefix(LINE)?, pin)));
         let sensors: Vec<_> = sensors.collect();
         let mut text = String::new();
@@ -277,14 +299,13 @@ impl NewRobot {
                 PITCH_M
             };
             let y_m = pitch_m * from_left(index, sensors.len());
-            let analogue = match pin.parse::<u8>() {
-                Ok(_) => "",
-                Err(_) => ", analogue = true",
-            };
+            let analogue = pin.parse::<u8>().is_err() && !rc;
+            let kind = if analogue { ", analogue = true" } else { "" };
+            let said = said(analogue);
             let pin = quoted(pin);
             let _ = writeln!(
                 text,
-                "{name} = {{ pin = {pin}, x_m = 0.09, y_m = {y_m:.4}{analogue}{dark} }}"
+                "{name} = {{ pin = {pin}, x_m = 0.09, y_m = {y_m:.4}{kind}{said} }}"
             );
         }
         text

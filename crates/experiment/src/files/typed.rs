@@ -5,11 +5,16 @@
 //! at_s = 1
 //! text = "F"             # over the robot's link; usb = "F" on the board's USB port; "\\x05" is that byte
 //! line_ending = "none"   # or "lf", as where it is left out, "cr", "crlf"
+//!
+//! [[command]]
+//! at_s = 3
+//! place = [0.2, 0.1, 90] # a hand puts the robot there: x, y in m, heading in degrees, 0 where it is left out
 //! ```
 
 use super::error::did_you_mean;
 use super::near::near_or_all;
 use super::read::{Allowed, Table};
+use super::value;
 use rumbo_wire::LineEnding;
 
 /// Where a line of text goes.
@@ -22,6 +27,8 @@ pub enum Port {
     Usb,
     /// To what a person works at the robot: `name=value`.
     Parts,
+    /// To the hand that moves the robot ([`crate::hand`]).
+    Hand,
 }
 
 /// The keys of a scenario, each with where its line goes.
@@ -29,6 +36,8 @@ pub(super) const PORTS: [(&str, Port); 2] = [("text", Port::Link), ("usb", Port:
 /// The key that works a part, and that for its value: pressed for a moment without one.
 pub(super) const PRESS: &str = "press";
 pub(super) const VALUE: &str = "to";
+/// The key of where a hand puts the robot.
+pub(super) const PLACE: &str = "place";
 /// How long a button is pressed [s].
 const PRESSED_S: f64 = 0.2;
 /// The key that goes with them.
@@ -78,6 +87,41 @@ pub fn pressed(name: &str, value: Option<&str>, at_s: f64) -> Vec<TimedText> {
     match value {
         Some(value) => vec![put(at_s, value)],
         None => vec![put(at_s, "on"), put(at_s + PRESSED_S, "off")],
+    }
+}
+
+/// A hand puts the robot at a pose in the world: x, y \[m\], heading \[deg\]. It stays where it is if there is no room.
+#[must_use]
+pub fn placed([x_m, y_m, heading_deg]: [f64; 3], at_s: f64) -> TimedText {
+    TimedText {
+        at_s,
+        text: format!("robot={x_m} {y_m} {}", heading_deg.to_radians()),
+        ending: LineEnding::None,
+        port: Port::Hand,
+    }
+}
+
+/// The command that has the key [`PLACE`].
+pub(super) fn read_place(table: &Table<'_, '_>, at_s: f64) -> Option<TimedText> {
+    let what = "x and y in m, or x, y and the heading in degrees";
+    let (line, items) = table.items(PLACE, what)?;
+    let ranges = [
+        value::PLACE,
+        value::PLACE,
+        Allowed::new(-180.0, 180.0, "deg"),
+    ];
+    let numbers = items.iter().zip(ranges);
+    let numbers =
+        numbers.map(|(item, allowed)| table.judge_number(PLACE, item.line, item.value, allowed));
+    let numbers: Vec<f64> = numbers.collect::<Option<_>>()?;
+    match (items.len(), &numbers[..]) {
+        (2, &[x_m, y_m]) => Some(placed([x_m, y_m, 0.0], at_s)),
+        (3, &[x_m, y_m, deg]) => Some(placed([x_m, y_m, deg], at_s)),
+        _ => {
+            let remedy = format!("must be {what}");
+            table.complain(PLACE, line, &format!("{} numbers", items.len()), &remedy);
+            None
+        }
     }
 }
 

@@ -207,6 +207,10 @@ impl<S: Deref<Target = Setup>> Operator<S> {
         {
             self.next_text += 1;
             let to = match timed.port {
+                Port::Hand => {
+                    crate::hand::act(sim, timed.text.as_bytes());
+                    continue;
+                }
                 Port::Link => None,
                 Port::Usb => Some(USB),
                 Port::Parts => Some(PARTS),
@@ -223,7 +227,7 @@ impl<S: Deref<Target = Setup>> Operator<S> {
                 (Port::Link, Err(error)) if self.setup.firmware.is_none() => {
                     Some(error.to_string())
                 }
-                (Port::Link, _) => None,
+                (Port::Link | Port::Hand, _) => None,
             };
             let odd = odd.map(|odd: String| format!("at {} s `{}`: {odd}", timed.at_s, timed.text));
             self.notes.extend(odd.map(Note::from));

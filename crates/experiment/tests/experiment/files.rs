@@ -155,6 +155,43 @@ fn a_wiring_may_have_a_divider_for_the_battery() {
 }
 
 #[test]
+fn a_line_sensor_gives_a_level_a_voltage_or_a_time_and_only_one_of_them() {
+    use rumbo_sim::floor::Reading;
+    let parsed = |sensor: &str| {
+        let text = format!(
+            "title = \"t\"\nboard = \"uno\"\n[rig.a.front]\nx_m = 0.1\n[wiring.own.line]\nleft = {{ x_m = 0.08, {sensor} }}\n"
+        );
+        RobotFile::parse("x", "x.toml", &text)
+    };
+    for (sensor, reading) in [
+        ("pin = 2", Reading::Level),
+        ("pin = \"A1\", analogue = true", Reading::Volts([0.4, 4.4])),
+        (
+            "pin = \"A1\", analogue = true, dark_v = 4.8",
+            Reading::Volts([0.4, 4.8]),
+        ),
+        ("pin = \"A1\", rc = true", Reading::Discharge),
+    ] {
+        let robot = parsed(sensor).unwrap();
+        assert_eq!(robot.wirings["own"].line_sensors[0].reading, reading);
+    }
+    for (sensor, expected) in [
+        (
+            "pin = 2, dark_v = 4.8",
+            "dark_v = 4.8: is of a sensor with analogue = true",
+        ),
+        (
+            "pin = \"A1\", analogue = true, rc = true",
+            "rc = true: or analogue = true: a sensor gives a time or a voltage",
+        ),
+        ("pin = 2, rc = 1", "rc"),
+    ] {
+        let error = parsed(sensor).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
 fn a_route_is_its_beginning_and_a_command_per_waypoint() {
     use rumbo_wire::message::Waypoint;
     let text = SCENARIO.replace("\"manual\"", "\"waypoints\"")

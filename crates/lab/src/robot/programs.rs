@@ -1,7 +1,9 @@
 //! What happens when there is another program: the robot starts again with it, or stands still when there is none.
 
 use super::SimulatedRobot;
-use crate::program::{Held, Made, OwnProgram, problem};
+use crate::in_hand::{Attach, InHand};
+use crate::prepare::set_up;
+use crate::program::{Held, Made, OwnProgram, problem, shown};
 use rumbo_emulator::devices::CLOCK_HZ;
 use rumbo_emulator::observe::profile::Profile;
 use rumbo_experiment::files::FileError;
@@ -9,7 +11,8 @@ use rumbo_log::{
     Complaint, FunctionShare, InterruptShare, Level, PartState, ProgramPhase, ProgramProfile,
     ProgramState,
 };
-use rumbo_session::{LinkNews, TargetError};
+use rumbo_session::{GivenProgram, LinkNews, ShownSketch, TargetError};
+use rumbo_sim::boards::Board;
 use rumbo_sim::bus::BusDevice;
 use rumbo_sim::wiring::Part;
 use std::path::{Path, PathBuf};
@@ -85,7 +88,23 @@ impl SimulatedRobot {
             phase: program.map(|program| program.phase).unwrap_or_default(),
             complaints: program.map_or_else(Vec::new, |program| program.complaints.clone()),
             profile: mega.chip().observers().profiled().map(shares),
+            held: self.in_hand.as_ref().map(InHand::state),
         })
+    }
+
+    /// Counts the cycles of the program at the pins from zero, if they are to be counted.
+    pub(crate) fn begin_profile(&mut self) {
+        let Some(mega) = self.sim.mega_mut() else {
+            return;
+        };
+        let counts = self
+            .profiling
+            .then(|| Profile::new(mega.firmware().image()));
+        let observers = mega.chip_mut().observers_mut();
+        match counts {
+            Some(counts) => observers.profile(counts),
+            None => observers.end_profile(),
+        }
     }
 
     /// Takes what the workshop has made.
@@ -95,33 +114,72 @@ impl SimulatedRobot {
         match made {
             None => {}
             Some(Made::Begun) => self.enter(ProgramPhase::Compiling, Vec::new()),
-            Some(Made::Image(path)) => self.start_program(path),
+            Some(Made::Image(path)) => self.start_program(path, None),
+            Some(Made::Debugged(path, attach)) => self.start_program(path, Some(attach)),
             Some(Made::Rejected(complaints)) => self.reject(complaints),
         }
     }
 
-    /// Replaces the program by one that was dropped on the page: an image at once, another one when it is compiled.
-    pub(crate) fn drop_program(
-        &mut self,
-        name: String,
-        content: Vec<u8>,
-    ) -> Result<(), TargetError> {
-        let kind = Path::new(&name).extension().and_then(|kind| kind.to_str());
-        if !matches!(kind, Some("ino" | "elf" | "hex")) {
-            return Err(TargetError::NotAProgram);
-        }
-        let Some(make) = self.make else {
-            return match kind {
-                Some("ino") => Err(TargetError::NoCompiler),
-                _ => self.start_held(&name, &content),
+    /// Replaces the program by one of the page: an image at once, another one when it is compiled.
+    pub(crate) fn take_program(&mut self, program: GivenProgram) -> Result<(), TargetError> {
+        let kind = |name: &str| {
+            let kind = Path::new(name).extension().and_then(|kind| kind.to_str());
+            kind.filter(|kind| ["ino", "elf", "hex"].contains(kind))
+                .map(|kind| kind == "ino")
+        };
+        let mut kinds = program.files.iter().filter_map(|(name, _)| kind(name));
+        let is_sketch = kinds.next().ok_or(TargetError::NotAProgram)?;
+        let Some(sketches) = self.sketches else {
+            return match (is_sketch, &program.files[..]) {
+                (false, [(name, content)]) => self.start_held(name, content),
+                _ => Err(TargetError::NoCompiler),
             };
         };
-        let workshop = make(self.chip_board(), name.clone(), content)?;
-        self.program = Some(OwnProgram {
+        if program.debug && self.debugging.is_some() {
+            return Err(TargetError::Debugged);
+        }
+        let workshop = (sketches.make)(self.board()?, program.clone())?;
+        let own = OwnProgram {
             watched: false,
-            ..OwnProgram::new(&name, Some(workshop))
+            ..OwnProgram::new(&program.name, Some(workshop))
+        };
+        self.program = Some(match is_sketch {
+            true => own.from_source(move || program.files.clone()),
+            false => own,
         });
         Ok(())
+    }
+
+    /// The board that a program is for.
+    fn board(&self) -> Result<&'static Board, TargetError> {
+        if let Some(board) = self.chip_board() {
+            return Ok(board);
+        }
+        let setup = set_up(&self.library, &self.overrides, None, &self.scene.choice);
+        let (setup, _) = setup.map_err(|error| TargetError::Setup(error.to_string()))?;
+        Ok(setup.robot.board)
+    }
+
+    /// The source of the program, or of an example.
+    pub(crate) fn source(&self, example: Option<&str>) -> ShownSketch {
+        let examples = self.sketches.map(|sketches| (sketches.examples)());
+        let (name, files) = match (example, &self.program) {
+            (Some(name), _) => {
+                let files = self.sketches.and_then(|sketches| (sketches.example)(name));
+                (name, files)
+            }
+            (None, Some(program)) => {
+                let files = program.source.as_ref().map(|source| source());
+                (program.name.as_str(), files)
+            }
+            (None, None) => ("", None),
+        };
+        ShownSketch {
+            name: name.strip_suffix(".ino").unwrap_or(name).to_owned(),
+            files: shown(files.unwrap_or_default()),
+            examples: examples.unwrap_or_default(),
+            ..ShownSketch::default()
+        }
     }
 
     /// Starts again with an image; without one that fits, the robot goes on as it is.
@@ -144,12 +202,13 @@ impl SimulatedRobot {
         }
     }
 
-    fn start_program(&mut self, image: PathBuf) {
+    fn start_program(&mut self, image: PathBuf, attach: Option<Attach>) {
         let shown = image.display().to_string();
         let before = self.overrides.firmware.replace(image);
         match self.start_again(self.scene.choice.clone()) {
             Ok(()) => {
                 self.enter(ProgramPhase::Running, Vec::new());
+                self.in_hand = attach.and_then(|attach| InHand::new(attach, self.sim.clone()));
                 self.news.push_back(LinkNews::Renewed);
             }
             Err(error) => {

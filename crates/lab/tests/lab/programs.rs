@@ -4,7 +4,7 @@
 use rumbo_experiment::files::Overrides;
 use rumbo_lab::{Made, OwnProgram, SimulatedRobot, Workshop};
 use rumbo_log::{Choice, ProgramPhase};
-use rumbo_session::{LinkNews, Target, TargetError};
+use rumbo_session::{GivenProgram, LinkNews, Target, TargetError};
 use std::path::{Path, PathBuf};
 
 /// `rjmp .-2` at address 0, as Intel HEX: a program that does nothing.
@@ -24,7 +24,9 @@ fn robot() -> SimulatedRobot {
 fn a_dropped_image_replaces_the_native_program_on_an_emulated_mega() {
     let mut robot = robot();
     assert!(robot.program().is_none());
-    robot.run_program("idle.hex".into(), IDLE.into()).unwrap();
+    robot
+        .run_program(GivenProgram::file("idle.hex", IDLE))
+        .unwrap();
     assert_eq!(robot.news(), Some(LinkNews::Renewed));
     let program = robot.program().unwrap();
     assert_eq!(
@@ -46,11 +48,11 @@ fn a_dropped_image_replaces_the_native_program_on_an_emulated_mega() {
 fn what_is_no_image_is_refused_with_the_reason_and_the_robot_goes_on() {
     let mut robot = robot();
     robot.advance(5_000).unwrap();
-    let sketch = robot.run_program("a.ino".into(), b"void setup() {}".into());
+    let sketch = robot.run_program(GivenProgram::file("a.ino", b"void setup() {}"));
     assert_eq!(sketch, Err(TargetError::NoCompiler));
-    let text = robot.run_program("a.txt".into(), b"hello".into());
+    let text = robot.run_program(GivenProgram::file("a.txt", b"hello"));
     assert_eq!(text, Err(TargetError::NotAProgram));
-    let broken = robot.run_program("a.elf".into(), b"hello".into());
+    let broken = robot.run_program(GivenProgram::file("a.elf", b"hello"));
     let why = broken.unwrap_err().to_string();
     assert!(why.contains("a.elf"), "{why}");
     assert!(robot.news().is_none() && robot.program().is_none());
@@ -72,7 +74,9 @@ fn an_image_that_is_refused_is_named_without_its_folder() {
     let path = folder.join("0badc0de.hex");
     std::fs::write(&path, "hello").unwrap();
     let mut robot = robot();
-    robot.run_program("idle.hex".into(), IDLE.into()).unwrap();
+    robot
+        .run_program(GivenProgram::file("idle.hex", IDLE))
+        .unwrap();
     robot.own_program(OwnProgram::new(
         "ana.hex",
         Some(Box::new(Wrong(Some(path)))),
@@ -94,7 +98,9 @@ fn an_image_that_is_refused_is_named_without_its_folder() {
 /// What is said of a program in its first 0.1 s.
 fn said_of(image: &[u8]) -> Vec<String> {
     let mut robot = robot();
-    robot.run_program("odd.hex".into(), image.into()).unwrap();
+    robot
+        .run_program(GivenProgram::file("odd.hex", image))
+        .unwrap();
     let mut said = Vec::new();
     for _ in 0..20 {
         robot.advance(5_000).unwrap();

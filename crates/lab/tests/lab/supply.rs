@@ -4,7 +4,7 @@ use crate::bench::Bench;
 use rumbo_experiment::files::{Library, Overrides};
 use rumbo_experiment::run;
 use rumbo_log::Choice;
-use rumbo_session::Order;
+use rumbo_session::{GivenProgram, Order};
 use rumbo_wire::Command;
 
 /// Pins 6 and 7, 5 and 4 of a Mega high: both wheels at full speed, and nothing else, for ever.
@@ -36,7 +36,7 @@ fn stop_and_off_stop_a_program_that_ignores_them_and_on_lets_it_drive_again() {
         rig: None,
         seed: 1,
     });
-    bench.order(Order::Program("bolt.hex".into(), bolting()));
+    bench.order(Order::Program(GivenProgram::file("bolt.hex", &bolting())));
     bench.pass(1.0);
     assert!(bench.wheel_rad_s() > 5.0, "{}", bench.wheel_rad_s());
     for order in [Command::Stop, Command::Disarm] {

@@ -1,13 +1,43 @@
-//! The reflectance sensors at the chip: levels and voltages by the floor below them.
+//! The reflectance sensors at the chip: levels, voltages and times by the floor below them.
 
-use super::Mega;
-use crate::floor::{self, Line, NOISE_V};
+use super::firmware::Firmware;
+use super::{CYCLES_PER_US, Mega};
+use crate::floor::{self, Line, NOISE_V, Reading};
 use rumbo_emulator::devices::Input;
+use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::noise::Noise;
 
 /// First noise source; each sensor takes one.
 const SOURCE: u32 = 960;
+
+/// A sensor's pin that a program charges.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Charge {
+    /// The sensor's number.
+    sensor: usize,
+    pin: Pin,
+    charged: bool,
+    /// The cycle at which it falls.
+    falls: Option<u64>,
+}
+
+impl Charge {
+    /// Those of a program.
+    pub(super) fn of(firmware: &Firmware) -> Vec<Self> {
+        let sensors = firmware.line_sensors().iter().enumerate();
+        let sensors = sensors.filter(|(_, sensor)| sensor.reading == Reading::Discharge);
+        let charge = |(index, pin)| Self {
+            sensor: index,
+            pin,
+            charged: false,
+            falls: None,
+        };
+        let pins =
+            sensors.filter_map(|(index, sensor)| Some((index, firmware.board().pin(sensor.pin)?)));
+        pins.map(charge).collect()
+    }
+}
 
 impl Mega {
     /// The robot stands there now: its sensors see the floor.
@@ -19,18 +49,59 @@ impl Mega {
         for (index, sensor) in firmware.line_sensors().iter().enumerate() {
             let (before, level_before) = self.floor[index];
             let darkness = floor::darkness(lines, sensor.place(pose));
-            if sensor.analogue {
+            if let Reading::Volts(usual_v) = sensor.reading {
                 let error_v = NOISE_V * noise.normal(SOURCE + index as u32, now_us);
                 let channel = sensor.pin.saturating_sub(firmware.board().first_analogue);
-                let volts = sensor.volts(darkness) + error_v;
+                let volts = sensor.volts(usual_v, darkness) + error_v;
                 self.chip.input(cycle, Input::Volts { channel, volts });
             }
             // digitalRead() works on the pin of an analogue one too.
             let level = sensor.level(darkness, level_before);
-            if level != level_before || before.is_nan() {
+            let gives_level = sensor.reading != Reading::Discharge;
+            if gives_level && (level != level_before || before.is_nan()) {
                 self.put(cycle, firmware.board().pin(sensor.pin), level);
             }
             self.floor[index] = (darkness, level);
+        }
+    }
+
+    /// The chip does something to a pin: it charges a sensor's, or lets it go.
+    pub(super) fn charge(&mut self, cycle: u64, pin: Pin, drive: Drive) {
+        let Some(index) = self.charges.iter().position(|charge| charge.pin == pin) else {
+            return;
+        };
+        let Charge {
+            sensor, charged, ..
+        } = self.charges[index];
+        let lets_go = charged && matches!(drive, Drive::Floating | Drive::PullUp);
+        if lets_go {
+            let darkness = self
+                .floor
+                .get(sensor)
+                .map_or(0.0, |(darkness, _)| *darkness);
+            let high = floor::discharge_us(darkness.max(0.0)) * CYCLES_PER_US as f64;
+            self.charges[index].falls = Some(cycle + high as u64);
+            self.put(cycle, Some(pin), true);
+        } else if matches!(drive, Drive::High | Drive::Low) {
+            self.charges[index].falls = None;
+            self.put(cycle, Some(pin), false);
+        }
+        self.charges[index].charged = drive == Drive::High;
+    }
+
+    /// The cycle at which a charged pin falls next.
+    pub(super) fn next_fall(&self) -> Option<u64> {
+        self.charges.iter().filter_map(|charge| charge.falls).min()
+    }
+
+    /// Lets the pins fall that do up to a cycle.
+    pub(super) fn fall_up_to(&mut self, cycle: u64) {
+        for index in 0..self.charges.len() {
+            let Charge { pin, falls, .. } = self.charges[index];
+            if let Some(at) = falls.filter(|at| *at <= cycle) {
+                self.charges[index].falls = None;
+                self.put(at, Some(pin), false);
+            }
         }
     }
 

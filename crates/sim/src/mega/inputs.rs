@@ -66,12 +66,14 @@ impl Mega {
     pub(super) fn next_input(&self) -> Option<u64> {
         let expected = self.announced.expected.front().map(|(at_us, _)| *at_us);
         let forced = self.echoes.next_forced_us();
-        let next = expected.into_iter().chain(forced).min();
-        next.map(|at_us| self.cycle_of(at_us))
+        let next = expected.into_iter().chain(forced);
+        let next = next.map(|at_us| self.cycle_of(at_us));
+        next.chain(self.next_fall()).min()
     }
 
     /// Puts the edges up to a cycle into the chip's queue.
     pub(super) fn deliver_up_to(&mut self, cycle: u64, faults: &mut Faults<'_>) {
+        self.fall_up_to(cycle);
         while self.next_input().is_some_and(|next| next <= cycle) {
             let forced = self.echoes.next_forced_us();
             match self.announced.expected.front().copied() {

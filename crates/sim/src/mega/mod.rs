@@ -153,6 +153,8 @@ pub struct Mega {
     bus: Bus,
     /// How dark it is below each line sensor, and the level that it gives.
     floor: Vec<(f64, bool)>,
+    /// The pins of those that a program charges.
+    charges: Vec<floor::Charge>,
     /// What each sensor for obstacles sees.
     obstacles: Vec<Option<Seen>>,
     /// What has been set of each part.
@@ -205,6 +207,7 @@ impl Mega {
             meters: Meters::at(firmware.metered()),
             bus: Bus::new(firmware.bus(), shield),
             floor: Vec::new(),
+            charges: floor::Charge::of(&firmware),
             obstacles: Vec::new(),
             worked: Vec::new(),
             remotes: Vec::new(),

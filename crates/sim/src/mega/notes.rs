@@ -4,6 +4,7 @@ use super::console::Console;
 use super::firmware::Language;
 use super::{CYCLES_PER_US, Mega, PARTS, TRIGGER_CYCLES};
 use crate::bus::DeviceKind;
+use crate::floor::Reading;
 use crate::wiring::PartKind;
 use rumbo_emulator::cpu::Standstill;
 use rumbo_emulator::devices::ports::Drive;
@@ -117,8 +118,14 @@ impl Mega {
         let driver = driver
             .source
             .map(|_| format!("motor driver: {}", driver.in_words()));
-        let sensors = (!self.firmware.line_sensors().is_empty()).then(|| {
-            "line sensors: TCRT5000 modules by their data sheet, not identified".to_owned()
+        let sensors = self.firmware.line_sensors().first().map(|sensor| {
+            match sensor.reading {
+                Reading::Discharge => {
+                    "line sensors: QTR-RC by what Pololu says of it, not identified"
+                }
+                _ => "line sensors: TCRT5000 modules by their data sheet, not identified",
+            }
+            .to_owned()
         });
         let obstacles = (!self.firmware.obstacle_sensors().is_empty()).then(|| {
             "sensors for obstacles: by what their sellers and Sharp's data sheet say, not identified"

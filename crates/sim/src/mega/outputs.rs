@@ -18,6 +18,7 @@ impl Mega {
             let before = self.actions.len();
             match event {
                 Event::Pin(pin, drive) => {
+                    self.charge(cycle, pin, drive);
                     self.level(cycle, pin, matches!(drive, Drive::High | Drive::PullUp));
                 }
                 Event::Duty { pin, pwm } => self.modulate(cycle, pin, pwm),

@@ -2,6 +2,7 @@
 
 use crate::drivers::Driver;
 use crate::error::SimError;
+use crate::floor::Reading;
 use crate::wiring::{Divider, Motor, Wiring};
 use rumbo_emulator::devices::ports::Pin;
 
@@ -66,6 +67,8 @@ pub(super) struct Wires {
     pub(super) battery: Option<Divider>,
     /// Lines that idle high because something sends on them.
     pub(super) receivers: [Option<Pin>; 2],
+    /// Lines that the program charges.
+    pub(super) charged: Vec<Pin>,
 }
 
 impl Wires {
@@ -157,6 +160,11 @@ impl Wires {
             link: link_on(name, wiring)?,
             battery: wiring.battery,
             receivers: [pin("link_rx"), pin("debug_rx")],
+            charged: {
+                let sensors = wiring.line_sensors.iter();
+                let charged = sensors.filter(|sensor| sensor.reading == Reading::Discharge);
+                charged.filter_map(|sensor| on_board(sensor.pin)).collect()
+            },
         })
     }
 
@@ -168,6 +176,7 @@ impl Wires {
             .chain([self.servo])
             .chain(self.triggers)
             .flatten()
+            .chain(self.charged.iter().copied())
             .chain(
                 self.register
                     .into_iter()

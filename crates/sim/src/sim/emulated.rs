@@ -23,7 +23,7 @@ impl Sim {
         while self.now_us() < until_us {
             let end_us = ((self.now_us() / AHEAD_US + 1) * AHEAD_US).min(until_us);
             self.bytes_to(mega, end_us);
-            mega.supply(self.truth().battery_v);
+            mega.supply(self.plant.battery_v(&self.state));
             if !mega.firmware().line_sensors().is_empty() {
                 mega.see_floor(&self.lines, &self.pose(), self.now_us(), &self.noise);
             }

@@ -8,3 +8,4 @@
 
 mod compile;
 mod hostile;
+mod ide;

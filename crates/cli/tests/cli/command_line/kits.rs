@@ -731,6 +731,59 @@ void loop() {
 }
 
 #[test]
+fn a_follower_is_calibrated_by_hand_over_its_line_and_put_on_it() {
+    let Some(bench) = bench("by_hand") else {
+        return;
+    };
+    let sketch = "
+int low[2] = {1023, 1023}, high[2] = {0, 0};
+int share(byte i) { return constrain(map(analogRead(A0 + 2 * i), low[i], high[i], 0, 100), 0, 100); }
+void setup() {
+  DDRD |= 0xE8; DDRB |= 1;
+  while (millis() < 2500)
+    for (byte i = 0; i < 2; i++) {
+      int now = analogRead(A0 + 2 * i);
+      low[i] = min(low[i], now); high[i] = max(high[i], now);
+    }
+  while (high[0] - low[0] < 400 || high[1] - low[1] < 400) ;
+  digitalWrite(3, HIGH); digitalWrite(7, HIGH); digitalWrite(8, HIGH);
+}
+void loop() {
+  int turn = share(1) - share(0);
+  analogWrite(6, constrain(85 - turn, 0, 160)); analogWrite(5, constrain(85 + turn, 0, 160));
+}";
+    std::fs::write(bench.join("car.ino"), sketch).unwrap();
+    let head =
+        "title = \"By hand\"\nrobot = \"kit_elegoo_v4\"\nworld = \"line_loop\"\nduration_s = 8\n";
+    let hand = "[[command]]\nat_s = 0.5\nplace = [0.2, 0.12]\n[[command]]\nat_s = 1\nplace = [0.2, 0.08]\n\
+                [[command]]\nat_s = 2\nplace = [0.3, 0.1, 10]\n";
+    let ways = |scenario: String, more: &[&str]| {
+        std::fs::write(bench.join("floor.toml"), scenario).unwrap();
+        let run = drive(&bench, &[&["--json"], more].concat());
+        let result: serde_json::Value =
+            serde_json::from_str(&stdout(&run)).unwrap_or_else(|_| panic!("{}", stderr(&run)));
+        let metric = |name: &str| result["metrics"][name].as_f64().unwrap_or(0.0);
+        [metric("line_way_m"), metric("line_lost_share")]
+    };
+    let own = ways(head.to_owned(), &[]);
+    assert!(own[0] < 0.2, "nobody has calibrated it: {own:?}");
+    let by_scenario = ways(head.to_owned() + hand, &[]);
+    assert!(
+        by_scenario[0] > 0.5 && by_scenario[1] == 0.0,
+        "{by_scenario:?}"
+    );
+    let options = "--place 0.2,0.12@0.5 --place 0.2,0.08@1 --place 0.3,0.1,10@2";
+    let options: Vec<&str> = options.split(' ').collect();
+    assert_eq!(ways(head.to_owned(), &options), by_scenario);
+    let wrong = rumbo(&bench, &["run", "free", "--place", "0.2@3"]);
+    assert!(
+        stderr(&wrong).contains("X,Y,DEG@SECONDS"),
+        "{}",
+        stderr(&wrong)
+    );
+}
+
+#[test]
 fn the_model_line_follower_goes_once_around_within_1_cm_of_the_line_with_every_drawn_robot() {
     let Some(bench) = bench("line_model") else {
         return;
@@ -808,59 +861,58 @@ fn a_new_robot_has_line_sensors_buttons_and_lights_by_names_of_its_own() {
         return;
     };
     let pins = "left_enable=5,left_forward=7,left_backward=8,right_enable=6,right_forward=11,right_backward=9,\
-                line_left=2,line_middle=4,line_right=A0,line_dark=low";
-    let made = rumbo(
-        &bench,
-        &[
-            "new",
-            "robot",
-            "car",
-            "--board",
-            "uno",
-            "--driver",
-            "l298n",
-            "--pins",
-            pins,
-            "--parts",
-            "start=button:12,lamp=led:13",
-        ],
-    );
-    assert!(made.status.success(), "{}", stderr(&made));
-    let sketch = "
-void setup() { for (int pin : {5, 6, 7, 11, 13}) pinMode(pin, OUTPUT); pinMode(12, INPUT_PULLUP); while (digitalRead(12)) ; }
-void loop() {
-  bool left = !digitalRead(2), right = !digitalRead(A0);
-  digitalWrite(13, !digitalRead(4));
-  digitalWrite(7, HIGH); digitalWrite(11, HIGH);
+                line_left=2,line_middle=4,line_right=A0,";
+    // A level, or the time for which a charged pin stays high.
+    for (kind, is_dark) in [
+        ("line_dark=low", "!digitalRead(pin)"),
+        ("line_rc=true", "lasts_us(pin) > 1000"),
+    ] {
+        let made = rumbo(
+            &bench,
+            &[
+                "new",
+                "robot",
+                "car",
+                "--board",
+                "uno",
+                "--driver",
+                "l298n",
+                "--pins",
+                &format!("{pins}{kind}"),
+                "--parts",
+                "start=button:12,lamp=led:13",
+            ],
+        );
+        assert!(made.status.success(), "{}", stderr(&made));
+        let sketch = format!(
+            "
+int lasts_us(byte pin) {{
+  pinMode(pin, OUTPUT); digitalWrite(pin, HIGH); delayMicroseconds(10); pinMode(pin, INPUT);
+  unsigned long begin = micros();
+  while (digitalRead(pin) && micros() - begin < 2500) ;
+  return micros() - begin;
+}}
+bool dark(byte pin) {{ return {is_dark}; }}
+void setup() {{ DDRD |= 0xE0; DDRB |= 0x28; pinMode(12, INPUT_PULLUP); while (digitalRead(12)) ; }}
+void loop() {{
+  bool left = dark(2), right = dark(A0);
+  digitalWrite(13, dark(4)); digitalWrite(7, HIGH); digitalWrite(11, HIGH);
   analogWrite(5, left ? 0 : 90); analogWrite(6, right ? 0 : 90);
-}"
-    .replace("for (int pin : {5, 6, 7, 11, 13}) pinMode(pin, OUTPUT);", "DDRD |= 0xE0; DDRB |= 0x28;");
-    std::fs::write(bench.join("car.ino"), sketch).unwrap();
-    let args = [
-        "run",
-        "free",
-        "--robot",
-        "car.toml",
-        "--world",
-        "line_loop",
-        "--sketch",
-        "car.ino",
-    ];
-    let run = rumbo(
-        &bench,
-        &[
-            &args[..],
-            &["--press", "start@0.5", "--json", "--no-record"],
-        ]
-        .concat(),
-    );
-    let result: serde_json::Value =
-        serde_json::from_str(&stdout(&run)).unwrap_or_else(|_| panic!("{}", stderr(&run)));
-    let metric = |name: &str| result["metrics"][name].as_f64().unwrap();
-    assert!(
-        metric("line_way_m") > 0.5 && metric("line_rms_m") < 0.02,
-        "{result}"
-    );
+}}"
+        );
+        std::fs::write(bench.join("car.ino"), sketch).unwrap();
+        let args = "run free --robot car.toml --world line_loop --sketch car.ino --press start@0.5 --json --no-record";
+        let args: Vec<&str> = args.split(' ').collect();
+        let run = rumbo(&bench, &args);
+        let result: serde_json::Value =
+            serde_json::from_str(&stdout(&run)).unwrap_or_else(|_| panic!("{}", stderr(&run)));
+        let metric = |name: &str| result["metrics"][name].as_f64().unwrap();
+        assert!(
+            metric("line_way_m") > 0.5 && metric("line_rms_m") < 0.02,
+            "{kind} {result}"
+        );
+        std::fs::remove_file(bench.join("car.toml")).unwrap();
+    }
     let unknown = rumbo(&bench, &["new", "robot", "other", "--pins", "lines=2"]);
     assert!(
         stderr(&unknown).contains("with a name of yours line_NAME"),

@@ -7,7 +7,7 @@ use super::place::{ASYNCHRONOUS, Register};
 use super::wave::{CAPTURE, CHANNELS, Mode, OVERFLOW, Top};
 use super::{AS2, Clock, Timer};
 use crate::devices::Core;
-use crate::io::Access;
+use crate::io::{Access, Counter};
 
 /// In GTCCR: hold, and the prescalers' resets.
 const TSM: u8 = 0x80;
@@ -26,9 +26,28 @@ impl Timer {
                 let tick = prescaler.ticks(divisor, self.computed_to) + self.wave.quiet_ticks(0xFF);
                 prescaler.reset + tick * divisor
             }
-            (Some(Register::Count | Register::Capture), _) => 0,
+            (Some(Register::Count | Register::Capture | Register::CaptureHigh), _) => 0,
             _ => u64::MAX,
         }
+    }
+
+    /// The counter at an address, if it is there.
+    pub(crate) fn counter(&self, core: &Core, address: u16) -> Option<Counter> {
+        let prescaler = self.prescaler(core);
+        let divisor = match self.clock {
+            Clock::Divided(divisor) if !prescaler.held && !self.stopped => Some(divisor),
+            _ => None,
+        };
+        let is_count = self.place.register(address) == Some(Register::Count);
+        is_count.then_some(Counter {
+            count: self.wave.count,
+            cycle: self.computed_to.saturating_sub(prescaler.reset),
+            offset: prescaler.reset,
+            divisor,
+            is_down: self.wave.down,
+            ticks: self.wave.quiet_ticks(0),
+            is_wide: self.place.wide,
+        })
     }
 
     pub(crate) fn read(&mut self, core: &mut Core, address: u16, at: Access) -> u8 {

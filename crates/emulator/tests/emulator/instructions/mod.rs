@@ -4,6 +4,7 @@
 mod assembler;
 mod bench;
 mod compiled;
+mod loops;
 mod plain;
 mod program;
 mod simavr;

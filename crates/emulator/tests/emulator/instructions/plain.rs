@@ -12,19 +12,19 @@ use rumbo_emulator::model::{ATMEGA328P, ATMEGA2560, Model};
 use std::path::Path;
 
 /// Every check that there is, as `cargo xtask test --full` wants it.
-fn is_full() -> bool {
+pub(super) fn is_full() -> bool {
     std::env::var_os("RUMBO_FULL").is_some()
 }
 
 /// A chip, and the same under observation.
-struct Pair {
-    fast: Chip,
+pub(super) struct Pair {
+    pub(super) fast: Chip,
     plain: Chip,
     outputs: usize,
 }
 
 impl Pair {
-    fn new(fast: Chip) -> Pair {
+    pub(super) fn new(fast: Chip) -> Pair {
         let mut plain = fast.clone();
         plain.observers_mut().measure_stack();
         Pair {
@@ -44,7 +44,7 @@ impl Pair {
     }
 
     /// Runs both to a cycle and compares everything that is kept; returns whether they go on.
-    fn agree_at(&mut self, cycle: u64, what: &str) -> bool {
+    pub(super) fn agree_at(&mut self, cycle: u64, what: &str) -> bool {
         let stopped = self.fast.run_until(cycle);
         assert_eq!(stopped, self.plain.run_until(cycle), "{what}");
         let [fast, plain] = [&self.fast, &self.plain].map(Chip::cpu);
