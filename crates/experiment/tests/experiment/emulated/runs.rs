@@ -27,7 +27,9 @@ fn the_report_s_program_as_a_sketch_stops_before_the_wall_like_its_native_form()
         (10.0..25.0).contains(&metrics["telemetry_hz"]),
         "{metrics:?}"
     );
-    assert_eq!(result, run(&setup, 1).unwrap());
+    let again = run(&setup, 1).unwrap();
+    // Not the metrics: one that is never reached is not a number.
+    assert!(result.trace == again.trace && result.failures == again.failures);
 }
 
 #[test]
