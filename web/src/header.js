@@ -108,6 +108,7 @@ export class Header {
     if (!state) return [t('connecting…'), 'bad'];
     if (state.replay) return state.speed === 0 ? [t('replay, paused'), 'warning'] : [t('replay × {}', state.speed), 'good'];
     if (state.speed === 0) return [t('simulation paused'), 'warning'];
+    if (state.program?.held?.stands) return phaseWords(state);
     if (performance.now() - this.#received_ms > STALE_MS) return [t('the station is silent'), 'bad'];
     if (isOwn(state)) return phaseWords(state);
     if (!state.link.connected) return [t('no answer from the robot'), 'bad'];

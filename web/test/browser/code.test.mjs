@@ -88,6 +88,9 @@ test('it stops at a breakpoint, steps, and steps back to the values that were; t
   await page.locator('#code-editor .cm-lineNumbers .cm-gutterElement').getByText('8', { exact: true }).click();
   await page.locator('#code-debug').click();
   await stands('doubled(count)');
+  // Longer than a station may be silent.
+  await page.waitForTimeout(2_100);
+  assert.ok(!(await page.locator('body').evaluate((body) => body.classList.contains('stale'))), 'nothing shown is old');
   assert.equal(await variable('count'), '1');
   await lines().filter({ hasText: 'count = count + 1' }).hover({ position: { x: 36, y: 8 } });
   await page.locator('#code-editor .value', { hasText: 'count = 1' }).waitFor();
