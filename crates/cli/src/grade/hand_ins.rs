@@ -156,10 +156,18 @@ pub(super) fn find(folder: &Path) -> Result<Class, Failure> {
 
 /// What is in a person's archive. Of a sketch, which is read then, nothing stays unpacked.
 fn of_archive(archive: &Path, place: &Path) -> Result<Given, SketchError> {
-    let found = unpack(archive, place, Bounds::SKETCH).and_then(|_| {
+    let found = unpack(archive, place, Bounds::SKETCH).and_then(|left_out| {
         // macOS puts its own folder beside the other one.
         let _ = fs::remove_dir_all(place.join("__MACOSX"));
-        given(&only_folder(place.to_owned()), false)
+        let found = given(&only_folder(place.to_owned()), false);
+        found.map_err(|error| match left_out.first() {
+            None => error,
+            Some(name) => SketchError::Refused(format!(
+                "{}: `{name}` is left out: a link, a name that leads out of the archive, or another file's; the rest is \
+                 no sketch",
+                super::name_of(archive)
+            )),
+        })
     });
     if !matches!(found, Ok(Given::Image(_))) {
         let _ = fs::remove_dir_all(place);

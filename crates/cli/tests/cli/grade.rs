@@ -344,6 +344,10 @@ fn a_class_is_graded_as_a_course_hands_it_out() {
         ("Ana Paz_4711_assignsubmission_file/wall.ino", &model),
         ("bobsmith_LATE_4712_815_wall.zip", &own),
         ("bobsmith_4712_816_wall.zip", b"PK no archive"),
+        (
+            "carla_4713_817_wall.zip",
+            &zipped(&[("../../wall.ino", &model)]),
+        ),
         ("readme.txt", b"x"),
         ("../../dora.ino", &model),
     ]);
@@ -376,6 +380,11 @@ fn a_class_is_graded_as_a_course_hands_it_out() {
         text("bobsmith").contains("no zip archive"),
         "{}",
         text("bobsmith")
+    );
+    assert!(
+        text("carla").contains("`../../wall.ino` is left out"),
+        "{}",
+        text("carla")
     );
     assert!(!bench.join("dora.ino").exists() && !folder().join("dora.ino").exists());
 }
