@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 /// Farthest that it reaches \[m\].
 const REACH_M: f64 = 100.0;
 
-/// Does what a line says; one that is wrong, or asks for a place where there is no room, does nothing.
-pub fn act(sim: &mut Sim, line: &[u8]) {
+/// Does what a line says; false of one that is wrong, or asks for a place where there is no room: it does nothing.
+pub fn act(sim: &mut Sim, line: &[u8]) -> bool {
     let line = std::str::from_utf8(line).unwrap_or_default();
     let (what, numbers) = line.trim().split_once('=').unwrap_or_default();
     let numbers = numbers.split(' ').map(str::parse);
@@ -26,13 +26,13 @@ pub fn act(sim: &mut Sim, line: &[u8]) {
                 x_m,
                 y_m,
                 heading_rad: heading_rad.clamp(-PI, PI),
-            });
+            })
         }
         ("thing", &[number, x_m, y_m])
             if within(x_m) && within(y_m) && (0.0..=f64::from(u16::MAX)).contains(&number) =>
         {
-            sim.shift(number as usize, [x_m, y_m]);
+            sim.shift(number as usize, [x_m, y_m])
         }
-        _ => {}
+        _ => false,
     }
 }

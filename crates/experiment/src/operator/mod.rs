@@ -208,7 +208,11 @@ impl<S: Deref<Target = Setup>> Operator<S> {
             self.next_text += 1;
             let to = match timed.port {
                 Port::Hand => {
-                    crate::hand::act(sim, timed.text.as_bytes());
+                    if !crate::hand::act(sim, timed.text.as_bytes()) {
+                        let odd = "the hand finds no room there, and leaves everything as it is";
+                        let odd = format!("at {} s `{}`: {odd}", timed.at_s, timed.text);
+                        self.notes.push(odd.into());
+                    }
                     continue;
                 }
                 Port::Link => None,

@@ -5,21 +5,25 @@ use rumbo_plant::contact::Pose;
 use std::collections::BTreeMap;
 
 impl Sim {
-    /// Lifts the robot and puts it down elsewhere, if there is room: its program does not notice.
-    pub fn put(&mut self, at: Pose) {
-        if self.plant.has_room(&self.state, &at) {
+    /// Lifts the robot and puts it down elsewhere, if there is room, which it says: the program does not notice.
+    pub fn put(&mut self, at: Pose) -> bool {
+        let has_room = self.plant.has_room(&self.state, &at);
+        if has_room {
             self.state.place(at);
         }
+        has_room
     }
 
-    /// Puts something of the world elsewhere, by its distance from where the world has it \[m\], if there is room: what has
-    /// this number among obstacles, then bodies, which take their whole course along.
-    pub fn shift(&mut self, thing: usize, to_m: [f64; 2]) {
+    /// Puts something of the world elsewhere, by its distance from where the world has it \[m\], if there is room, which
+    /// it says: what has this number among obstacles, then bodies, which take their whole course along.
+    pub fn shift(&mut self, thing: usize, to_m: [f64; 2]) -> bool {
         let was_m = self.shifted.get(&thing).copied().unwrap_or_default();
         let by_m = [to_m[0] - was_m[0], to_m[1] - was_m[1]];
-        if self.plant.shift(&mut self.state, thing, by_m) {
+        let has_room = self.plant.shift(&mut self.state, thing, by_m);
+        if has_room {
             self.shifted.insert(thing, to_m);
         }
+        has_room
     }
 
     /// What stands elsewhere than the world has it, by [`Self::shift`].

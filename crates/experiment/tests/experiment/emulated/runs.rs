@@ -33,6 +33,29 @@ fn the_report_s_program_as_a_sketch_stops_before_the_wall_like_its_native_form()
 }
 
 #[test]
+fn a_hand_that_finds_no_room_leaves_the_robot_and_says_so() {
+    let mut setup = Library::new()
+        .setup("mode1", &Overrides::default())
+        .unwrap();
+    let at = |at_s, text: &str| TimedText {
+        at_s,
+        text: text.into(),
+        ending: LineEnding::Lf,
+        port: Port::Hand,
+    };
+    // Beside where it is, and in the wall.
+    setup.texts = vec![at(0.1, "robot=0 0.1 0"), at(0.2, "robot=1.2 0 0")];
+    let result = run(&setup, 1).unwrap();
+    let notes: Vec<_> = result.notes.iter().map(Note::to_string).collect();
+    assert!(
+        matches!(&notes[..], [one] if one.starts_with("at 0.2 s `robot=1.2 0 0`: the hand finds no room")),
+        "{notes:?}"
+    );
+    let after = &result.trace.between(0.24, 0.26)[0];
+    assert!(after.x_m < 0.5, "{}", after.x_m);
+}
+
+#[test]
 fn lines_of_the_command_line_go_out_at_their_time() {
     let Some(mut setup) = setup("free", "bench", None) else {
         return;
