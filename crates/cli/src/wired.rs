@@ -269,8 +269,9 @@ mod tests {
                 "{same}"
             );
             if robot["pins"]["servo"].is_string() {
-                let is_free = |pin: &&str| same["on"][pin].is_null();
-                let free = ["13", "12", "2", "A1"].into_iter().find(is_free).unwrap();
+                let is_free = |pin: &&&str| same["on"][**pin].is_null();
+                let free = ["4", "10", "13", "A1"].iter().find(is_free);
+                let free = *free.unwrap_or_else(|| panic!("{name} has none"));
                 let moved = like(pins(Some(free)));
                 assert_eq!(moved["on"][free], "servo", "{moved}");
                 assert_eq!(
