@@ -217,11 +217,11 @@ const runs = new Runs(() => {
   return { name, store: store.frozen(), about: { scenario, world, 'sensor layout': rig, seed, program: state?.program?.name ?? null }, parameters, metrics };
 }, () => plots.modes, send, plots, map);
 new Why(plots, isSite ? (from_s, to_s) => (link instanceof WorkerLink ? link.explain(from_s, to_s) : Promise.reject(new Error('no lab'))) : null, (lesson) => lessons.open(lesson), () => tabs.show('why'));
-recordings.compare = runs.compare.bind(runs);
 const calibration = new CalibrationDialog(send);
 new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
 const report = new ReportDialog();
 const tune = new TuneDialog(send);
+recordings.compare = tune.compare = runs.compare.bind(runs);
 const robotPort = new RobotPort(askLab);
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
 makeEnlargeable();
