@@ -142,6 +142,11 @@ const redraw = onFrame(() => {
     ages.drawn = true;
     requestAnimationFrame(() => ages.measured?.push(performance.timeOrigin + performance.now() - received_ms));
   }
+  draw();
+});
+
+/** All that moves. */
+function draw() {
   plots.draw();
   map.draw();
   stateLine.draw();
@@ -150,7 +155,7 @@ const redraw = onFrame(() => {
   machine.draw();
   law.draw();
   setText(pointer, pointerWords(map.pointed()));
-});
+}
 const header = new Header(send);
 const seat = new Seat(send);
 const parameters = new ParameterTable(send);
@@ -445,7 +450,7 @@ Object.assign(window, {
     scales: (title) => plots.scales(title),
     /** For measurements: times from reception to the frame after drawing [ms], the clocks of page and session, a frame at once. */
     ages,
-    draw: () => plots.draw(),
+    draw,
     /** Texts shown that have no translation. */
     untranslated: () => [...untranslated],
   },
