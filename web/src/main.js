@@ -160,9 +160,7 @@ const header = new Header(send);
 const seat = new Seat(send);
 const parameters = new ParameterTable(send);
 const replay = new ReplayBar(send, () => askLab('resume'));
-const events = new EventList((t_s) => {
-  if (replay.shown) replay.seek(t_s);
-});
+const events = new EventList((t_s) => (replay.shown ? replay.seek(t_s) : timeline.lookAt(t_s)));
 const consoles = new Consoles(send, (usart) => store.readings.printedBy(usart).length > 0, (usart) => plots.showPrinted(usart));
 const parts = new PartsPanel(send);
 const program = new ProgramPanel(send, complain, showRecording, (files) => openScenario(files, askLab, complain));
