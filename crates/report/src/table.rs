@@ -45,7 +45,7 @@ pub(crate) fn table(header: &[&str], rows: &[Vec<Cell>]) -> String {
     for cell in header {
         // A heading without words is none.
         let kind = if cell.is_empty() { "td" } else { "th" };
-        put(&mut html, format_args!("<{kind}>{}</{kind}>", escape(cell)));
+        html += &format!("<{kind}>{}</{kind}>", escape(cell));
     }
     html += "</tr></thead><tbody>\n";
     for row in rows {
