@@ -42,7 +42,7 @@ export class EventList {
       if (replay) line.tabIndex = 0;
     });
     // Another run has begun: what was before has no time in it.
-    if (!replay && (events[0]?.t_s ?? 0) < this.#newest_s - 1) for (const line of this.#list.querySelectorAll('li')) delete line.dataset['t'];
+    if (!replay && events.some(({ t_s }) => t_s < this.#newest_s - 1)) for (const line of this.#list.querySelectorAll('li')) delete line.dataset['t'];
     this.#newest_s = events.at(-1)?.t_s ?? this.#newest_s;
     this.#list.prepend(...lines.reverse());
     while (this.#list.children.length > KEPT) this.#list.lastElementChild?.remove();
