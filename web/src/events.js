@@ -13,6 +13,7 @@ const SIGNS = { info: '·', good: '✓', warning: '!', fault: '✕' };
 
 export class EventList {
   #list = element('events', HTMLOListElement);
+  #newest_s = 0;
 
   /** @param {(t_s: number) => void} chosen Called with the time of an event that is clicked. */
   constructor(chosen) {
@@ -40,6 +41,9 @@ export class EventList {
       // There it leads to its time, by keyboard too.
       if (replay) line.tabIndex = 0;
     });
+    // Another run has begun: what was before has no time in it.
+    if (!replay && events.some(({ t_s }) => t_s < this.#newest_s - 1)) for (const line of this.#list.querySelectorAll('li')) delete line.dataset['t'];
+    this.#newest_s = events.at(-1)?.t_s ?? this.#newest_s;
     this.#list.prepend(...lines.reverse());
     while (this.#list.children.length > KEPT) this.#list.lastElementChild?.remove();
   }

@@ -147,7 +147,8 @@ export class LawPanel {
     for (const { part, gives, shown, result, other } of laws) {
       /** @type {Map<Part, import('./law.js').Worked>} */
       const all = new Map();
-      const sum = armed ? work(part, (name) => given_by.get(name) ?? this.#valueOf(name), all) : NaN;
+      // At rest only gains have a value.
+      const sum = work(part, (name) => given_by.get(name) ?? (armed || this.#parameters.has(name) ? this.#valueOf(name) : NaN), all);
       const given = armed ? this.#valueOf(gives) : NaN;
       if (Number.isNaN(given)) given_by.set(gives, sum);
       for (const [each, { value }] of shown) {

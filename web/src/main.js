@@ -142,6 +142,11 @@ const redraw = onFrame(() => {
     ages.drawn = true;
     requestAnimationFrame(() => ages.measured?.push(performance.timeOrigin + performance.now() - received_ms));
   }
+  draw();
+});
+
+/** All that moves. */
+function draw() {
   plots.draw();
   map.draw();
   stateLine.draw();
@@ -150,14 +155,12 @@ const redraw = onFrame(() => {
   machine.draw();
   law.draw();
   setText(pointer, pointerWords(map.pointed()));
-});
+}
 const header = new Header(send);
 const seat = new Seat(send);
 const parameters = new ParameterTable(send);
 const replay = new ReplayBar(send, () => askLab('resume'));
-const events = new EventList((t_s) => {
-  if (replay.shown) replay.seek(t_s);
-});
+const events = new EventList((t_s) => (replay.shown ? replay.seek(t_s) : timeline.lookAt(t_s)));
 const consoles = new Consoles(send, (usart) => store.readings.printedBy(usart).length > 0, (usart) => plots.showPrinted(usart));
 const parts = new PartsPanel(send);
 const program = new ProgramPanel(send, complain, showRecording, (files) => openScenario(files, askLab, complain));
@@ -217,7 +220,6 @@ const runs = new Runs(() => {
   return { name, store: store.frozen(), about: { scenario, world, 'sensor layout': rig, seed, program: state?.program?.name ?? null }, parameters, metrics };
 }, () => plots.modes, send, plots, map);
 new Why(plots, isSite ? (from_s, to_s) => (link instanceof WorkerLink ? link.explain(from_s, to_s) : Promise.reject(new Error('no lab'))) : null, (lesson) => lessons.open(lesson), () => tabs.show('why'));
-recordings.compare = runs.compare.bind(runs);
 const calibration = new CalibrationDialog(send);
 new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
 const report = new ReportDialog();
@@ -230,6 +232,7 @@ element('wire', HTMLButtonElement).addEventListener('click', async () => {
   const { WireDialog } = await import('./wire_dialog.js');
   (wired ??= new WireDialog(send)).open();
 });
+recordings.compare = tune.compare = runs.compare.bind(runs);
 const robotPort = new RobotPort(askLab);
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
 makeEnlargeable();
@@ -454,7 +457,7 @@ Object.assign(window, {
     scales: (title) => plots.scales(title),
     /** For measurements: times from reception to the frame after drawing [ms], the clocks of page and session, a frame at once. */
     ages,
-    draw: () => plots.draw(),
+    draw,
     /** Texts shown that have no translation. */
     untranslated: () => [...untranslated],
   },

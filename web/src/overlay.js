@@ -52,12 +52,15 @@ export class Overlay {
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
     const measured = curves.filter(({ kind }) => kind !== 'reference');
+    // No two points in one pixel.
+    const every = Math.max(1, Math.floor((to_s - from_s) / (STEP_S * bbox.width)));
     for (const curve of this.seeds.length > 0 ? measured : []) {
       const { t, low, high } = this.#range(curve.name);
-      const from_s = this.shift_s(store);
+      const shift_s = this.shift_s(store);
+      const line = (/** @type {number} */ index, /** @type {number[]} */ values) => ctx.lineTo(x(shift_s + (t[index] ?? 0)), y(curve, values[index] ?? 0));
       ctx.beginPath();
-      t.forEach((t_s, index) => ctx.lineTo(x(from_s + t_s), y(curve, low[index] ?? 0)));
-      for (let index = t.length - 1; index >= 0; index--) ctx.lineTo(x(from_s + (t[index] ?? 0)), y(curve, high[index] ?? 0));
+      for (let index = 0; index < t.length; index += every) line(index, low);
+      for (let index = t.length - 1; index >= 0; index -= every) line(index, high);
       ctx.fillStyle = colours[curve.colour];
       ctx.globalAlpha = 0.18;
       ctx.fill();

@@ -15,6 +15,9 @@ import { named, said, t } from './text.js';
 /** @typedef {import('./types.js').State} State */
 /** @typedef {(order: import('./types.js').Order) => void} Send */
 
+/** A robot that has not taken its scenario's mode by then has another one [ms]. */
+const STARTS_MS = 5_000;
+
 export class CommandPanel {
   #send;
   #modes = element('modes', HTMLDivElement);
@@ -32,6 +35,8 @@ export class CommandPanel {
   #entries = [];
   /** The mode the panel is laid out for. @type {number | null} */
   #shown = null;
+  /** When another scenario began. */
+  #starts_ms = -STARTS_MS;
   /** @type {HTMLOutputElement | null} */
   #inForce = null;
 
@@ -78,8 +83,15 @@ export class CommandPanel {
 
   /** @param {Scene | null} scene */
   setScene(scene) {
+    const begins = this.#scene !== null;
     this.#scene = scene?.of_ghost ? null : scene;
     this.#places.setScene(scene);
+    // The robot starts first, then takes the mode of the scenario: what is clicked on the map meanwhile counts.
+    const mode = this.#scene?.experiments.find(({ name }) => name === this.#scene?.choice.scenario)?.mode;
+    const entry = this.#entries.find(({ id }) => id === mode);
+    if (!begins || !entry) return;
+    this.#starts_ms = performance.now();
+    this.#lay(entry);
   }
 
   /** The mode shown. @type {ModeEntry | null} */
@@ -105,11 +117,8 @@ export class CommandPanel {
     this.#joystick.show(entry?.velocity ?? false, armed);
     const steered = entry?.movements ? this.#movements : entry?.velocity ? this.#joystick : null;
     this.#steering.give(armed && steered ? steered.steer : null);
-    if (this.#shown !== mode && entry) {
-      this.#shown = mode;
-      this.#layOut(entry);
-      this.#places.layOut(entry);
-    }
+    if (this.#shown === mode || armed) this.#starts_ms = -STARTS_MS;
+    if (this.#shown !== mode && entry && performance.now() - this.#starts_ms > STARTS_MS) this.#lay(entry);
     this.#showReference(state, entry);
     if (own) setText(this.#about, this.#about.title = t('STOP and OFF cut the supply of the motors, ON gives it back; the program gets them as text, too'));
     else if (entry) this.#showAbout(entry, state.robot.rig);
@@ -144,6 +153,13 @@ export class CommandPanel {
     if (kind === 'distance') setText(this.#inForce, t('now {} cm', format(left * CM_PER_M)));
     if (kind === 'speed') setText(this.#inForce, t('now {} rpm', format(left * RPM_PER_RAD_S, 0)));
     if (kind === 'wheel_speed') setText(this.#inForce, t('now {} rpm', `${format(left * RPM_PER_RAD_S, 0)} | ${format(right * RPM_PER_RAD_S, 0)}`));
+  }
+
+  /** @param {ModeEntry} mode */
+  #lay(mode) {
+    this.#shown = mode.id;
+    this.#layOut(mode);
+    this.#places.layOut(mode);
   }
 
   /** @param {ModeEntry} mode */

@@ -88,7 +88,7 @@ export class Runs {
     this.#show();
   }
 
-  /** Compares recordings. @param {(Content & {about: import('./kept.js').About})[]} contents with what people call them */
+  /** Compares recordings, or runs of the station. @param {((Content | Seeded) & Omit<Run, 'store'>)[]} contents with what people call them */
   compare(contents) {
     this.#kept = [];
     this.#recorded = true;

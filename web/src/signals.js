@@ -76,6 +76,9 @@ const LOOPS = [
   { name: 'heading_d_deg_s', label: 'D', about: 'heading loop, D', unit: '°/s', colour: 'goal', kind: 'measured' },
   { name: 'distance_p_deg', label: 'P', about: 'distance loop, P', unit: '°', colour: 'left', kind: 'measured' },
   { name: 'distance_i_deg', label: 'I', about: 'distance loop, I', unit: '°', colour: 'right', kind: 'measured' },
+  { name: 'network_left', label: 'network l.', about: 'output of the network, left wheel', unit: 'level', colour: 'left', kind: 'measured' },
+  { name: 'network_right', label: 'network r.', about: 'output of the network, right wheel', unit: 'level', colour: 'right', kind: 'measured' },
+  { name: 'network_servo', label: 'network servo', about: 'output of the network, servo', unit: 'level', colour: 'front', kind: 'measured' },
 ];
 
 /** Colours of signals that a wiring or a program names, in turn. @type {ColourName[]} */

@@ -17,6 +17,7 @@ import { isSite } from './worker_link.js';
 /** @typedef {import('./panel.js').Send} Send */
 /** @typedef {import('./types.js').Parameter} Parameter */
 /** @typedef {import('./tune_search.js').Found} Found */
+/** @typedef {import('./runs.js').Seeded} Seeded */
 
 /**
  * A scenario that can be tuned: its limits, the runs of a search by default, and the parameters of its mode.
@@ -48,6 +49,7 @@ export class TuneDialog {
   #complaint = complaint();
   #result = create('div', { id: 'tune-result', className: 'stack', hidden: true });
   #set = create('button', { type: 'button', id: 'tune-set', className: 'go', textContent: t('Set on the robot') });
+  #curves = create('button', { type: 'button', id: 'tune-curves', textContent: t('Curves before and after') });
   /** @type {Offer[]} */
   #offers = [];
   /** By the names of their parameters: the value of the robot's file, and that to search from. @type {Map<string, {box: HTMLInputElement, value: HTMLElement, now: number, from: number}>} */
@@ -64,6 +66,8 @@ export class TuneDialog {
   /** The scenario that was loaded when the dialog was opened last. */
   #loaded = '';
   #page = 0;
+  /** Shows runs side by side. @type {(runs: (Seeded & {name: string, about: {}, parameters: Record<string, number>, metrics: {}})[]) => void} */
+  compare = () => {};
   #drives = false;
 
   /** @param {Send} send */
@@ -80,6 +84,7 @@ export class TuneDialog {
     this.#scenario.addEventListener('change', () => this.#choose());
     this.#cancel.addEventListener('click', () => this.#end());
     this.#set.addEventListener('click', () => this.#setOnRobot());
+    this.#curves.addEventListener('click', () => this.#showCurves());
     const form = create('form', { className: 'stack' },
       create('label', { className: 'wide' }, `${t('scenario')} `, this.#scenario), this.#limits, this.#parameters,
       create('label', { className: 'wide' }, `${t('aims')} `, this.#aims),
@@ -129,8 +134,10 @@ export class TuneDialog {
 
   /** Only a page with control sets something on the robot. */
   #allow() {
-    this.#set.disabled = !this.#drives;
-    this.#set.title = this.#drives ? '' : t('another page has control; take it first');
+    for (const button of [this.#set, this.#curves]) {
+      button.disabled = !this.#drives;
+      button.title = this.#drives ? '' : t('another page has control; take it first');
+    }
   }
 
   async #open() {
@@ -261,10 +268,38 @@ export class TuneDialog {
       create('p', { className: passed_tuned < seeds.length ? 'failed' : worse.length > 0 ? '' : 'passed', textContent: t('on {} robots that the search has not seen: {} passed, {} pass', seeds.length, passed_now, passed_tuned) }),
       ...(worse.length > 0 ? [create('p', { className: 'complaint', textContent: t('certainly worse than before: {}', worse.join(', ')) })] : []),
       ...resultTables(found, (name) => unitWords(this.#table.get(name)?.unit ?? '')),
-      create('div', { className: 'row' }, this.#set, robot_file === null ? none : save),
+      create('div', { className: 'row' }, this.#set, this.#curves, robot_file === null ? none : save),
       create('p', { className: 'hint', textContent: t('{} runs of the search. Lines whose interval excludes zero are certain; the others may be chance.', found.runs) }));
     this.#result.hidden = false;
     this.#result.scrollIntoView({ block: 'start' });
+  }
+
+  /** Drives the first of the unseen robots with the values before and after. */
+  async #showCurves() {
+    const { scenario, parameters, held_out: { seeds: [seed = 0] } } = this.#found ?? { scenario: '', parameters: [], held_out: { seeds: [] } };
+    const drive = async (/** @type {string} */ name, /** @type {'now' | 'tuned'} */ which) => {
+      const params = Object.fromEntries(parameters.map((each) => [each.name, each[which]]));
+      /** @type {{runs: Seeded[]}} */
+      const { runs } = await new Promise((found, failed) => {
+        const search = new Search(this.#page, { scenario, world: null, rig: null, seed, seeds: 1, params }, {
+          share: () => {},
+          found: (all) => {
+            search.end();
+            found(all);
+          },
+          failed: (why) => failed(new Error(why)),
+        });
+      });
+      return runs.map((run) => ({ ...run, name, about: {}, parameters: params, metrics: {} }));
+    };
+    setText(this.#complaint, '');
+    this.#curves.disabled = true;
+    try {
+      this.compare([...await drive(`${t('before')}, ${t('seed {}', seed)}`, 'now'), ...await drive(t('after'), 'tuned')]);
+    } catch (error) {
+      setText(this.#complaint, wordsOf(error));
+    }
+    this.#allow();
   }
 
   #setOnRobot() {

@@ -10,8 +10,11 @@ import { format, formatShort } from './units.js';
 /** A value with four digits, or a dash where there is none. @param {number | null} value */
 const figure = (value) => (value === null ? '–' : formatShort(value, 4));
 
-/** No more digits than tell: a difference of a hundredth of a millimetre is none. @param {number} value */
-const short = (value) => formatShort(Math.abs(value) < 5e-5 ? 0 : Number(value.toPrecision(3)));
+/** Of a metric a tenth of a millimetre is the last digit that tells. @param {number} value */
+const rounded = (value) => Number(value.toFixed(4)) + 0;
+
+/** @param {number} value */
+const short = (value) => formatShort(Number(rounded(value).toPrecision(3)));
 
 /** A difference with its sign. @param {number | null} value */
 const signed = (value) => (value === null ? '–' : value > 0 && short(value) !== '0' ? `+${short(value)}` : short(value));
@@ -33,7 +36,8 @@ export const certainlyWorse = ({ differences }) => differences.filter(({ interva
 /** @param {Difference} difference */
 function line({ metric, medians, mean, interval: [low, high], effect, better, never: [one, other] }) {
   const range = low === null || high === null ? '–' : t('{} to {}|interval', signed(low), signed(high));
-  return [metric, figure(medians[0]), figure(medians[1]), signed(mean), range, signed(effect), `${format(100 * better, 0)} %`, `${one}, ${other}`];
+  const [before, after] = medians.map((value) => figure(value === null ? null : rounded(value)));
+  return [metric, before ?? '', after ?? '', signed(mean), range, signed(effect), `${format(100 * better, 0)} %`, `${one}, ${other}`];
 }
 
 /** @param {string[]} head @param {string[][]} lines */

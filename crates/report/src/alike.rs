@@ -65,7 +65,7 @@ pub fn pair(assignment: &Assignment, alike: &Alike<'_>, language: Language) -> S
         put(
             &mut body,
             format_args!(
-                "<section><h3>{}</h3><pre>{lines}</pre></section>\n",
+                "<section><h2>{}</h2><pre>{lines}</pre></section>\n",
                 escape(name)
             ),
         );

@@ -59,7 +59,7 @@ impl Page {
         let name = FIGURE.of(self.language);
         let number = format!("{name} {}.{}", self.chapter, self.figures);
         format!(
-            "<figure id=\"fig-{id}\"><div class=\"wide\">{svg}</div><figcaption><b>{number}.</b> {caption}</figcaption></figure>\n"
+            "<figure id=\"fig-{id}\"><div class=\"wide\" tabindex=\"0\">{svg}</div><figcaption><b>{number}.</b> {caption}</figcaption></figure>\n"
         )
     }
 

@@ -82,7 +82,7 @@ pub(crate) fn heading(text: &str) -> String {
 pub(crate) fn figure(svg: &str, label: &str) -> String {
     let label = format!("<svg role=\"img\" aria-label=\"{}\"", escape(label));
     let svg = svg.replacen("<svg", &label, 1);
-    format!("<figure><div class=\"wide\">{svg}</div></figure>\n")
+    format!("<figure><div class=\"wide\" tabindex=\"0\">{svg}</div></figure>\n")
 }
 
 /// What stands before the chapters.

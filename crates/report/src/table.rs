@@ -41,9 +41,11 @@ impl Cell {
 
 /// A table.
 pub(crate) fn table(header: &[&str], rows: &[Vec<Cell>]) -> String {
-    let mut html = String::from("<div class=\"wide\"><table><thead><tr>");
+    let mut html = String::from("<div class=\"wide\" tabindex=\"0\"><table><thead><tr>");
     for cell in header {
-        put(&mut html, format_args!("<th>{}</th>", escape(cell)));
+        // A heading without words is none.
+        let kind = if cell.is_empty() { "td" } else { "th" };
+        html += &format!("<{kind}>{}</{kind}>", escape(cell));
     }
     html += "</tr></thead><tbody>\n";
     for row in rows {

@@ -296,9 +296,9 @@ impl Pilot {
         crate::Loops {
             wheels: self.drive.terms(before, &self.params, motion, battery_v),
             request,
-            wall: match request {
-                Drive::Twist { .. } => self.mode.wall_terms(&self.params, &self.estimate),
-                _ => None,
+            mode: match request {
+                Drive::Release => None,
+                _ => self.mode.terms(&self.params, &self.estimate),
             },
         }
     }

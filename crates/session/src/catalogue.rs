@@ -110,7 +110,7 @@ mod tests {
     use rumbo_log::SIGNALS;
 
     /// Signals that the simulated loops add ([`rumbo_log::Source::Loops`]), and the distance setpoint as the page has it.
-    const LOOPS: [&str; 19] = [
+    const LOOPS: [&str; 22] = [
         "left_p_pwm",
         "left_i_pwm",
         "left_d_pwm",
@@ -125,6 +125,9 @@ mod tests {
         "distance_i_rad",
         "heading_p_rad_s",
         "heading_d_rad_s",
+        "network_left",
+        "network_right",
+        "network_servo",
         "reference_m",
         // The page's: of the setpoint, and since ON.
         "heading_error_rad",
@@ -151,7 +154,9 @@ mod tests {
                     let is_given = mode.laws.iter().any(|(given, ..)| *given == name);
                     assert!(is_given || is_known(name), "{}: {name}", mode.name);
                 }
-                let is_own = ["error_m", "most_rad_s", "left_m", "speed_m_s"].contains(gives);
+                let own =
+                    "error_m most_rad_s left_m speed_m_s left_asked_rad_s right_asked_rad_s slower";
+                let is_own = own.split(' ').any(|name| name == *gives);
                 assert!(is_known(gives) || is_own, "{}: {gives}", mode.name);
             }
         }

@@ -5,6 +5,7 @@
 
 use crate::sim::Sim;
 use rumbo_control::drive::WheelTerms;
+use rumbo_control::mode::ModeTerms;
 use rumbo_control::{Drive, Duty, Wheels};
 use rumbo_robot::Loops;
 
@@ -68,29 +69,40 @@ pub fn loop_signals(loops: &Loops) -> Signals {
         [("left", value.left), ("right", value.right)]
             .map(|(side, value)| (format!("{side}_{name}"), value))
     });
-    let (forward_m_s, yaw_rad_s) = match loops.request {
+    let mut motion = match loops.request {
         Drive::Twist {
             forward_m_s,
             yaw_rad_s,
-        } => (Some(forward_m_s), Some(yaw_rad_s)),
-        _ => (None, None),
+        } => Some((forward_m_s, yaw_rad_s)),
+        _ => None,
     };
+    let (mut wall, mut network) = (None, None);
+    match loops.mode {
+        Some(ModeTerms::Wall(terms)) => wall = Some(terms),
+        Some(ModeTerms::Velocity(asked)) => motion = Some((asked.forward_m_s, asked.yaw_rad_s)),
+        Some(ModeTerms::Network(outputs)) => network = Some(outputs),
+        None => {}
+    }
     let outer = [
-        ("forward_ref_m_s", forward_m_s),
-        ("yaw_ref_rad_s", yaw_rad_s),
-        ("distance_p_rad", loops.wall.map(|wall| wall.distance_p_rad)),
-        ("distance_i_rad", loops.wall.map(|wall| wall.distance_i_rad)),
         (
-            "heading_p_rad_s",
-            loops.wall.map(|wall| wall.heading_p_rad_s),
+            "forward_ref_m_s",
+            motion.map(|(forward_m_s, _)| forward_m_s),
         ),
-        (
-            "heading_d_rad_s",
-            loops.wall.map(|wall| wall.heading_d_rad_s),
-        ),
+        ("yaw_ref_rad_s", motion.map(|(_, yaw_rad_s)| yaw_rad_s)),
+        ("distance_p_rad", wall.map(|wall| wall.distance_p_rad)),
+        ("distance_i_rad", wall.map(|wall| wall.distance_i_rad)),
+        ("heading_p_rad_s", wall.map(|wall| wall.heading_p_rad_s)),
+        ("heading_d_rad_s", wall.map(|wall| wall.heading_d_rad_s)),
     ];
     let outer = outer.map(|(name, value)| (name.to_owned(), signal(value)));
-    wheels.chain(outer).collect()
+    // Of mode 9 only: logs of other modes are no longer for it.
+    let network = network.into_iter().flat_map(|outputs| {
+        ["network_left", "network_right", "network_servo"]
+            .into_iter()
+            .zip(outputs)
+            .map(|(name, share)| (name.to_owned(), f64::from(share)))
+    });
+    wheels.chain(outer).chain(network).collect()
 }
 
 /// Not a number where unknown; no zero with a sign.

@@ -1,12 +1,13 @@
 // @ts-check
-/** What axe finds on the pages: nothing serious, in both colour schemes. */
+/** What axe finds on the pages: nothing, in both colour schemes. */
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
+import { execFileSync, spawnSync } from 'node:child_process';
+import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { pathToFileURL } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 import { violations } from '../axe.mjs';
-import { folder, open, program, rare } from '../dashboard.mjs';
+import { folder, launch, open, program, rare } from '../dashboard.mjs';
 
 // Contrast in the other scheme: `contrast.test.mjs`.
 for (const [colorScheme, driven] of /** @type {const} */ ([['dark', test], ['light', rare]])) {
@@ -54,18 +55,30 @@ for (const [colorScheme, driven] of /** @type {const} */ ([['dark', test], ['lig
   });
 }
 
-rare('the report', async () => {
+rare('the report, a sweep and a class', async () => {
   const out = folder();
-  execFileSync(program(), ['experiments', '--only', 'mode1', '--out', out], { stdio: 'ignore' });
-  const dashboard = await open(['lab', '--out', out]);
-  try {
-    const { page } = dashboard;
-    for (const colorScheme of /** @type {const} */ (['dark', 'light'])) {
-      await page.emulateMedia({ colorScheme });
-      await page.goto(pathToFileURL(join(out, 'report.html')).href);
-      assert.deepEqual(await violations(page), [], colorScheme);
-    }
-  } finally {
-    await dashboard.close();
+  const hands = join(out, 'hands');
+  for (const [name, text] of [['Ana', 'void setup() { pinMode(5, OUTPUT); digitalWrite(5, HIGH); }\nvoid loop() {}\n'], ['Zoe', 'void setup() {}\nvoid loop() {}\n']]) {
+    mkdirSync(join(hands, name ?? ''), { recursive: true });
+    writeFileSync(join(hands, name ?? '', 'x.ino'), text ?? '');
   }
+  const compiled = spawnSync('avr-gcc', ['--version']).status === 0;
+  const assignment = fileURLToPath(new URL('../../../examples/assignments/wall/assignment.toml', import.meta.url));
+  const run = (/** @type {string[]} */ ...words) => spawnSync(program(), words, { stdio: 'ignore' });
+  run('experiments', '--only', 'mode1', '--out', out);
+  run('sweep', 'mode1', 'front_kp=1:6:3', '--out', join(out, 'sweep'));
+  if (compiled) run('grade', assignment, hands, '--trust', '--out', join(out, 'class'));
+  const pages = ['report.html', 'sweep/index.html', ...(compiled ? ['class/index.html', 'class/students/Zoe.html'] : [])];
+  const page = await (await launch()).newPage();
+  for (const colorScheme of /** @type {const} */ (['dark', 'light'])) {
+    await page.emulateMedia({ colorScheme });
+    for (const width of [1280, 390]) {
+      await page.setViewportSize({ width, height: 800 });
+      for (const name of pages) {
+        await page.goto(pathToFileURL(join(out, name)).href);
+        assert.deepEqual(await violations(page), [], `${name} ${width} ${colorScheme}`);
+      }
+    }
+  }
+  await page.close();
 });

@@ -61,6 +61,18 @@ rare('changed parameters are part of the experiment, and STOP ends it without a 
   }
 });
 
+rare('the law of mode 9 has what its network says', async () => {
+  const dashboard = await open(['lab', '--scenario', 'mode9-random', '--out', folder()]);
+  const { page } = dashboard;
+  try {
+    await page.getByRole('tab', { name: 'Law' }).click();
+    await page.locator('#play').click();
+    for (const wheel of ['left', 'right']) await page.locator('#law .law', { hasText: new RegExp(`^${wheel}_ref_rad_s −?[\\d.]+ = network_${wheel} −?[\\d.]+ · slower 1 · 12 $`) }).waitFor();
+  } finally {
+    await dashboard.close();
+  }
+});
+
 /** The equations that the control core has for people give what the robot computed: of the wheels' PWM and mode 1's speed. @param {import('playwright-core').Page} page */
 async function lawsHold(page) {
   const { laws, parameters, series } = await page.evaluate(() => {

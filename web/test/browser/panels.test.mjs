@@ -113,7 +113,8 @@ rare('a gamepad that drives is released when another window gets the focus, and 
   await page.waitForFunction(() => !(/** @type {any} */ (window).rumbo.state().robot.armed));
 });
 
-test('in mode 10 the pad drives while it is held, as far as it is dragged, and the wheels stand when it is let go', async () => {
+test('in mode 10 the pad drives while it is held, as far as it is dragged, by the law that is shown, and the wheels stand when it is let go', async () => {
+  await page.getByRole('tab', { name: 'Law' }).click();
   await page.locator('#modes button[value="10"]').click();
   await page.locator('#modes button[value="10"][aria-pressed="true"]').waitFor();
   await page.locator('#on').click();
@@ -126,6 +127,7 @@ test('in mode 10 the pad drives while it is held, as far as it is dragged, and t
   // Half a radius up: half of 0.2 m/s, with wheels of 33 mm.
   await page.mouse.move(x + width / 2, y + height / 4);
   await latest('left_ref_rpm', 26, 32);
+  await page.locator('#law .law', { hasText: /^left_ref_rad_s (3\.\d+) = left_asked_rad_s \1 · slower 1 / }).waitFor();
   await page.mouse.move(x + width / 2, y + height / 4 + 1);
   // Longer than the robot drives without a velocity.
   const before_s = await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1));
@@ -134,6 +136,7 @@ test('in mode 10 the pad drives while it is held, as far as it is dragged, and t
   await page.mouse.up();
   await latest('left_pwm', 0);
   assert.match(await page.locator('#joystick output').innerText(), /^0\.00 m\/s/);
+  await page.getByRole('tab', { name: 'Events' }).click();
   await page.locator('#stop').click();
 });
 

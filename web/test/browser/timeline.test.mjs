@@ -2,9 +2,9 @@
 /** The time line of a live robot: what was is looked at, and the robot goes on. */
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { folder, open } from '../dashboard.mjs';
+import { eventually, folder, open } from '../dashboard.mjs';
 
-test('dragged back, the map, the numbers and the state are those of then, the robot goes on, and Live returns', async () => {
+test('dragged back or by a click on an event, the map, the numbers and the state are those of then, the robot goes on, and Live returns', async () => {
   const dashboard = await open(['lab', '--scenario', 'mode1', '--out', folder()]);
   const { page } = dashboard;
   const shown = () => page.evaluate(() => {
@@ -29,6 +29,14 @@ test('dragged back, the map, the numbers and the state are those of then, the ro
     await page.locator('#live').click();
     await page.locator('#timeline-words', { hasText: 'present' }).waitFor();
     assert.ok((await shown()).x_m > 0.6);
+    await page.locator('#events li', { hasText: /armed$/ }).click();
+    await page.locator('#timeline-words', { hasText: /^\d\.\d\d s, .* ago$/ }).waitFor();
+    assert.ok(Math.abs((await shown()).x_m) < 0.1);
+    await page.locator('#live').click();
+    // What was before the simulation began again has no time in it.
+    await page.locator('#simulation button[type="submit"]').click();
+    await page.locator('#events li', { hasText: 'reset: mode1' }).waitFor();
+    await eventually(async () => assert.equal(await page.locator('#events li', { hasText: /armed$/ }).last().getAttribute('data-t'), null));
     assert.deepEqual(dashboard.complaints, []);
   } finally {
     await dashboard.close();

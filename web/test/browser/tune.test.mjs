@@ -121,6 +121,13 @@ rare('it finds what rumbo tune finds, from what the robot has; the values are se
   await download.saveAs(saved);
   assert.equal(readFileSync(saved, 'utf8'), readFileSync(file, 'utf8'));
 
+  await page.locator('#tune-curves').click();
+  await page.locator('#comparison tr', { hasText: 'step 1: settling' }).waitFor();
+  assert.match(await page.locator('#comparison > .row').nth(1).innerText(), /1: before, seed \d+\s+2: after/);
+  assert.deepEqual(await page.locator('#comparison tr', { hasText: 'front_kp' }).locator('td').allInnerTexts().then(([name, now]) => [name, now]), ['front_kp', '1']);
+  if (process.env['SCREENSHOT_TUNE']) await page.screenshot({ path: `${process.env['SCREENSHOT_TUNE']}-curves.png` });
+  await page.locator('#runs-dialog').getByRole('button', { name: 'Close' }).click();
+
   await page.locator('#tune-set').click();
   const [{ tuned }] = found.parameters;
   await eventually(async () => assert.equal(Number(await field.inputValue()), tuned));

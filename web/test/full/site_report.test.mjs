@@ -9,7 +9,7 @@ import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { violations } from '../axe.mjs';
+import { serious as violations } from '../axe.mjs';
 import { eventually, folder, program } from '../dashboard.mjs';
 import { open, skip } from '../site.mjs';
 

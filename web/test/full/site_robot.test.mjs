@@ -7,7 +7,7 @@ import assert from 'node:assert/strict';
 import { existsSync, readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { violations } from '../axe.mjs';
+import { serious as violations } from '../axe.mjs';
 import { PATIENCE_MS, folder } from '../dashboard.mjs';
 import { BootLoader, SerialRobot, startRobot } from '../serial_robot.mjs';
 import { open, skip as noSite } from '../site.mjs';

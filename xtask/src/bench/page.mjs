@@ -48,7 +48,7 @@ async function stop() {
   return percentile(took, 0.95).toFixed(0);
 }
 
-/** Frames per second with eight plots of four signals each and ten minutes of history in sight. */
+/** Frames per second of all that moves, with the ranges and ghosts of twenty seeds, eight plots of four signals each and ten minutes in sight. */
 async function frames(url) {
   await page.goto(url);
   await page.waitForFunction(() => globalThis.rumbo?.state() !== null);
@@ -57,10 +57,13 @@ async function frames(url) {
   const plots = [...four, ...four].map((signals, index) => ({ title: `plot ${index}`, signals, min: null, max: null, weight: 4 }));
   await page.evaluate((plots) => {
     const layout = { window_s: 600, plots };
-    const modes = Object.fromEntries(Array.from({ length: 9 }, (_none, mode) => [mode, layout]));
+    const modes = Object.fromEntries(Array.from({ length: 11 }, (_none, mode) => [mode, layout]));
     localStorage.setItem("rumbo.layouts", JSON.stringify({ version: 1, modes, named: {} }));
   }, plots);
   await page.reload();
+  await page.locator("#runs").click();
+  await page.locator("#seeds-start").click();
+  await page.locator("#seeds button").nth(20).waitFor({ timeout: 120_000 });
   await page.locator("#on").click();
   await page.waitForFunction(() => {
     const { t } = globalThis.rumbo?.series("left_pwm") ?? { t: [] };
@@ -75,7 +78,7 @@ async function frames(url) {
       count += 1;
       const passed_ms = performance.now() - begin;
       if (passed_ms < 5_000) requestAnimationFrame(frame);
-      else done(`${(count * 1e3 / passed_ms).toFixed(0)} with ${document.querySelectorAll(".plot-head").length} plots, ${rumbo.series("left_pwm").t.length} lines`);
+      else done(`${(count * 1e3 / passed_ms).toFixed(0)} with ${document.querySelectorAll(".plot-head").length} plots, ${1 + rumbo.others().length} robots, ${rumbo.series("left_pwm").t.length} lines`);
     };
     requestAnimationFrame(frame);
   }));

@@ -107,10 +107,10 @@ macro_rules! modes {
                 match self { $( Self::$mode(setpoint, state) => $module::$mode::new(params, setpoint).step(state, estimate), )+ }
             }
 
-            /// What its loops beside a wall add up by this estimate, after its tick; `None` where it has none.
+            /// What its own loops are made of by this estimate, after its tick; `None` where it has none.
             #[cfg(not(target_arch = "avr"))]
-            pub fn wall_terms(&self, params: &Params, estimate: &Estimate) -> Option<super::WallTerms> {
-                match self { $( Self::$mode(setpoint, state) => $module::$mode::new(params, setpoint).wall_terms(state, estimate), )+ }
+            pub fn terms(&self, params: &Params, estimate: &Estimate) -> Option<super::ModeTerms> {
+                match self { $( Self::$mode(setpoint, state) => $module::$mode::new(params, setpoint).terms(state, estimate), )+ }
             }
         }
     };

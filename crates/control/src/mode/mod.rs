@@ -69,7 +69,19 @@ pub struct Action {
     pub new_origin: bool,
 }
 
-/// What the loops of the distance and the heading beside a wall add up, each before its limit: for people to see.
+/// What a mode's own loops are made of at a tick: for people to see.
+#[cfg(not(target_arch = "avr"))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ModeTerms {
+    /// Of the loops beside a wall.
+    Wall(WallTerms),
+    /// The velocity that is asked for, before the wheels' limit.
+    Velocity(crate::types::Velocity),
+    /// The outputs of the network as shares, -1..=1: left and right wheel, servo.
+    Network([f32; crate::policy::OUTPUTS]),
+}
+
+/// What the loops of the distance and the heading beside a wall add up, each before its limit.
 #[cfg(not(target_arch = "avr"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WallTerms {
@@ -128,9 +140,9 @@ pub trait Mode<'a>: Sized {
     /// Why it must stop; the supervisor then releases the wheels.
     fn step(&self, state: &mut Self::State, estimate: &Estimate) -> Result<Action, Fault>;
 
-    /// What its loops beside a wall add up by this estimate, after its tick; `None` where it has none.
+    /// What its own loops are made of by this estimate, after its tick; `None` where it has none.
     #[cfg(not(target_arch = "avr"))]
-    fn wall_terms(&self, _state: &Self::State, _estimate: &Estimate) -> Option<WallTerms> {
+    fn terms(&self, _state: &Self::State, _estimate: &Estimate) -> Option<ModeTerms> {
         None
     }
 }

@@ -7,9 +7,9 @@
 //! every mode, and the robot stops at the goal by its odometry, where it stays until another one is given.
 //! docs/theory/policy.md.
 
-use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states, way};
 use super::mission::Watch;
-use super::{Action, Description, MetricGroup, Mode, Plot, Reference, waypoints};
+use super::{Action, Description, Law, MetricGroup, Mode, Plot, Reference, waypoints};
 use crate::estimate::Estimate;
 use crate::math::{clamp, sqrt};
 use crate::params::{ParamId, Params};
@@ -30,10 +30,20 @@ pub const DESCRIPTION: Description = Description {
     takes: None,
     rigs: Rigs::of(&[Rig::Final]),
     parameters: &[SPEED_LOOPS, FEEDFORWARD, WHEEL_RAMPS],
-    laws: &[SPEED],
+    laws: &[LAWS, SPEED],
     plots: &[Plot::Position, Plot::Wheels, Plot::Distance],
     metrics: &[MetricGroup::Journey],
 };
+
+/// What [`Policy`] makes of the outputs of its network.
+const LAWS: &[Law] = &[
+    way(SEEKS)[0],
+    Law::new("slower", "clamp(left_m / 0.08, 0.25, 1)").only_in(SEEKS),
+    Law::new("left_ref_rad_s", "network_left * slower * 12").only_in(SEEKS),
+    Law::new("right_ref_rad_s", "network_right * slower * 12").only_in(SEEKS),
+    Law::new("servo_rad", "network_servo * 1.5707").only_in(SEEKS),
+];
+const SEEKS: &[u8] = &[Phase::Seek as u8];
 
 /// The wheel speed of an output of 1 [rad/s].
 pub const WHEEL_RAD_S: f32 = 12.0;
@@ -170,6 +180,11 @@ impl<'a> Mode<'a> for Policy<'a> {
             action.look.servo = ServoAngle(servo * SERVO_RAD);
         }
         Ok(action)
+    }
+
+    #[cfg(not(target_arch = "avr"))]
+    fn terms(&self, state: &State, _: &Estimate) -> Option<super::ModeTerms> {
+        Some(super::ModeTerms::Network(shares(state.outputs)))
     }
 }
 

@@ -6,8 +6,8 @@
 //! Both wheels follow their speed loops ([`crate::drive`]), ramps included. Where a wheel would have to turn faster than
 //! [`MAX_WHEEL_RAD_S`], both are slowed by the same factor: the arc stays.
 
-use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
-use super::{Action, Description, MAX_WHEEL_RAD_S, Mode, Plot, SetpointError, Takes, within};
+use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states};
+use super::{Action, Description, Law, MAX_WHEEL_RAD_S, Mode, Plot, SetpointError, Takes, within};
 use crate::estimate::Estimate;
 use crate::math::abs;
 use crate::odometry::Geometry;
@@ -27,10 +27,28 @@ pub const DESCRIPTION: Description = Description {
     takes: Some(Takes::Velocity),
     rigs: Rigs::ANY,
     parameters: &[WHEEL_RAMPS, SPEED_LOOPS, FEEDFORWARD],
-    laws: &[TWIST, SPEED],
+    laws: &[LAWS, SPEED],
     plots: &[Plot::Wheels, Plot::Heading, Plot::Pwm],
     metrics: &[],
 };
+
+/// [`Twist::wheels`].
+const LAWS: &[Law] = &[
+    Law::new(
+        "left_asked_rad_s",
+        "(forward_ref_m_s - yaw_ref_rad_s * base_m / 2) / radius_left_m",
+    ),
+    Law::new(
+        "right_asked_rad_s",
+        "(forward_ref_m_s + yaw_ref_rad_s * base_m / 2) / radius_right_m",
+    ),
+    Law::new(
+        "slower",
+        "min(1, 20 / max(abs(left_asked_rad_s), abs(right_asked_rad_s)))",
+    ),
+    Law::new("left_ref_rad_s", "left_asked_rad_s * slower"),
+    Law::new("right_ref_rad_s", "right_asked_rad_s * slower"),
+];
 
 /// Largest forward speed that is accepted, either way [m/s].
 pub const MAX_FORWARD_M_S: f32 = 1.0;
@@ -132,6 +150,11 @@ impl<'a> Mode<'a> for Twist<'a> {
             state: phase as u8,
             ..Action::default()
         })
+    }
+
+    #[cfg(not(target_arch = "avr"))]
+    fn terms(&self, _: &State, _: &Estimate) -> Option<super::ModeTerms> {
+        Some(super::ModeTerms::Velocity(*self.velocity))
     }
 }
 

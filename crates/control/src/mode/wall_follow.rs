@@ -22,13 +22,13 @@
 //! 2 cm: 59 -> 50 cm in 1.6 s instead of 7.1, 50 -> 30 cm in 3.2 s instead of 6.3, 30 -> 40 cm in 1.6 s instead of 9.0
 //! (`rumbo run mode4 --runs 20`). Derivation and margins: docs/theory/wall_follow.md.
 
-#[cfg(not(target_arch = "avr"))]
-use super::WallTerms;
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
 use super::{
     Action, DEFAULT_WALL_M, Description, Group, Law, MAX_WALL_M, MIN_WALL_M, MetricGroup, Mode,
     Plot, Reference, ReferenceDescription, ReferenceKind, SetpointError,
 };
+#[cfg(not(target_arch = "avr"))]
+use super::{ModeTerms, WallTerms};
 use crate::beside::Beside;
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, sqrt, wrap_angle};
@@ -254,24 +254,24 @@ impl WallFollow<'_> {
 #[cfg(not(target_arch = "avr"))]
 impl WallFollow<'_> {
     /// What both loops add up at this distance [m], with the integral as the next tick adds it.
-    pub(super) fn terms(
+    pub(super) fn terms_at(
         &self,
         state: &State,
         at: &Estimate,
         reference_m: f32,
-    ) -> Option<WallTerms> {
+    ) -> Option<ModeTerms> {
         let (side, wall) = (state.side?, state.wall.wall()?);
         let gain = |id| self.params.get(id);
         let (distance_m, angle_rad) = self.distance_and_angle(side, &wall);
         let error_m = distance_m - reference_m;
         let (angle_ref_rad, _) = self.angle_ref_rad(state, error_m, wall.bearing_sd_rad());
         let off_rad = angle_ref_rad - angle_rad;
-        Some(WallTerms {
+        Some(ModeTerms::Wall(WallTerms {
             distance_p_rad: sign(side) * gain(ParamId::WallKp) / self.cruise_m_s * error_m,
             distance_i_rad: sign(side) * state.integral_rad,
             heading_p_rad_s: sign(side) * gain(ParamId::WallHeadingKp) * off_rad,
             heading_d_rad_s: -gain(ParamId::WallDamping) * at.yaw_rad_s,
-        })
+        }))
     }
 }
 
@@ -413,8 +413,8 @@ impl<'a> Mode<'a> for WallFollow<'a> {
     }
 
     #[cfg(not(target_arch = "avr"))]
-    fn wall_terms(&self, state: &State, estimate: &Estimate) -> Option<WallTerms> {
-        self.terms(state, estimate, self.distance_m)
+    fn terms(&self, state: &State, estimate: &Estimate) -> Option<ModeTerms> {
+        self.terms_at(state, estimate, self.distance_m)
     }
 }
 
@@ -482,6 +482,13 @@ mod tests {
         assert_eq!(state.integral_rad, 0.0);
     }
 
+    fn wall_terms(mode: &WallFollow, state: &State, seen: &Estimate) -> WallTerms {
+        match mode.terms(state, seen) {
+            Some(ModeTerms::Wall(terms)) => terms,
+            other => panic!("{other:?}"),
+        }
+    }
+
     #[test]
     fn the_terms_of_its_loops_add_up_to_the_heading_setpoint_and_the_yaw_rate_on_either_side() {
         for rig in PAIRS {
@@ -492,7 +499,7 @@ mod tests {
             seen.yaw_rad_s = 0.05;
             for _ in 0..50 {
                 let action = mode.step(&mut state, &seen).unwrap();
-                let terms = mode.wall_terms(&state, &seen).unwrap();
+                let terms = wall_terms(&mode, &state, &seen);
                 let heading_rad = terms.distance_p_rad + terms.distance_i_rad;
                 // The integral has grown by a tick of 2 cm.
                 let grown_rad = params.get(ParamId::WallKi) * 0.02 * TICK_S + 1e-5;
@@ -506,7 +513,7 @@ mod tests {
                     other => panic!("{other:?}"),
                 }
             }
-            let integral_rad = mode.wall_terms(&state, &seen).unwrap().distance_i_rad;
+            let integral_rad = wall_terms(&mode, &state, &seen).distance_i_rad;
             assert!(integral_rad.abs() > 0.005, "{rig:?}");
         }
     }

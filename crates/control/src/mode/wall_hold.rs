@@ -153,8 +153,8 @@ impl<'a> Mode<'a> for WallHold<'a> {
     }
 
     #[cfg(not(target_arch = "avr"))]
-    fn wall_terms(&self, state: &State, estimate: &Estimate) -> Option<super::WallTerms> {
-        self.0.terms(&state.follow, estimate, state.reference_m?)
+    fn terms(&self, state: &State, estimate: &Estimate) -> Option<super::ModeTerms> {
+        self.0.terms_at(&state.follow, estimate, state.reference_m?)
     }
 }
 
