@@ -144,7 +144,7 @@ section! {
     /// Two Li-ion cells in series, shared by motors and electronics.
     Battery {
         /// Open-circuit voltage at the start of a run: the charge follows from it.
-        open_circuit_v = 7.4, 5.0 => 9.0, "V";
+        open_circuit_v = 7.4, 5.0 => 13.0, "V";
         /// Internal resistance with wiring and switch.
         resistance_ohm = 0.15, 0.0 => 3.0, "ohm";
         /// Capacity.
@@ -339,9 +339,9 @@ section! {
         /// Friction of the floor, relative.
         floor = 0.15, 0.0 => 0.9, "1";
         /// Emptiest battery: open-circuit voltage.
-        battery_min_v = 6.8, 5.0 => 9.0, "V";
+        battery_min_v = 6.8, 5.0 => 13.0, "V";
         /// Fullest battery: open-circuit voltage.
-        battery_max_v = 8.4, 5.0 => 9.0, "V";
+        battery_max_v = 8.4, 5.0 => 13.0, "V";
         /// Speed of sound, relative: the temperature of the room.
         sound = 0.009, 0.0 => 0.05, "1";
         /// Back-EMF of both motors, relative.

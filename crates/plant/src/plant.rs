@@ -249,8 +249,7 @@ impl Plant {
 
     /// Sets one half of the bridge from now on.
     pub fn set_bridge(&self, state: &mut State, side: Side, bridge: Bridge) {
-        self.drivetrain
-            .set_bridge(&mut state.drivetrain, side, bridge);
+        self.set_bridge_at(state, side, bridge, Modulation::default());
     }
 
     /// The same with another PWM than the parameters'.
@@ -261,8 +260,16 @@ impl Plant {
         bridge: Bridge,
         modulation: Modulation,
     ) {
+        let i = side.index();
+        let before = state.drivetrain.wheels[i];
         self.drivetrain
             .set_bridge_at(&mut state.drivetrain, side, bridge, modulation);
+        // What holds a wheel that stands at an obstacle holds it that way only.
+        if before.speed_rad_s == 0.0
+            && before.command.direction != state.drivetrain.wheels[i].command.direction
+        {
+            state.contact.blocked[i] = 0.0;
+        }
     }
 
     /// Commands the servo's angle: 0 ahead, positive to the left.

@@ -414,3 +414,31 @@ fn a_ping_takes_its_round_trip_and_blocks_only_itself() {
     );
     assert!(plant.trigger(&mut state, SonarId::Left), "free again");
 }
+
+#[test]
+fn a_weak_robot_that_stalled_at_a_wall_backs_off() {
+    let mut params = Params::default();
+    params.motor.resistance_ohm = 12.0;
+    params.battery.open_circuit_v = 6.0;
+    let plant = Plant::new(Setup {
+        params,
+        world: wall_at(0.3),
+        ..Setup::default()
+    });
+    let mut state = plant.start(Pose::default());
+    let both = |state: &mut State, bridge| {
+        plant.set_bridge(state, Side::Left, bridge);
+        plant.set_bridge(state, Side::Right, bridge);
+    };
+    both(&mut state, Bridge::Forward(1.0));
+    plant.advance(&mut state, 2_000_000, &mut |_| {});
+    assert_eq!(
+        plant.truth(&state).wheel_rad_s,
+        [0.0; 2],
+        "its tyres do not slip"
+    );
+    let stalled_m = plant.truth(&state).pose.x_m;
+    both(&mut state, Bridge::Backward(1.0));
+    plant.advance(&mut state, 3_000_000, &mut |_| {});
+    assert!(plant.truth(&state).pose.x_m < stalled_m - 0.05);
+}
