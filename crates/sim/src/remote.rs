@@ -3,7 +3,7 @@
 //! The receiver's output is high, and low while it sees the carrier. A key sends its frame once, and a short repeat every
 //! 108 ms while it is held. The address is 0, and the commands are those of the three remotes that come with Arduino kits, as the
 //! library IRremote lists the one with arrows (DemoIRCommandMapping.h, Keyes clone); the same chip in the others sends the same
-//! command for the same place.
+//! command for the same place. That of Adafruit and DFRobot has an address of two bytes, 0xBF00.
 
 use std::collections::VecDeque;
 
@@ -16,8 +16,8 @@ const REPEAT_US: u64 = 108_000;
 /// How long a key stays down after it was pressed \[us\]: longer than a repeat takes to come.
 const DOWN_US: u64 = 200_000;
 
-/// A key: what stands on it, and its command.
-pub type Key = (&'static str, u8);
+/// A key: what stands on it, and its command, below the second byte of an address that has one.
+pub type Key = (&'static str, u16);
 
 /// The remote with arrows, 17 keys, row by row.
 pub const ARROWS: [Key; 17] = [
@@ -86,11 +86,36 @@ pub const RADIO: [Key; 21] = [
     ("9", 0x4A),
 ];
 
+/// The mini remote of Adafruit and DFRobot, 21 keys, row by row, as Adafruit's product 389 lists its codes.
+pub const MINI: [Key; 21] = [
+    ("vol-", 0xBF00),
+    ("play", 0xBF01),
+    ("vol+", 0xBF02),
+    ("setup", 0xBF04),
+    ("up", 0xBF05),
+    ("stop", 0xBF06),
+    ("left", 0xBF08),
+    ("enter", 0xBF09),
+    ("right", 0xBF0A),
+    ("0", 0xBF0C),
+    ("down", 0xBF0D),
+    ("back", 0xBF0E),
+    ("1", 0xBF10),
+    ("2", 0xBF11),
+    ("3", 0xBF12),
+    ("4", 0xBF14),
+    ("5", 0xBF15),
+    ("6", 0xBF16),
+    ("7", 0xBF18),
+    ("8", 0xBF19),
+    ("9", 0xBF1A),
+];
+
 /// A remote in somebody's hand.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Remote {
     /// The command that is down, and until when [us].
-    down: Option<(u8, u64)>,
+    down: Option<(u16, u64)>,
     /// When the next frame or repeat may begin [us].
     free_us: u64,
     /// The frame of the key that is down has been sent.
@@ -101,7 +126,7 @@ pub(crate) struct Remote {
 
 impl Remote {
     /// A key is pressed, for a moment; pressed again meanwhile, it stays down for longer.
-    pub(crate) fn press(&mut self, command: u8, now_us: u64) {
+    pub(crate) fn press(&mut self, command: u16, now_us: u64) {
         let down = self.down.filter(|(_, until_us)| *until_us >= now_us);
         self.sent &= down.is_some_and(|(down, _)| down == command);
         self.down = Some((command, now_us + DOWN_US));
@@ -140,9 +165,11 @@ fn levels(times: impl IntoIterator<Item = f64>) -> Vec<(u64, bool)> {
     levels
 }
 
-/// Leader, address 0 and its inverse, command and its inverse, the lowest bit first, and a last pulse.
-fn frame(command: u8) -> Vec<(u64, bool)> {
-    let bits = [0, 0xFF, command, !command].into_iter();
+/// Leader, address 0 and its inverse or second byte, command and its inverse, the lowest bit first, and a last pulse.
+fn frame(code: u16) -> Vec<(u64, bool)> {
+    let [second, command] = code.to_be_bytes();
+    let second = if second == 0 { 0xFF } else { second };
+    let bits = [0, second, command, !command].into_iter();
     let bits = bits.flat_map(|byte: u8| (0..8).map(move |bit| byte >> bit & 1 != 0));
     let bits = bits.flat_map(|bit| [1.0, if bit { 3.0 } else { 1.0 }]);
     levels([16.0, 8.0].into_iter().chain(bits).chain([1.0]))
@@ -175,7 +202,8 @@ mod tests {
         assert_eq!(us[..3], [5_000, 14_000, 18_500]);
         let bit = |index: usize| us[2 * index + 4] - us[2 * index + 2] > 1_700;
         let byte = |from: usize| (0..8).fold(0, |all, at| all | u8::from(bit(8 * from + at)) << at);
-        assert_eq!([0, 1, 2, 3].map(byte), [0, 0xFF, ok, !ok]);
+        let command = ok as u8;
+        assert_eq!([0, 1, 2, 3].map(byte), [0, 0xFF, command, !command]);
         assert_eq!(us[68..71], [113_000, 122_000, 124_250]);
         assert!(levels.iter().step_by(2).all(|(_, level)| !level));
         assert!(levels.last().unwrap().1);
@@ -188,8 +216,18 @@ mod tests {
     }
 
     #[test]
+    fn the_mini_remote_s_up_is_what_sketches_compare_with() {
+        let (_, up) = MINI.into_iter().find(|(name, _)| *name == "up").unwrap();
+        let rises = frame(up).into_iter().filter(|(_, high)| !high);
+        let starts: Vec<u64> = rises.map(|(cycle, _)| cycle / US).collect();
+        let bits = starts[1..].windows(2).map(|pair| pair[1] - pair[0] > 1_700);
+        let value = bits.fold(0_u32, |value, bit| value << 1 | u32::from(bit));
+        assert_eq!(value, 0x00FD_A05F);
+    }
+
+    #[test]
     fn every_key_has_a_name_and_a_command_of_its_own() {
-        for keys in [&ARROWS[..], &CAR, &RADIO] {
+        for keys in [&ARROWS[..], &CAR, &RADIO, &MINI] {
             let mut names: Vec<_> = keys.iter().map(|(name, _)| name).collect();
             let mut commands: Vec<_> = keys.iter().map(|(_, command)| command).collect();
             names.sort_unstable();

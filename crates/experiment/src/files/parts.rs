@@ -6,7 +6,7 @@
 //! parts.speed = { potentiometer = "A0" }
 //! parts.lamp = { led = 13 }               # or buzzer
 //! parts.remote = { infrared = 11 }        # a remote control with arrows; with keys = 21 that of a car radio,
-//!                                         # with keys = "car" that with its arrows above the digits
+//!                                         # keys = "car" that with its arrows above the digits, "mini" Adafruit's
 //! parts.imu = { mpu6050 = 0x68 }          # with x_m and y_m where it is, interrupt = 2 for its INT, and where
 //!                                         # its x, y and z point where not so: axes = "forward left up"
 //! parts.screen = { ssd1306 = 0x3c }       # with size = "128x32"
@@ -17,7 +17,7 @@ use super::error::did_you_mean;
 use super::pin::read_pin;
 use super::read::{Allowed, Table};
 use rumbo_sim::bus::{BusDevice, DeviceKind};
-use rumbo_sim::remote::{ARROWS, CAR, Key, RADIO};
+use rumbo_sim::remote::{ARROWS, CAR, Key, MINI, RADIO};
 use rumbo_sim::wiring::{Part, PartKind, Wiring};
 
 /// What is written as an address: one of 7 bits, or by mistake one of 8.
@@ -91,7 +91,7 @@ fn read_keys(own: &Table<'_, '_>, kind: PartKind) -> &'static [Key] {
         return &ARROWS;
     }
     if own.is_text("keys") {
-        return read_car_keys(own);
+        return read_named_keys(own);
     }
     let Some(count) = own.placed_number("keys", Allowed::new(1.0, 99.0, "count")) else {
         return &ARROWS;
@@ -102,7 +102,7 @@ fn read_keys(own: &Table<'_, '_>, kind: PartKind) -> &'static [Key] {
         .find(|keys| keys.len() == count.value as usize);
     found.unwrap_or_else(|| {
         let remedy = format!(
-            "there is one with arrows, {} keys, and that of a car radio, {}; and \"car\", its arrows above the digits",
+            "there is one with arrows, {} keys, and that of a car radio, {}; \"car\", its arrows above the digits; and \"mini\"",
             ARROWS.len(),
             RADIO.len()
         );
@@ -111,13 +111,17 @@ fn read_keys(own: &Table<'_, '_>, kind: PartKind) -> &'static [Key] {
     })
 }
 
-/// The remote control of a car kit, which has as many keys as another one.
-fn read_car_keys(own: &Table<'_, '_>) -> &'static [Key] {
-    if let Some(name) = own.text("keys").filter(|name| name.value != "car") {
-        let remedy = "must be 17, 21 or \"car\"";
-        own.complain("keys", name.line, &format!("{:?}", name.value), remedy);
+/// A remote control that has as many keys as another one.
+fn read_named_keys(own: &Table<'_, '_>) -> &'static [Key] {
+    match own.text("keys") {
+        Some(name) if name.value == "mini" => &MINI,
+        Some(name) if name.value != "car" => {
+            let remedy = "must be 17, 21, \"car\" or \"mini\"";
+            own.complain("keys", name.line, &format!("{:?}", name.value), remedy);
+            &CAR
+        }
+        _ => &CAR,
     }
-    &CAR
 }
 
 /// Reports a pin that something else is on.
