@@ -30,6 +30,8 @@ pub enum Direction {
     One,
     /// By two outputs of a shield's register: a wheel is on one of its motors.
     Motor,
+    /// By the width of pulses: the motor is that of a servo without a stop.
+    Pulse,
 }
 
 /// A shield on which a chip has the inputs of the motors: a register, 74HC595, those of their directions; or a PCA9685 all.
@@ -163,7 +165,7 @@ static DRV8833: Driver = Driver {
 };
 
 /// The drivers that there are.
-pub static DRIVERS: [&Driver; 10] = [
+pub static DRIVERS: [&Driver; 11] = [
     &L298N,
     &L293D,
     &Driver {
@@ -232,6 +234,16 @@ pub static DRIVERS: [&Driver; 10] = [
         diode_v: 1.0,
         brake_v: 0.0,
         ..L298N
+    },
+    &Driver {
+        name: "continuous-servos",
+        title: "continuous-rotation servos",
+        // What they lose is in their speed and torque.
+        source: Some("the data sheet of Parallax's 900-00008, 2.0"),
+        direction: Direction::Pulse,
+        has_standby: false,
+        drop_ohm: 0.0,
+        ..DRV8833
     },
 ];
 

@@ -334,10 +334,14 @@ fn suits_driver(table: &Table<'_, '_>, wiring: &Wiring) {
                  a jumper holds it"
             ));
         }
-        if driver.direction == Direction::One && has(&forward) && has(&backward) {
+        let one = match driver.direction {
+            Direction::One => Some(("this driver has one direction input", "its high drives")),
+            Direction::Pulse => Some(("a servo has one input", "a long pulse drives")),
+            Direction::Two | Direction::Motor => None,
+        };
+        if let (Some((has_one, what)), true, true) = (one, has(&forward), has(&backward)) {
             table.complain_here(&format!(
-                "{forward} and {backward}: this driver has one direction input; name it {forward} if its high drives \
-                 forward, else {backward}"
+                "{forward} and {backward}: {has_one}; name it {forward} if {what} forward, else {backward}"
             ));
         }
     }

@@ -9,12 +9,15 @@
 
 use super::CYCLES_PER_US;
 use super::pins::DriverInput;
+use super::servo;
 use crate::drivers::{Direction, Driver, Stage};
 use rumbo_emulator::devices::Pwm;
 use rumbo_plant::drivetrain::{Bridge, Decay, Modulation};
 
 /// Longest period that counts as PWM: 4 ms, 250 Hz.
 const LONGEST_CYCLES: u64 = 4_000 * CYCLES_PER_US;
+/// A servo stops this long after its last pulse: three of its periods.
+const PULSES_CYCLES: u64 = 60_000 * CYCLES_PER_US;
 
 /// A wave that the program makes itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +37,8 @@ pub(super) struct Line {
     rise_cycle: Option<u64>,
     edge_cycle: u64,
     wave: Option<Wave>,
+    /// Width of the last pulse.
+    pulse_cycles: Option<u64>,
 }
 
 impl Line {
@@ -55,6 +60,8 @@ impl Line {
             });
             self.been_modulated |= self.wave.is_some();
             self.rise_cycle = Some(cycle);
+        } else {
+            self.pulse_cycles = self.rise_cycle.map(|rise| cycle - rise);
         }
         self.edge_cycle = cycle;
     }
@@ -130,19 +137,54 @@ impl HalfBridge {
             lines: inputs.map(held),
             inverse: match driver.direction {
                 Direction::Two | Direction::Motor => None,
-                Direction::One => [2, 1].into_iter().find(unwired),
+                Direction::One | Direction::Pulse => [2, 1].into_iter().find(unwired),
             },
         }
     }
 
     /// When a wave may be over.
     pub(super) fn expires_cycle(&self) -> Option<u64> {
+        if let Some(line) = self.servo_line() {
+            return line.pulse_cycles.map(|_| line.edge_cycle + PULSES_CYCLES);
+        }
         self.lines.iter().filter_map(Line::expires_cycle).min()
+    }
+
+    /// The line with the pulses of a servo, if this is one.
+    fn servo_line(&self) -> Option<&Line> {
+        let is_servo = self.driver.direction == Direction::Pulse;
+        is_servo.then(|| &self.lines[if self.inverse == Some(1) { 2 } else { 1 }])
+    }
+
+    /// What the servo's own bridge does.
+    fn servo(&self, line: &Line) -> (Bridge, Modulation) {
+        let width_us = line
+            .pulse_cycles
+            .map(|cycles| cycles as f64 / CYCLES_PER_US as f64);
+        let share = width_us.and_then(servo::turning);
+        let share = share.map(|share| {
+            if self.inverse == Some(1) {
+                -share
+            } else {
+                share
+            }
+        });
+        let bridge = match share {
+            None => Bridge::Released,
+            Some(0.0) => Bridge::Brake(1.0),
+            Some(share) if share > 0.0 => Bridge::Forward(share),
+            Some(share) => Bridge::Backward(-share),
+        };
+        let decay = Decay::Slow;
+        (bridge, Modulation { hz: None, decay })
     }
 
     /// Ends the waves that have timed out.
     pub(super) fn expire(&mut self, cycle: u64) {
+        let is_over =
+            self.servo_line().is_some() && self.expires_cycle().is_some_and(|due| due <= cycle);
         for line in &mut self.lines {
+            line.pulse_cycles = line.pulse_cycles.filter(|_| !is_over);
             if line.expires_cycle().is_some_and(|due| due <= cycle) {
                 line.wave = None;
                 line.rise_cycle = None;
@@ -152,6 +194,9 @@ impl HalfBridge {
 
     /// What the motor gets, and how it is modulated.
     pub(super) fn state(&self) -> (Bridge, Modulation) {
+        if let Some(line) = self.servo_line() {
+            return self.servo(line);
+        }
         let shares = self.lines.each_ref().map(Line::share);
         let period = shares.iter().find_map(|(_, period)| *period);
         let [enable, mut forward, mut backward, standby] = shares.map(|(share, _)| share);
@@ -327,6 +372,36 @@ mod tests {
         assert_eq!(
             (bridge, modulation.decay),
             (Bridge::Backward(0.75), Decay::Slow)
+        );
+    }
+
+    #[test]
+    fn a_continuous_servo_turns_by_the_width_of_its_pulses_and_stands_without_them() {
+        let pin =
+            |bit| DriverInput::Pin(rumbo_emulator::devices::ports::Pin::new('B', bit).unwrap());
+        let driver = Driver::named("continuous-servos").unwrap();
+        let (low, high) = (DriverInput::Low, DriverInput::High);
+        let mut left = HalfBridge::new(driver, [high, pin(0), low, high]);
+        let mut right = HalfBridge::new(driver, [high, low, pin(1), high]);
+        assert_eq!(left.state().0, Bridge::Released);
+        let mut cycle = 0;
+        let mut pulse = |half: &mut HalfBridge, line: usize, width_us: u64| {
+            cycle += 20_000 * CYCLES_PER_US;
+            half.lines[line].set(cycle, true);
+            half.lines[line].set(cycle + width_us * CYCLES_PER_US, false);
+            half.state().0
+        };
+        assert_eq!(pulse(&mut left, 1, 1_700), Bridge::Forward(1.0));
+        assert_eq!(pulse(&mut left, 1, 1_300), Bridge::Backward(1.0));
+        assert_eq!(pulse(&mut right, 2, 1_300), Bridge::Forward(1.0));
+        assert_eq!(pulse(&mut right, 2, 1_565), Bridge::Backward(0.5));
+        // write(90) of the Servo library is 1472 us.
+        assert_eq!(pulse(&mut left, 1, 1_472), Bridge::Brake(1.0));
+        let due = left.expires_cycle().unwrap();
+        left.expire(due);
+        assert_eq!(
+            (left.state().0, left.expires_cycle()),
+            (Bridge::Released, None)
         );
     }
 }

@@ -3,6 +3,8 @@
 //! Arduino's `Servo` library sends 544 us for 0 degrees and 2400 us for 180; the servo here understands just that, so
 //! that `write(90)`, 1472 us, looks straight ahead. More is to the left. Pulses outside 500 to 2500 us are none of a servo's, and
 //! without pulses it holds where it is.
+//!
+//! A continuous-rotation servo makes a speed of that width, [`turning`].
 
 use super::CYCLES_PER_US;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -13,6 +15,22 @@ const CREDIBLE_US: std::ops::RangeInclusive<f64> = 500.0..=2500.0;
 const RIGHT_US: f64 = 544.0;
 /// Width at 180 degrees [us].
 const LEFT_US: f64 = 2400.0;
+
+/// A continuous-rotation servo stands at this width, [us]; about it is its dead band, within which `write(90)` stands too: Parallax's has
+/// a narrower one, Feetech's FS90R one of 45 us.
+const MIDDLE_US: f64 = 1500.0;
+const DEAD_US: f64 = 30.0;
+/// Off the middle by this it has its whole speed, in between one in proportion: Parallax's curve is straight from 1.4 to 1.6 ms.
+const WHOLE_US: f64 = 100.0;
+
+/// The share of its whole speed that a pulse of this width makes, positive for long ones.
+pub(super) fn turning(width_us: f64) -> Option<f64> {
+    let off_us = width_us - MIDDLE_US;
+    let share = ((off_us.abs() - DEAD_US) / (WHOLE_US - DEAD_US)).clamp(0.0, 1.0);
+    CREDIBLE_US
+        .contains(&width_us)
+        .then_some(share.copysign(off_us))
+}
 
 /// The input pin.
 #[derive(Clone, Copy, Debug, Default)]

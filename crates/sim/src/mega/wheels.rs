@@ -97,8 +97,15 @@ impl Mega {
             }
         };
         let low = |input: usize| !lines[input].been_high();
-        let two = self.wires().driver.direction != Direction::One;
-        Some(if low(3) {
+        let direction = self.wires().driver.direction;
+        let two = direction != Direction::One;
+        Some(if direction == Direction::Pulse {
+            let wired = if inputs[1].pin().is_some() { 1 } else { 2 };
+            format!(
+                "{} had no pulse that turns it, shorter or longer than 1.5 ms",
+                called(wired)
+            )
+        } else if low(3) {
             format!("{} was never high, and the driver slept", called(3))
         } else if low(0) {
             let held = match inputs[0].pin() {
@@ -125,7 +132,8 @@ impl Mega {
         // A program that knows no analogWrite() wants none.
         let mut functions = self.firmware.image().functions().iter();
         let wants = functions.any(|function| function.name.starts_with("analogWrite"));
-        if !wants || lines.iter().any(|line| line.been_modulated()) {
+        let servo = self.wires().driver.direction == Direction::Pulse;
+        if !wants || servo || lines.iter().any(|line| line.been_modulated()) {
             return None;
         }
         let speed = match inputs[0].pin() {
