@@ -14,6 +14,7 @@ rumbo_sim::notes! {
         Program { name: String, note: mega::Note } "firmware {name}: {note}";
         Robot { name: String, note: Box<Note> } "{name}: {note}";
         TooManyEdges { most: f64 } "it switches the robot's pins more than {most} times a second, which no motor follows; the run was ended";
+        NeverTurned { pwm: u16 } "it drove the motors, by a PWM of at most {pwm} of 255, and no wheel turned: that is too little for [plant.motor] at [plant.battery] of the robot's file";
         HandedInAsImage {} "handed in as an image: its compiler is not known";
         HandedInLate {} "handed in late, as its name says";
         OtherCompiler { what: &'static str, is: String, wanted: String } "compiled with {what} {is}; the assignment's marks are for {wanted}";
