@@ -165,6 +165,7 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
         jumpers,
         pins,
         four_wheels: args.wheels == 4,
+        battery_v: args.battery,
         parts: args.parts.clone(),
     })
 }

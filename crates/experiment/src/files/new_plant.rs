@@ -1,0 +1,185 @@
+//! The plant of a robot file to start from: body, motors by their published figures, battery.
+//!
+//! What is published of a small gear motor is its speed and current without a load at a voltage V, and the torque that stalls it:
+//! with constant k, resistance R and gear efficiency e, k w = V - R i and e k (V/R - i) = T, so R is the smaller root of
+//! `i^2 R^2 - (2 V i + T w/e) R + V^2 = 0`. The friction is `e k i`; a second speed at a lower voltage tells dry from viscous.
+
+use rumbo_sim::drivers::{Direction, Driver};
+use std::f64::consts::PI;
+
+/// Newton metres in a kilogram-force centimetre.
+const KG_CM: f64 = 0.0980665;
+/// Share of the torque that gears of plastic pass on: the nominal one.
+const EFFICIENCY: f64 = 0.7;
+
+/// A gear motor by its figures.
+struct GearMotor {
+    title: &'static str,
+    figures: &'static str,
+    /// Voltage, and without a load speed \[rpm\] and current \[A\]; the torque that stalls it \[N m\].
+    volts: f64,
+    rpm: f64,
+    amperes: f64,
+    stall_n_m: f64,
+    /// A lower voltage and its speed without a load \[rpm\]; without one half of the friction is taken for dry.
+    slow: Option<(f64, f64)>,
+    /// Of winding, and of gears and wheel; no data sheet has them.
+    inductance_h: f64,
+    inertia_kg_m2: f64,
+    gear_ratio: f64,
+}
+
+/// The yellow motor of hobby cars. Inductance and inertia are those of the report's motors, identified.
+const TT: GearMotor = GearMotor {
+    title: "TT motors, 1:48",
+    figures: "at 6 V 200 rpm and 150 mA without a load, 0.8 kg cm stalled, 90 rpm at 3 V",
+    volts: 6.0,
+    rpm: 200.0,
+    amperes: 0.15,
+    stall_n_m: 0.8 * KG_CM,
+    slow: Some((3.0, 90.0)),
+    inductance_h: 0.0003,
+    inertia_kg_m2: 0.0008,
+    gear_ratio: 48.0,
+};
+
+/// The servo of the Boe-Bot and its kind.
+const SERVO: GearMotor = GearMotor {
+    title: "continuous-rotation servos",
+    figures: "at 6 V 50 rpm and 140 mA without a load, 2.7 kg cm stalled",
+    volts: 6.0,
+    rpm: 50.0,
+    amperes: 0.14,
+    stall_n_m: 2.7 * KG_CM,
+    slow: None,
+    inductance_h: 0.0003,
+    inertia_kg_m2: 0.0014,
+    gear_ratio: 250.0,
+};
+
+impl GearMotor {
+    /// Resistance, constant, and dry and viscous friction of a wheel.
+    fn derived(&self) -> [f64; 4] {
+        let speed = |rpm: f64| rpm * PI / 30.0;
+        let Self { volts, amperes, .. } = *self;
+        let half = volts * amperes + 0.5 * self.stall_n_m * speed(self.rpm) / EFFICIENCY;
+        let root = (half * half - (amperes * volts).powi(2)).sqrt();
+        let ohm = (half - root) / (amperes * amperes);
+        let back_emf = (volts - ohm * amperes) / speed(self.rpm);
+        let friction = |amperes: f64| EFFICIENCY * back_emf * amperes;
+        let all = friction(amperes);
+        let viscous = match self.slow {
+            Some((volts, rpm)) => {
+                let less = all - friction((volts - back_emf * speed(rpm)) / ohm);
+                less / (speed(self.rpm) - speed(rpm))
+            }
+            None => 0.5 * all / speed(self.rpm),
+        };
+        [ohm, back_emf, all - viscous * speed(self.rpm), viscous]
+    }
+}
+
+/// The plant of a robot on two wheels and a castor, at 6 V, the voltage of its motors' figures, or on four wheels.
+pub(super) fn plant(driver: &Driver, four_wheels: bool, battery_v: Option<f64>) -> String {
+    let body = match four_wheels {
+        true => self::four_wheels(),
+        false if driver.direction == Direction::Pulse => two_wheels(&SERVO, 0.105),
+        false => two_wheels(&TT, 0.13),
+    };
+    let battery_v = battery_v.or((!four_wheels).then_some(6.0));
+    body + &battery_v.map(battery).unwrap_or_default()
+}
+
+/// What a seed draws the battery from: from nearly empty to full.
+fn battery(volts: f64) -> String {
+    format!(
+        "\n[plant.battery]\nopen_circuit_v = {volts:.1}\n\n[plant.spread]\nbattery_min_v = {:.2}\nbattery_max_v = {:.2}\n",
+        (0.9 * volts).max(5.0),
+        1.07 * volts
+    )
+}
+
+/// Two wheels of 65 mm, so far apart, on such motors.
+fn two_wheels(motor: &GearMotor, base_m: f64) -> String {
+    let [ohm, back_emf, dry, viscous] = motor.derived();
+    let GearMotor {
+        title,
+        figures,
+        inductance_h,
+        inertia_kg_m2,
+        gear_ratio,
+        ..
+    } = motor;
+    let wheel = format!(
+        "radius_m = 0.0325\ncoulomb_forward_n_m = {dry:.4}\ncoulomb_backward_n_m = {dry:.4}\nviscous_n_m_s = {viscous:.5}\n"
+    );
+    format!(
+        "
+# Measure it. Floor and sonars are nominal. Motors are {title}, by data sheet, not identified:
+# {figures}.
+[plant.body]
+base_m = {base_m:<16} # between the middles of the tyres
+length_m = 0.20
+width_m = 0.15
+centre_ahead_m = 0.03
+
+[plant.motor]
+resistance_ohm = {ohm:.2}
+inductance_h = {inductance_h}
+back_emf_v_s = {back_emf:.3}
+gear_ratio = {gear_ratio:.0}
+inertia_kg_m2 = {inertia_kg_m2}
+
+[plant.wheels.left]
+{wheel}
+[plant.wheels.right]
+{wheel}"
+    )
+}
+
+/// The usual car with four wheels: between the middles of the tyres, between the axles \[m\], its mass \[kg\], the radius of a
+/// wheel \[m\], and the friction of rubber on a floor.
+const TRACK_M: f64 = 0.13;
+const AXLES_M: f64 = 0.115;
+const MASS_KG: f64 = 1.1;
+const RADIUS_M: f64 = 0.0325;
+const FRICTION: f64 = 0.6;
+
+/// The plant of a car on four wheels, as two: those of a side turn alike, and slide aside as it turns.
+///
+/// Turning on the spot at w each tyre slides aside at w l/2 and along at v - w b/2, and its friction points against that. The
+/// moments balance where along is to aside as l to b: v = w/2 (b + l^2/b), so the wheels act as far apart as b + l^2/b. The force along,
+/// of a side 0.6 m g/2 l / sqrt(l^2 + b^2), loads its wheels.
+fn four_wheels() -> String {
+    let base_m = TRACK_M + AXLES_M * AXLES_M / TRACK_M;
+    let aside = AXLES_M / (AXLES_M * AXLES_M + TRACK_M * TRACK_M).sqrt();
+    let scrub_n_m = FRICTION * MASS_KG * 9.81 / 2.0 * aside * RADIUS_M;
+    let wheel = format!(
+        "radius_m = {RADIUS_M}\ncoulomb_forward_n_m = 0.016\ncoulomb_backward_n_m = 0.016\nviscous_n_m_s = 0.003\n"
+    );
+    format!(
+        "
+# Four wheels, the two of a side as one: by track b = {TRACK_M} m, axles l = {AXLES_M} m apart, mass and a friction of {FRICTION}.
+# Nothing is identified: measure it, `rumbo identify` fits it.
+[plant.body]
+mass_kg = {MASS_KG}
+base_m = {base_m:.3}          # b + l^2/b: turning, the tyres slide
+length_m = 0.25
+width_m = 0.15
+centre_ahead_m = 0.0
+
+[plant.motor]           # two side by side
+resistance_ohm = 2.0
+inductance_h = 0.00075
+inertia_kg_m2 = 0.0028
+
+[plant.floor]
+rolling_n_m = 0.02
+scrub_n_m = {scrub_n_m:.3}       # {FRICTION} m g/2 l / sqrt(l^2 + b^2) times the radius
+
+[plant.wheels.left]
+{wheel}
+[plant.wheels.right]
+{wheel}"
+    )
+}
