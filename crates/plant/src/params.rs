@@ -496,10 +496,10 @@ mod tests {
     #[test]
     fn a_value_out_of_range_is_refused_with_the_range_and_changes_nothing() {
         let mut params = Params::default();
-        let error = params.set("battery.open_circuit_v", 12.0).unwrap_err();
+        let error = params.set("battery.open_circuit_v", 14.0).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "`battery.open_circuit_v` = 12: allowed 5 to 9 V"
+            "`battery.open_circuit_v` = 14: allowed 5 to 13 V"
         );
         assert!(params.set("encoder.edges_per_motor_turn", 7.5).is_err());
         assert!(params.set("body.mass_kg", f64::NAN).is_err());

@@ -46,8 +46,18 @@ fn a_switch_and_a_sharp_see_the_wall_in_time() {
     let pins = |sensor: &str| {
         format!("--pins=left_forward=5,left_backward=6,right_forward=9,right_backward=10,{sensor}")
     };
-    new(&bench, "switch", "l9110s", &[&pins("obstacle_front=A0")]);
-    new(&bench, "sharp", "l9110s", &[&pins("sharp_front=A0")]);
+    new(
+        &bench,
+        "switch",
+        "l9110s",
+        &[&pins("obstacle_front=A0"), "--battery=7.4"],
+    );
+    new(
+        &bench,
+        "sharp",
+        "l9110s",
+        &[&pins("sharp_front=A0"), "--battery=7.4"],
+    );
     // 15 cm, and 30 cm: 0.92 V.
     for (robot, seen) in [
         ("switch.toml", "digitalRead(A0) == LOW"),

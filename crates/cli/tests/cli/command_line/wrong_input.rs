@@ -95,7 +95,7 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         ),
         (
             &["run", "mode1", "--param", "battery.open_circuit_v=90"],
-            "error: parameter battery.open_circuit_v = 90: must be within 5..9 V",
+            "error: parameter battery.open_circuit_v = 90: must be within 5..13 V",
         ),
         (
             &["run", "mode7", "--param", "waypoint_tracker=pursuit"],
