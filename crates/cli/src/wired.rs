@@ -159,6 +159,7 @@ fn new(plan: Plan) -> Result<NewRobot, String> {
         jumpers,
         pins: plan.pins,
         four_wheels: plan.four_wheels,
+        battery_v: None,
         parts: plan.parts,
     })
 }
