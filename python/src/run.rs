@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use rumbo_experiment::files::FileError;
 use rumbo_experiment::note::Note;
 use rumbo_experiment::run::{RunResult, run_all_on};
-use rumbo_sim::trace::Sample;
+use rumbo_sim::trace::{Sample, Trace};
 
 /// Why the runs ended early.
 pub(crate) enum Stop {
@@ -80,7 +80,7 @@ fn in_python(py: Python<'_>, result: RunResult, trace: bool) -> PyResult<Bound<'
     run.set_item("failures", lines(&result.failures))?;
     run.set_item("notes", lines(&result.notes))?;
     if trace && result.robots.is_empty() {
-        run.set_item("trace", columns(py, &result.trace.samples)?)?;
+        run.set_item("trace", columns(py, &result.trace)?)?;
     }
     let robots = result.robots.into_iter();
     let robots = robots.map(|robot| in_python(py, robot, trace));
@@ -89,33 +89,34 @@ fn in_python(py: Python<'_>, result: RunResult, trace: bool) -> PyResult<Bound<'
 }
 
 /// A signal's name and its value in a sample.
-type Column = (&'static str, fn(&Sample) -> f64);
+type Column = (&'static str, fn(&Trace, &Sample) -> f64);
 
 /// The samples as one array for each signal.
-fn columns<'py>(py: Python<'py>, samples: &[Sample]) -> PyResult<Bound<'py, PyDict>> {
-    let trace = PyDict::new(py);
+fn columns<'py>(py: Python<'py>, trace: &Trace) -> PyResult<Bound<'py, PyDict>> {
+    let samples = &trace.samples;
+    let found = PyDict::new(py);
     let numbers: [Column; 11] = [
-        ("t_s", |sample| sample.t_s),
-        ("x_m", |sample| sample.x_m),
-        ("y_m", |sample| sample.y_m),
-        ("heading_rad", |sample| sample.heading_rad),
-        ("left_rad_s", |sample| sample.wheel_rad_s[0]),
-        ("right_rad_s", |sample| sample.wheel_rad_s[1]),
-        ("range_left_m", |sample| sample.range_m[0]),
-        ("range_right_m", |sample| sample.range_m[1]),
-        ("range_front_m", |sample| sample.range_m[2]),
-        ("servo_rad", |sample| sample.servo_rad),
-        ("battery_v", |sample| sample.battery_v),
+        ("t_s", |_, sample| sample.t_s),
+        ("x_m", |_, sample| sample.x_m),
+        ("y_m", |_, sample| sample.y_m),
+        ("heading_rad", |_, sample| sample.heading_rad),
+        ("left_rad_s", |_, sample| sample.wheel_rad_s[0]),
+        ("right_rad_s", |_, sample| sample.wheel_rad_s[1]),
+        ("range_left_m", |trace, sample| trace.range_m(sample, 0)),
+        ("range_right_m", |trace, sample| trace.range_m(sample, 1)),
+        ("range_front_m", |trace, sample| trace.range_m(sample, 2)),
+        ("servo_rad", |_, sample| sample.servo_rad),
+        ("battery_v", |_, sample| sample.battery_v),
     ];
     for (name, value) in numbers {
-        let column: Vec<f64> = samples.iter().map(value).collect();
-        trace.set_item(name, column.into_pyarray(py))?;
+        let column: Vec<f64> = samples.iter().map(|sample| value(trace, sample)).collect();
+        found.set_item(name, column.into_pyarray(py))?;
     }
     for (name, side) in [("left_duty", 0), ("right_duty", 1)] {
         let column: Vec<i16> = samples.iter().map(|sample| sample.duty[side]).collect();
-        trace.set_item(name, column.into_pyarray(py))?;
+        found.set_item(name, column.into_pyarray(py))?;
     }
     let touching: Vec<bool> = samples.iter().map(|sample| sample.touching).collect();
-    trace.set_item("touching", touching.into_pyarray(py))?;
-    Ok(trace)
+    found.set_item("touching", touching.into_pyarray(py))?;
+    Ok(found)
 }

@@ -3,6 +3,7 @@
 
 mod beside;
 mod campaign;
+mod counts;
 mod faults;
 mod fidelity;
 mod figures;
@@ -20,9 +21,11 @@ use rumbo_experiment::run::{RunResult, run_all};
 use std::process::ExitCode;
 
 /// The names, as one types them.
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 14] = [
+    "alone",
     "beside",
     "campaign",
+    "counts",
     "faults",
     "fidelity",
     "figures",
@@ -37,8 +40,10 @@ const NAMES: [&str; 12] = [
 
 fn main() -> ExitCode {
     match std::env::args().nth(1).unwrap_or_default().as_str() {
+        "alone" => counts::chip_alone(),
         "beside" => beside::main(),
         "campaign" => campaign::main(),
+        "counts" => counts::main(),
         "faults" => faults::main(),
         "fidelity" => fidelity::main(),
         "figures" => figures::main(),

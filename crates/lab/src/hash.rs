@@ -4,7 +4,7 @@ use crate::program::Held;
 use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_log::{Entry, Row};
-use rumbo_sim::trace::Sample;
+use rumbo_sim::trace::{Sample, Trace};
 
 const CRC: crc::Crc<u64> = crc::Crc::<u64>::new(&crc::CRC_64_XZ);
 
@@ -60,7 +60,7 @@ fn of(result: &RunResult) -> u64 {
     // Of several robots each has its own trace.
     for RunResult { trace, .. } in std::iter::once(result).chain(&result.robots) {
         for sample in &trace.samples {
-            values_of(sample).for_each(|value| digest.update(&bits(value)));
+            values_of(trace, sample).for_each(|value| digest.update(&bits(value)));
         }
         for burst in &trace.link {
             digest.update(&burst.t_us.to_le_bytes());
@@ -80,15 +80,16 @@ fn of(result: &RunResult) -> u64 {
     digest.finalize()
 }
 
-fn values_of(sample: &Sample) -> impl Iterator<Item = f64> {
+fn values_of(trace: &Trace, sample: &Sample) -> impl Iterator<Item = f64> {
     let Sample {
         t_s,
         x_m,
         y_m,
         heading_rad,
+        wrapped_rad: _,
         wheel_rad_s,
         duty,
-        range_m,
+        seen_m: _,
         servo_rad,
         battery_v,
         touching,
@@ -106,6 +107,7 @@ fn values_of(sample: &Sample) -> impl Iterator<Item = f64> {
         battery_v,
         touching,
     ];
+    let range_m = [0, 1, 2].map(|sonar| trace.range_m(sample, sonar));
     rest.into_iter().chain(wheel_rad_s).chain(range_m)
 }
 

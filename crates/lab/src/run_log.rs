@@ -125,7 +125,11 @@ impl RunSource<'_> {
             scene: Some(scene),
             parameters: trace.parameters,
             goal_m: *goal_m,
-            truths: &trace.samples.iter().map(truth).collect::<Vec<_>>(),
+            truths: &trace
+                .samples
+                .iter()
+                .map(|sample| truth(trace, sample))
+                .collect::<Vec<_>>(),
             messages: &messages(trace),
             said: &trace.consoles.iter().map(said).collect::<Vec<_>>(),
             shown: &shown,
@@ -189,7 +193,7 @@ fn places(robots: &[RunResult], number: usize) -> Vec<(u64, Shown)> {
     let at = |index: usize| {
         let t_us = micros(robots[number].trace.samples[index].t_s);
         let poses = others.iter().filter_map(|(_, robot)| {
-            let at = truth(robot.trace.samples.get(index)?).1.pose;
+            let at = pose(robot.trace.samples.get(index)?);
             Some(Other::signals(&robot.scenario, at))
         });
         (t_us, (Source::Others, poses.flatten().collect()))
@@ -243,18 +247,23 @@ fn shown(trace: &Trace) -> Vec<(u64, Shown)> {
     instruments.chain(loops).collect()
 }
 
-fn truth(sample: &Sample) -> (u64, Truth) {
+fn pose(sample: &Sample) -> MapPose {
+    MapPose {
+        x_m: sample.x_m,
+        y_m: sample.y_m,
+        heading_rad: sample.heading_rad,
+    }
+}
+
+fn truth(trace: &Trace, sample: &Sample) -> (u64, Truth) {
     let [left, right] = sample.wheel_rad_s;
     let truth = Truth {
-        pose: MapPose {
-            x_m: sample.x_m,
-            y_m: sample.y_m,
-            heading_rad: sample.heading_rad,
-        },
+        pose: pose(sample),
         wheel_rad_s: Wheels { left, right },
-        range_m: sample
-            .range_m
-            .map(|range_m| (!range_m.is_nan()).then_some(range_m)),
+        range_m: [0, 1, 2].map(|sonar| {
+            let range_m = trace.range_m(sample, sonar);
+            (!range_m.is_nan()).then_some(range_m)
+        }),
         servo_rad: sample.servo_rad,
         contact: sample.touching,
         battery_v: sample.battery_v,

@@ -26,6 +26,7 @@ pub mod noise;
 mod outline;
 pub mod params;
 pub mod plant;
+mod rest;
 pub mod rewrite;
 pub mod rig;
 pub mod servo;

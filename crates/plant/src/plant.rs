@@ -334,6 +334,11 @@ impl Plant {
     /// Passes time up to `until_us` (nothing happens if that is past), reporting events in the order of time.
     pub fn advance(&self, state: &mut State, until_us: u64, events: &mut impl FnMut(Event)) {
         let mut queue = Queue::default();
+        if state.now_us < until_us && self.stands(state) {
+            self.stand(state, until_us);
+            Self::pass_echoes(state, &mut queue, events);
+            queue.flush(events);
+        }
         while state.now_us < until_us {
             let grid_us = (state.now_us / STEP_US + 1) * STEP_US;
             self.step(state, grid_us.min(until_us), &mut queue, events);
@@ -341,7 +346,7 @@ impl Plant {
         }
     }
 
-    fn step(
+    pub(crate) fn step(
         &self,
         state: &mut State,
         until_us: u64,
@@ -460,17 +465,22 @@ impl Plant {
     }
 
     fn view(&self, state: &State, sonar: SonarId) -> Option<View> {
+        self.view_from(&state.pose, state.speed, state.servo.angle_rad, sonar)
+    }
+
+    /// A sonar's view from a pose at a speed, by the servo's angle.
+    fn view_from(
+        &self,
+        pose: &Pose,
+        [forward_m_s, yaw_rad_s]: [f64; 2],
+        servo_rad: f64,
+        sonar: SonarId,
+    ) -> Option<View> {
         self.mounts[sonar.index()].map(|mount| {
-            let pose = &state.pose;
             let (s, c) = sincos(pose.heading_rad);
-            let [forward_m_s, yaw_rad_s] = state.speed;
             let along = forward_m_s - yaw_rad_s * mount.y_m;
             let across = yaw_rad_s * mount.x_m;
-            let servo_rad = if mount.on_servo {
-                state.servo.angle_rad
-            } else {
-                0.0
-            };
+            let servo_rad = if mount.on_servo { servo_rad } else { 0.0 };
             View {
                 at: [
                     pose.x_m + c * mount.x_m - s * mount.y_m,
@@ -485,10 +495,8 @@ impl Plant {
     /// The present time, pose and speeds. Costs one exact cone query per sonar.
     #[must_use]
     pub fn truth(&self, state: &State) -> Truth {
-        let range_m = SonarId::ALL.map(|sonar| {
-            self.view(state, sonar)
-                .map(|view| self.sonar.true_range_m(&self.world, state.now_us, &view))
-        });
+        let range_m = SonarId::ALL
+            .map(|sonar| self.range_m(sonar, state.now_us, &state.pose, state.servo.angle_rad));
         let [left, right] = &state.drivetrain.wheels;
         Truth {
             now_us: state.now_us,
@@ -504,6 +512,20 @@ impl Plant {
             contacts: state.contact.contacts,
             touching: state.contact.touching(),
         }
+    }
+
+    /// Noise-free range of a sonar from a pose at an instant, by the servo's angle; infinite where nothing is within reach,
+    /// `None` where there is no such sonar.
+    #[must_use]
+    pub fn range_m(&self, sonar: SonarId, now_us: u64, pose: &Pose, servo_rad: f64) -> Option<f64> {
+        let view = self.view_from(pose, [0.0; 2], servo_rad, sonar)?;
+        Some(self.sonar.true_range_m(&self.world, now_us, &view))
+    }
+
+    /// Whether their worlds are one and the same thing in memory.
+    #[must_use]
+    pub fn has_world_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.world, &other.world)
     }
 
     /// Terminal voltage of the battery.
@@ -556,6 +578,24 @@ impl State {
     #[must_use]
     pub const fn now_us(&self) -> u64 {
         self.now_us
+    }
+
+    /// The servo's angle: 0 ahead, positive to the left.
+    #[must_use]
+    pub const fn servo_rad(&self) -> f64 {
+        self.servo.angle_rad
+    }
+
+    /// Speed of the body along its x axis, and its turn rate, counter-clockwise.
+    #[must_use]
+    pub const fn speed(&self) -> [f64; 2] {
+        self.speed
+    }
+
+    /// Whether the body touches something.
+    #[must_use]
+    pub const fn touching(&self) -> bool {
+        self.contact.touching()
     }
 
     /// Holds a wheel, as a hand or a thread around its axle would, with so much dry friction [N m]; 0 lets go.

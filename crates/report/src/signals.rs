@@ -26,7 +26,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    fn trace(&self) -> &Trace {
+    pub(crate) fn trace(&self) -> &Trace {
         &self.result.trace
     }
 
@@ -113,7 +113,7 @@ impl Outcome {
                 Range::Clear | Range::Faulty => f64::NAN,
             },
             |row| text_rows::range_cm(row, sonar),
-            Some(&|sample| CM * sample.range_m[sonar as usize]),
+            Some(&|sample| CM * self.trace().range_m(sample, sonar as usize)),
         )
     }
 

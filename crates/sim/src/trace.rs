@@ -4,6 +4,9 @@ use crate::instruments::READING_US;
 use crate::mega::CONSOLES;
 use crate::sim::{Burst, Sim};
 use rumbo_control::params::Params;
+use rumbo_plant::contact::Pose;
+use rumbo_plant::plant::Plant;
+use rumbo_plant::sonar::SonarId;
 use rumbo_robot::Loops;
 use rumbo_wire::FromRobot;
 use std::fmt::Write;
@@ -22,13 +25,14 @@ pub struct Sample {
     pub y_m: f64,
     /// Heading, not wrapped, so that turns add up [rad].
     pub heading_rad: f64,
+    /// The same wrapped, as the plant has it [rad].
+    pub wrapped_rad: f64,
     /// True wheel speeds, left and right [rad/s].
     pub wheel_rad_s: [f64; 2],
     /// PWM at the bridges, left and right, -255..=255.
     pub duty: [i16; 2],
-    /// True range of the left, right and front sonar [m]; infinite when nothing is within reach, not a
-    /// number where there is no such sonar.
-    pub range_m: [f64; 3],
+    /// What [`Trace::range_m`] is, where the sample itself must say it: among other robots.
+    pub seen_m: Option<[f64; 3]>,
     /// Where the servo points [rad].
     pub servo_rad: f64,
     /// Battery at its terminals [V].
@@ -46,18 +50,20 @@ impl PartialEq for Sample {
                 x_m,
                 y_m,
                 heading_rad,
+                wrapped_rad,
                 wheel_rad_s,
                 duty,
-                range_m,
+                seen_m,
                 servo_rad,
                 battery_v,
                 touching,
             } = *sample;
-            let numbers = [t_s, x_m, y_m, heading_rad, servo_rad, battery_v];
+            let pose = [x_m, y_m, heading_rad, wrapped_rad];
             (
-                numbers,
+                [t_s, servo_rad, battery_v],
+                pose,
                 wheel_rad_s,
-                range_m.map(f64::to_bits),
+                seen_m.map(|seen_m| seen_m.map(f64::to_bits)),
                 duty,
                 touching,
             )
@@ -92,6 +98,40 @@ pub struct Trace {
     pub readings: Vec<Shown>,
     /// What the control loops of our native robot added up, with its time [us], in order.
     pub loops: Vec<(u64, Loops)>,
+    /// From where sonars look, and at what.
+    pub sights: Sights,
+}
+
+/// Sonars and the world around them, each from its time [us] on: ranges are measured when somebody asks for them.
+#[derive(Clone, Debug, Default)]
+pub struct Sights(Vec<(u64, Plant)>);
+
+impl Sights {
+    /// Notes the world if it is another one than before.
+    fn note(&mut self, now_us: u64, plant: &Plant) {
+        let last = self.0.last();
+        if last.is_none_or(|(_, last)| !last.has_world_of(plant)) {
+            self.0.push((now_us, plant.clone()));
+        }
+    }
+
+    fn at(&self, at_us: u64) -> Option<&Plant> {
+        let after = self.0.partition_point(|(from_us, _)| *from_us <= at_us);
+        Some(&self.0.get(after.checked_sub(1)?)?.1)
+    }
+}
+
+/// By the worlds.
+impl PartialEq for Sights {
+    fn eq(&self, other: &Self) -> bool {
+        let worlds = |sights: &Self| -> Vec<_> {
+            let sights = sights.0.iter();
+            sights
+                .map(|(us, plant)| (*us, plant.world().clone()))
+                .collect()
+        };
+        worlds(self) == worlds(other)
+    }
 }
 
 /// What instruments show at one instant.
@@ -130,26 +170,48 @@ pub struct Said {
 impl Trace {
     /// Adds a sample of the present state.
     pub fn sample(&mut self, sim: &Sim) {
-        let truth = sim.truth();
-        let wrapped_rad = truth.pose.heading_rad;
+        let (plant, state) = sim.physics();
+        let (pose, now_us) = (state.pose(), state.now_us());
+        let wrapped_rad = pose.heading_rad;
         let heading_rad = self.samples.last().map_or(wrapped_rad, |last| {
             let change = wrapped_rad - last.heading_rad;
             last.heading_rad + change
                 - std::f64::consts::TAU * (change / std::f64::consts::TAU).round()
         });
         let duty = sim.duty();
-        self.samples.push(Sample {
-            t_s: truth.now_us as f64 * 1e-6,
-            x_m: truth.pose.x_m,
-            y_m: truth.pose.y_m,
+        let mut sample = Sample {
+            t_s: now_us as f64 * 1e-6,
+            x_m: pose.x_m,
+            y_m: pose.y_m,
             heading_rad,
-            wheel_rad_s: truth.wheel_rad_s,
+            wrapped_rad,
+            wheel_rad_s: plant.wheel_rad_s(state),
             duty: [duty.left.counts(), duty.right.counts()],
-            range_m: truth.range_m.map(|range_m| range_m.unwrap_or(f64::NAN)),
-            servo_rad: truth.servo_rad,
-            battery_v: truth.battery_v,
-            touching: truth.touching,
-        });
+            seen_m: None,
+            servo_rad: state.servo_rad(),
+            battery_v: plant.battery_v(state),
+            touching: state.touching(),
+        };
+        match sim.is_among_others() {
+            // Their places are not kept.
+            true => sample.seen_m = Some(SonarId::ALL.map(|sonar| seen_m(plant, &sample, sonar))),
+            false => self.sights.note(now_us, plant),
+        }
+        self.samples.push(sample);
+    }
+
+    /// True range of the left, right or front sonar, 0 to 2, at a sample [m]; infinite when nothing is within reach, not a
+    /// number where there is no such sonar. Costs an exact cone query.
+    pub fn range_m(&self, sample: &Sample, sonar: usize) -> f64 {
+        match (
+            sample.seen_m,
+            self.sights.at(micros(sample.t_s)),
+            SonarId::ALL.get(sonar),
+        ) {
+            (Some(seen_m), _, _) => seen_m.get(sonar).copied().unwrap_or(f64::NAN),
+            (None, Some(plant), Some(sonar)) => seen_m(plant, sample, *sonar),
+            _ => f64::NAN,
+        }
     }
 
     /// Adds what the USARTs of an emulated Mega have sent since, and what instruments and control loops show, if a reading
@@ -161,11 +223,9 @@ impl Trace {
             let signals = sim.read_instruments();
             self.readings.push(Shown { t_us, signals });
         }
-        if let Some(loops) = sim.loops()
-            && self
-                .loops
-                .last()
-                .is_none_or(|(last_us, _)| is_due(*last_us))
+        let last = self.loops.last();
+        if last.is_none_or(|(last_us, _)| is_due(*last_us))
+            && let Some(loops) = sim.loops()
         {
             self.loops.push((t_us, loops));
         }
@@ -212,14 +272,16 @@ impl Trace {
                 x_m,
                 y_m,
                 heading_rad,
+                wrapped_rad: _,
                 wheel_rad_s,
                 duty,
-                range_m,
+                seen_m: _,
                 servo_rad,
                 battery_v,
                 touching: _,
             } = sample;
-            let [left_m, right_m, front_m] = range_m.map(|range_m| {
+            let [left_m, right_m, front_m] = [0, 1, 2].map(|sonar| {
+                let range_m = self.range_m(sample, sonar);
                 match range_m.is_nan() {
                     true => String::new(),
                     // `inf` where nothing is within reach.
@@ -235,4 +297,19 @@ impl Trace {
         }
         text
     }
+}
+
+/// What a sonar of a plant sees at a sample; not a number where there is none.
+fn seen_m(plant: &Plant, sample: &Sample, sonar: SonarId) -> f64 {
+    let pose = Pose {
+        x_m: sample.x_m,
+        y_m: sample.y_m,
+        heading_rad: sample.wrapped_rad,
+    };
+    let range_m = plant.range_m(sonar, micros(sample.t_s), &pose, sample.servo_rad);
+    range_m.unwrap_or(f64::NAN)
+}
+
+fn micros(t_s: f64) -> u64 {
+    (t_s * 1e6).round() as u64
 }

@@ -85,20 +85,30 @@ pub(crate) fn runs(scenario: &str, change: Change) -> Result<Option<Runs>, Strin
 }
 
 impl Runs {
-    /// A signal over time in each run; the scale of its distances comes with the sample.
-    pub(crate) fn over_time(&self, signal: impl Fn(&Sample, f64) -> f64) -> Vec<Vec<(f64, f64)>> {
-        self.each(|sample, scale| (sample.t_s, signal(sample, scale)))
+    /// A signal over time in each run.
+    pub(crate) fn over_time(&self, signal: impl Fn(&Sample) -> f64) -> Vec<Vec<(f64, f64)>> {
+        self.each(|sample| (sample.t_s, signal(sample)))
+    }
+
+    /// What the front sonar measures over time in each run, by its scale of distances.
+    pub(crate) fn ahead_cm(&self) -> Vec<Vec<(f64, f64)>> {
+        let of_run = |(result, scale): (&RunResult, &f64)| {
+            let ahead_cm = |sample| 100.0 * result.trace.range_m(sample, 2) * scale;
+            let samples = result.trace.samples.iter();
+            samples
+                .map(|sample| (sample.t_s, ahead_cm(sample)))
+                .collect()
+        };
+        std::iter::zip(&self.results, &self.scales)
+            .map(of_run)
+            .collect()
     }
 
     /// A curve in each run.
-    pub(crate) fn each(&self, point: impl Fn(&Sample, f64) -> (f64, f64)) -> Vec<Vec<(f64, f64)>> {
-        self.results
-            .iter()
-            .zip(&self.scales)
-            .map(|(result, &scale)| {
-                let samples = result.trace.samples.iter();
-                samples.map(|sample| point(sample, scale)).collect()
-            })
+    pub(crate) fn each(&self, point: impl Fn(&Sample) -> (f64, f64)) -> Vec<Vec<(f64, f64)>> {
+        let results = self.results.iter();
+        results
+            .map(|result| result.trace.samples.iter().map(&point).collect())
             .collect()
     }
 

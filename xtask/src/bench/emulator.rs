@@ -1,7 +1,11 @@
 //! How much faster than real time a firmware runs: the emulated Mega with the simulated robot around it, and simavr with the same
 //! image and nothing around it.
 //!
-//! Both are measured in processor time, which other load on the machine changes little.
+//! Then CPUs alone, with an image that only computes: ours, simavr, and fastavr and CUzeBox where `FASTAVR` and `CUZEBOX` name
+//! programs that take an image in Intel HEX and end with it: fastavr's `tester`, and what calls CUzeBox's `cu_avr_run` until
+//! GPIOR0 is 0xA5.
+//!
+//! All are measured in processor time, which other load on the machine changes little.
 
 use std::path::{Path, PathBuf};
 
@@ -14,12 +18,14 @@ const SCENARIO_S: f64 = 10.0;
 /// Runs in one go, for the clock of `times` is coarse.
 const RUNS: u32 = 5;
 const IMAGE_S: f64 = 11.0;
+/// What the computing image takes on a Mega.
+const COMPUTE_S: f64 = 33.59;
 /// The shortest of several measurements is the least disturbed one.
 const TIMES: usize = 5;
 
 /// Factors over real time of a firmware that waits in a loop, and of ones that sleep.
 pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
-    let busy = image(project, "busy", 1000)?;
+    let busy = image(project, "atmega2560", "busy", 1000)?;
     let start_s = shortest(|| cpu_s(project, &project.release_binary_path(), &["list"]))?;
     let ours = |image: &Path| {
         let path = image.display().to_string();
@@ -52,7 +58,7 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
     )];
     // A thousand times a second it computes for three quarters of the time.
     for (hertz, budget) in [(1000, ""), (100, "60 x")] {
-        let factor = ours(&image(project, "sleepy", hertz)?)?;
+        let factor = ours(&image(project, "atmega2560", "sleepy", hertz)?)?;
         figures.push(Figure::new(what("asleep", hertz), times(factor), budget));
     }
     let path = busy.display().to_string();
@@ -69,21 +75,70 @@ pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
         format!("{:.1}", busy_factor / factor),
         "3",
     ));
+    figures.extend(computing(project)?);
     Ok(figures)
 }
 
+/// The CPU alone.
+fn computing(project: &Project) -> Result<Vec<Figure>, String> {
+    run(&mut project.cargo(&["build", "--release", "--locked", "-p", "rumbo-tools"]))?;
+    let elf = image(project, "atmega2560", "compute", 1000)?;
+    let shown = elf.display().to_string();
+    let ours = project.target.join("release/rumbo-tools");
+    let mut programs = vec![
+        (
+            "ours",
+            ours,
+            vec!["alone".to_owned(), shown.clone(), "34".to_owned()],
+        ),
+        (
+            "simavr",
+            PathBuf::from("simavr"),
+            ["-m", "atmega2560", "-f", "16000000", &shown]
+                .map(str::to_owned)
+                .to_vec(),
+        ),
+    ];
+    let others = [
+        ("fastavr", "FASTAVR", "atmega2560"),
+        ("CUzeBox", "CUZEBOX", "atmega644"),
+    ];
+    for (name, variable, chip) in others {
+        if let Some(program) = std::env::var_os(variable) {
+            let elf = image(project, chip, "compute", 1000)?;
+            let hex = elf.with_extension("hex");
+            run(project
+                .command("avr-objcopy")
+                .args(["-O", "ihex"])
+                .args([&elf, &hex]))?;
+            programs.push((name, program.into(), vec![hex.display().to_string()]));
+        }
+    }
+    let figure = |(name, program, arguments): (&str, PathBuf, Vec<String>)| {
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let cpu_s = shortest(|| cpu_s(project, &program, &arguments))?;
+        Ok(Figure::new(
+            format!("an image that only computes, CPU alone: {name}"),
+            format!("{:.1} x real time", COMPUTE_S / cpu_s.max(0.001)),
+            "",
+        ))
+    };
+    programs.into_iter().map(figure).collect()
+}
+
 /// Builds a program of the emulator's tests.
-fn image(project: &Project, name: &str, hertz: u32) -> Result<PathBuf, String> {
+fn image(project: &Project, chip: &str, name: &str, hertz: u32) -> Result<PathBuf, String> {
     let folder = project.target.join("bench");
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let image = folder.join(format!("{name}{hertz}.elf"));
+    let image = folder.join(format!("{name}{hertz}-{chip}.elf"));
     let source = project
         .root
         .join("crates/emulator/tests/programs")
         .join(format!("{name}.c"));
+    let mmcu = format!("-mmcu={chip}");
     let (seconds, hertz) = (format!("-DSECONDS={IMAGE_S}"), format!("-DHERTZ={hertz}"));
     let options = [
-        "-mmcu=atmega2560",
+        &mmcu,
         "-Os",
         "-std=gnu11",
         "-DF_CPU=16000000UL",

@@ -3,6 +3,7 @@
 //! The figures are of the machine at hand and its present load: they are printed, never asserted.
 
 mod batch;
+pub(crate) mod counts;
 mod emulator;
 mod headless;
 mod lab;
@@ -36,11 +37,16 @@ struct Part {
     measure: fn(&Project) -> Result<Vec<Figure>, String>,
 }
 
-const PARTS: [Part; 8] = [
+const PARTS: [Part; 9] = [
     Part {
         name: "batch",
         what: "robots stepped together, beside rapier2d: some minutes",
         measure: batch::measure,
+    },
+    Part {
+        name: "counts",
+        what: "instructions of pieces of work, beside those of xtask/counts.toml",
+        measure: counts::measure,
     },
     Part {
         name: "emulator",
@@ -104,7 +110,8 @@ pub(crate) fn run(project: &Project, only: &[String]) -> Result<bool, String> {
         ));
     }
     let asked = |part: &&Part| only.is_empty() || only.iter().any(|name| name == part.name);
-    if PARTS.iter().filter(asked).any(|part| part.name != "batch") {
+    let needs_rumbo = |part: &Part| !["batch", "counts"].contains(&part.name);
+    if PARTS.iter().filter(asked).any(needs_rumbo) {
         project.release_binary()?;
     }
     let mut figures = Vec::new();

@@ -75,7 +75,7 @@ struct Step {
     check: fn(&Project) -> Result<(), Stop>,
 }
 
-const STEPS: [Step; 22] = [
+const STEPS: [Step; 23] = [
     Step {
         name: "fmt",
         what: "the code is formatted",
@@ -183,6 +183,12 @@ const STEPS: [Step; 22] = [
         what: "the rumbo binary, as users build it, does what the README says",
         part_of: Check::Full,
         check: readme::check_release,
+    },
+    Step {
+        name: "counts",
+        what: "the instructions of pieces of work are those of xtask/counts.toml, within 2 %",
+        part_of: Check::Full,
+        check: crate::bench::counts::check,
     },
     Step {
         name: "wheel",

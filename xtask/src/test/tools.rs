@@ -92,6 +92,11 @@ pub(crate) fn unzip(project: &Project) -> Result<PathBuf, Stop> {
     program(project, "unzip", &["unzip"], "Debian's package")
 }
 
+/// What counts instructions.
+pub(crate) fn valgrind(project: &Project) -> Result<PathBuf, Stop> {
+    program(project, "valgrind", &["valgrind"], "Linux only")
+}
+
 /// The debugger that the tests attach to the emulated chip.
 pub(crate) fn avr_gdb(project: &Project) -> Result<PathBuf, Stop> {
     program(project, "avr-gdb", &["gdb-avr"], "GDB for the AVR")

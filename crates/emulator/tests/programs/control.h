@@ -50,6 +50,7 @@ static void tick(void)
     PORTB ^= 0x80;
 }
 
+#ifdef TCCR3A
 static void set_up(void)
 {
     DDRB = 0x80;
@@ -65,6 +66,7 @@ static void set_up(void)
     set_sleep_mode(SLEEP_MODE_IDLE);
     sei();
 }
+#endif
 
 /* SLEEP with interrupts off: a simulation ends here. */
 static void end(void)

@@ -462,7 +462,7 @@ fn class(trace: &Trace, at_s: f64, failure: Failure) -> Class {
     let [_, _, front] = SonarId::ALL.map(|id| id as usize);
     let free = before
         .iter()
-        .all(|sample| sample.range_m[front].is_infinite());
+        .all(|sample| trace.range_m(sample, front).is_infinite());
     if silent && free {
         Class::FreeFloor
     } else {

@@ -139,7 +139,9 @@ fn one(
         let most = TOIL_PER_S / ACT as f64;
         result.ended = Some(Note::TooManyEdges { most });
     }
-    let samples = std::mem::take(&mut result.trace.samples);
+    let Trace {
+        samples, sights, ..
+    } = std::mem::take(&mut result.trace);
     let drove = samples.iter().find(|sample| sample.duty != [0; 2]).copied();
     result.trace = Trace {
         samples: match drawn {
@@ -147,6 +149,7 @@ fn one(
             // One says whether it drove.
             false => drove.into_iter().collect(),
         },
+        sights,
         ..Trace::default()
     };
     Ok(result)

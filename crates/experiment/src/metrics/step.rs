@@ -8,6 +8,7 @@
 
 use super::Metrics;
 use crate::files::{Setup, TimedCommand};
+use rumbo_control::SonarId;
 use rumbo_sim::Sim;
 use rumbo_sim::trace::{Sample, Trace};
 use rumbo_wire::Command;
@@ -131,41 +132,37 @@ fn response(
     }
     let direction = if reference < start { -1.0 } else { 1.0 };
     let span = (reference - start).abs();
-    let progress = |sample: &Sample| direction * (signal(sample) - start);
+    // Once: a range costs a query of the world.
+    let values: Vec<f64> = samples.iter().map(signal).collect();
+    let progress = |value: f64| direction * (value - start);
     let first = |level: f64| {
-        samples
+        let at = values
             .iter()
-            .find(|sample| progress(sample) >= level * span)
-            .map(|sample| sample.t_s)
+            .position(|value| progress(*value) >= level * span);
+        at.map(|at| samples[at].t_s)
     };
-    let within = |sample: &Sample| (signal(sample) - reference).abs() <= band;
+    let within = |value: &f64| (value - reference).abs() <= band;
     let responds = (start - reference).abs() > band;
-    let arrives = samples
+    let arrives = values
         .iter()
-        .any(|sample| within(sample) || progress(sample) >= span);
+        .any(|value| within(value) || progress(*value) >= span);
     let if_so = |so: bool, value: f64| if so { value } else { f64::NAN };
-    let last_outside = samples.iter().rev().find(|sample| !within(sample));
-    let settled = samples.last().is_some_and(within);
-    let steady = &samples[(samples.len() as f64 * (1.0 - STEADY_SHARE)) as usize..];
-    let (least, most) = steady.iter().map(&signal).fold(
+    let last_outside = values.iter().rposition(|value| !within(value));
+    let settled = values.last().is_some_and(within);
+    let steady = &values[(values.len() as f64 * (1.0 - STEADY_SHARE)) as usize..];
+    let (least, most) = steady.iter().fold(
         (f64::INFINITY, f64::NEG_INFINITY),
-        |(least, most), value| (least.min(value), most.max(value)),
+        |(least, most), value| (least.min(*value), most.max(*value)),
     );
-    let count = steady.len() as f64;
-    let mean = steady.iter().map(&signal).sum::<f64>() / count;
-    let variance = steady
-        .iter()
-        .map(|sample| (signal(sample) - mean).powi(2))
-        .sum::<f64>()
-        / count;
-    let square = samples
-        .iter()
-        .map(|sample| (signal(sample) - reference).powi(2))
-        .sum::<f64>()
-        / samples.len() as f64;
+    let mean_square = |of: &[f64], from: f64| {
+        of.iter().map(|value| (value - from).powi(2)).sum::<f64>() / of.len() as f64
+    };
+    let mean = steady.iter().sum::<f64>() / steady.len() as f64;
+    let variance = mean_square(steady, mean);
+    let square = mean_square(&values, reference);
     Response {
         settling_s: if settled && responds {
-            last_outside.map_or(0.0, |sample| sample.t_s - from_s)
+            last_outside.map_or(0.0, |at| samples[at].t_s - from_s)
         } else {
             f64::NAN
         },
@@ -175,9 +172,9 @@ fn response(
         },
         overshoot: if_so(
             arrives,
-            samples
+            values
                 .iter()
-                .map(|sample| progress(sample) - span)
+                .map(|value| progress(*value) - span)
                 .fold(0.0, f64::max),
         ),
         steady_error: (mean - reference).abs(),
@@ -196,7 +193,7 @@ pub(super) fn sound_scale(sim: &Sim) -> f64 {
 /// it.
 pub(super) fn distance_steps(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Metrics) {
     let scale = sound_scale(sim);
-    let distance = |sample: &Sample| sample.range_m[2] * scale;
+    let distance = |sample: &Sample| trace.range_m(sample, SonarId::Front as usize) * scale;
     for (index, step) in steps(&setup.scenario.commands, setup.scenario.duration_s)
         .iter()
         .enumerate()
@@ -269,9 +266,10 @@ mod tests {
                 x_m: 0.0,
                 y_m: 0.0,
                 heading_rad: 0.0,
-                wheel_rad_s: [0.0; 2],
+                wrapped_rad: 0.0,
+                wheel_rad_s: [signal(t_s); 2],
                 duty: [0; 2],
-                range_m: [f64::INFINITY, f64::INFINITY, signal(t_s)],
+                seen_m: None,
                 servo_rad: 0.0,
                 battery_v: 7.4,
                 touching: false,
@@ -283,7 +281,7 @@ mod tests {
     fn a_first_order_response_settles_after_three_time_constants() {
         let samples = samples(|t| 1.0 - 0.7 * (1.0 - (-t / 0.4).exp()));
         let response = response(&samples, 0.0, 1.0, 0.3, 0.05 * 0.7, |sample| {
-            sample.range_m[2]
+            sample.wheel_rad_s[0]
         });
         assert!(
             (response.settling_s - 0.4 * 20f64.ln()).abs() < 0.02,
@@ -303,7 +301,7 @@ mod tests {
         let samples = samples(|t| if t < 3.9 { 0.3 } else { 0.5 });
         assert!(
             response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| {
-                sample.range_m[2]
+                sample.wheel_rad_s[0]
             })
             .settling_s
             .is_nan()
@@ -315,7 +313,7 @@ mod tests {
         let samples = samples(|_| f64::INFINITY);
         let band = DISTANCE_BAND * f64::INFINITY;
         let response = response(&samples, 0.0, f64::INFINITY, 0.3, band, |sample| {
-            sample.range_m[2]
+            sample.wheel_rad_s[0]
         });
         let figures = [
             response.settling_s,
@@ -331,7 +329,9 @@ mod tests {
     #[test]
     fn what_stands_still_far_away_has_no_overshoot_and_no_ripple() {
         let samples = samples(|_| 1.0);
-        let response = response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| sample.range_m[2]);
+        let response = response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| {
+            sample.wheel_rad_s[0]
+        });
         let figures = [
             response.settling_s,
             response.rise_s,
@@ -346,7 +346,10 @@ mod tests {
     fn what_swings_about_the_reference_or_still_moves_has_no_steady_error() {
         let steady_error = |at_m: f64, swing_m: f64, moves_m_s: f64| {
             let samples = samples(|t| at_m + moves_m_s * t + swing_m * (9.0 * t).sin());
-            response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| sample.range_m[2]).resting_error()
+            response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| {
+                sample.wheel_rad_s[0]
+            })
+            .resting_error()
         };
         for swing_m in [0.04, 0.06, 0.12] {
             assert!(steady_error(0.3, swing_m, 0.0).is_nan());
@@ -360,7 +363,9 @@ mod tests {
     #[test]
     fn what_is_at_the_reference_when_the_step_begins_has_not_settled_in_no_time() {
         let samples = samples(|_| 0.3);
-        let response = response(&samples, 0.0, 0.3, 0.3, 0.035, |sample| sample.range_m[2]);
+        let response = response(&samples, 0.0, 0.3, 0.3, 0.035, |sample| {
+            sample.wheel_rad_s[0]
+        });
         assert!(response.settling_s.is_nan() && response.rise_s.is_nan());
         assert!(response.steady_error < 1e-9);
     }
@@ -368,7 +373,9 @@ mod tests {
     #[test]
     fn overshoot_is_what_goes_beyond_the_reference_in_the_direction_of_the_step() {
         let samples = samples(|t| if t < 1.0 { 0.27 } else { 0.31 });
-        let response = response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| sample.range_m[2]);
+        let response = response(&samples, 0.0, 1.0, 0.3, 0.035, |sample| {
+            sample.wheel_rad_s[0]
+        });
         assert!((response.overshoot - 0.03).abs() < 1e-9);
         assert!((response.steady_error - 0.01).abs() < 1e-9 && response.ripple < 1e-9);
     }

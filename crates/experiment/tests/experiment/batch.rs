@@ -8,7 +8,7 @@ use rumbo_control::{ServoAngle, Wheels};
 use rumbo_experiment::batch::{Batch, Driver, OBSERVED, Robot, TRUE};
 use rumbo_experiment::files::{Kind, Library, NativeProgram, Overrides, Setup};
 use rumbo_experiment::run;
-use rumbo_sim::trace::Sample;
+use rumbo_sim::trace::{Sample, Trace};
 use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, Refusal, ToRobot};
 
 const SEEDS: [u64; 3] = [1, 7, 1_000_003];
@@ -26,8 +26,8 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 }
 
 /// What a sample of a trace and a row of a batch both have.
-fn of_sample(sample: &Sample) -> [u64; 8] {
-    let [left, right, front] = sample.range_m;
+fn of_sample(trace: &Trace, sample: &Sample) -> [u64; 8] {
+    let [left, right, front] = [0, 1, 2].map(|sonar| trace.range_m(sample, sonar));
     let [left_rad_s, right_rad_s] = sample.wheel_rad_s;
     [
         sample.x_m,
@@ -74,7 +74,7 @@ fn each_robot_of_a_batch_is_bit_for_bit_that_of_a_run() {
                         let sample = &run.trace.samples[at + STEP - 1];
                         assert_eq!(
                             of_robot(robot),
-                            of_sample(sample),
+                            of_sample(&run.trace, sample),
                             "{scenario}, seed {}, {threads} threads, tick {}",
                             run.seed,
                             at + STEP

@@ -9,6 +9,7 @@ use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::world::Obstacle;
 use rumbo_sim::Sim;
 use rumbo_sim::fleet::{Encounter, Fleet, FleetError, Met};
+use rumbo_sim::trace::Trace;
 use rumbo_wire::Command;
 
 /// Two who cross the way, and a goal behind them.
@@ -54,9 +55,27 @@ fn movers_are_met_alike_on_any_number_of_threads_and_by_a_repetition() {
     // The world is empty but for them: what a sonar sees is one of the two.
     let sees = |run: &RunResult| {
         let mut samples = run.trace.samples.iter();
-        samples.any(|sample| sample.range_m[2] < 1.0)
+        samples.any(|sample| run.trace.range_m(sample, 2) < 1.0)
     };
     assert!(one.iter().all(sees));
+}
+
+/// Ranges are measured when somebody asks for them, in the world as it was.
+#[test]
+fn what_a_sonar_saw_stays_so_when_a_hand_moves_the_wall() {
+    let mut sim = setup("mode1", NativeProgram::Rumbo).sim(1).unwrap();
+    let (mut trace, mut seen_m) = (Trace::default(), Vec::new());
+    for tick in 1..=4_u64 {
+        if tick == 3 {
+            assert!(sim.shift(0, [0.3, 0.0]));
+        }
+        sim.advance(tick * 10_000);
+        trace.sample(&sim);
+        seen_m.push(sim.truth().range_m[2].unwrap());
+    }
+    let asked = trace.samples.iter().map(|sample| trace.range_m(sample, 2));
+    assert_eq!(asked.collect::<Vec<_>>(), seen_m);
+    assert!(seen_m[2] > seen_m[1] + 0.2, "{seen_m:?}");
 }
 
 /// The report's robot on its way ahead, from a pose.

@@ -22,7 +22,11 @@ pub(super) fn figures(language: Language, test: &Test, outcome: &Outcome) -> Vec
     let truth = |name: Text, ink, signal: &dyn Fn(&rumbo_sim::trace::Sample) -> f64| {
         Curve::new(name.of(language), ink, outcome.truth(signal))
     };
-    let range = |name, ink, sonar: Channel| truth(name, ink, &|s| CM * s.range_m[sonar as usize]);
+    let range = |name, ink, sonar: Channel| {
+        truth(name, ink, &|s| {
+            CM * outcome.trace().range_m(s, sonar as usize)
+        })
+    };
     let speed =
         |name, ink, wheel: Channel| truth(name, ink, &|s| RPM * s.wheel_rad_s[wheel as usize]);
     let speeds = || {

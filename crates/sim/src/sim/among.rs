@@ -26,8 +26,14 @@ impl Sim {
         Body::new(corners.to_vec(), Course::Straight { at_us, from })
     }
 
+    /// Other robots are in its world.
+    pub(crate) fn is_among_others(&self) -> bool {
+        self.among_others
+    }
+
     /// Puts a body into the world.
     pub(crate) fn join(&mut self, body: Body) -> Result<(), ShapeError> {
+        self.among_others = true;
         self.plant.add_body(&mut self.state, body)
     }
 

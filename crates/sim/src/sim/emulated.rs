@@ -10,7 +10,6 @@ use crate::bus::Motion;
 use crate::mega::{Action, Faults, Mega, Pause};
 use rumbo_control::{Duty, SonarId};
 use rumbo_plant::drivetrain::{Bridge, Side};
-use rumbo_plant::plant::Truth;
 
 /// How far the plant looks ahead, and the grid it keeps to [us].
 const AHEAD_US: u64 = 1_000;
@@ -31,11 +30,7 @@ impl Sim {
                 mega.see_obstacles(self.world(), &self.pose(), self.now_us());
             }
             if !mega.firmware().bus().is_empty() {
-                let Truth {
-                    forward_m_s,
-                    yaw_rad_s,
-                    ..
-                } = self.truth();
+                let [forward_m_s, yaw_rad_s] = self.state.speed();
                 let motion = Motion {
                     forward_m_s,
                     yaw_rad_s,

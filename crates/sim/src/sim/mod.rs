@@ -88,6 +88,7 @@ pub struct Sim {
     motors_cut: bool,
     /// What crossed the link, while it is tapped.
     tapped: Option<Vec<Burst>>,
+    among_others: bool,
     /// What was put elsewhere, by number, and how far from where the world has it \[m\].
     shifted: BTreeMap<usize, [f64; 2]>,
 }
@@ -182,6 +183,7 @@ impl Sim {
             off: false,
             motors_cut: false,
             tapped: None,
+            among_others: false,
             shifted: BTreeMap::new(),
         })
     }
@@ -204,6 +206,11 @@ impl Sim {
     /// Ground truth.
     pub fn truth(&self) -> Truth {
         self.plant.truth(&self.state)
+    }
+
+    /// The plant and its state.
+    pub(crate) fn physics(&self) -> (&Plant, &State) {
+        (&self.plant, &self.state)
     }
 
     /// The duties in force at the bridges.

@@ -278,13 +278,15 @@ impl Sim {
             } else {
                 native.robot.receive(byte);
             }
-            received.push(byte);
+            if native.recorded.is_some() {
+                received.push(byte);
+            }
         }
         let echo = native
             .board
             .echo(now_us)
             .map(|answer| self.sonar_faults.answer(&self.noise, answer, now_us));
-        let battery_v = native.convert(|| self.truth().battery_v);
+        let battery_v = native.convert(|| self.plant.battery_v(&self.state));
         let inputs = Inputs {
             now: micros(now_us),
             encoders: native.board.encoders(),

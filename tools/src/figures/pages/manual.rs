@@ -15,8 +15,8 @@ fn panel(wheel: &str, side: usize, floor: &[Runs; 2], air: &[Runs; 2]) -> Panel 
         (["on the floor", ""], OURS, floor),
     ] {
         for (name, runs) in names.into_iter().zip(both) {
-            let speeds = runs
-                .each(|sample, _| (f64::from(sample.duty[side]), RPM * sample.wheel_rad_s[side]));
+            let speeds =
+                runs.each(|sample| (f64::from(sample.duty[side]), RPM * sample.wheel_rad_s[side]));
             curves.push(Curve::median(name, ink, &speeds));
         }
     }

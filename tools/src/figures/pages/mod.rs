@@ -64,7 +64,7 @@ fn both(scenario: &str, baseline: Change) -> Result<Option<[Runs; 2]>, String> {
 }
 
 /// A signal over time, of both programs.
-fn signal(baseline: &Runs, ours: &Runs, signal: impl Fn(&Sample, f64) -> f64) -> Vec<Curve> {
+fn signal(baseline: &Runs, ours: &Runs, signal: impl Fn(&Sample) -> f64) -> Vec<Curve> {
     vec![
         Curve::median(REPORT, BASELINE, &baseline.over_time(&signal)),
         Curve::median("ours", OURS, &ours.over_time(&signal)),
@@ -98,7 +98,7 @@ fn reference(setup: &Setup, factor: f64) -> Curve {
 }
 
 fn pwm(baseline: &Runs, ours: &Runs) -> Panel {
-    let pwm = signal(baseline, ours, |sample, _| f64::from(sample.duty[0]));
+    let pwm = signal(baseline, ours, |sample| f64::from(sample.duty[0]));
     Panel::new("PWM of the left wheel, of 255", pwm)
 }
 
@@ -144,7 +144,7 @@ type Ways = Vec<Points>;
 fn ways(runs: &Runs) -> Ways {
     let start = runs.setup.scenario.start;
     let (sin, cos) = start.heading_rad.sin_cos();
-    runs.each(|sample, _| {
+    runs.each(|sample| {
         let (dx, dy) = (sample.x_m - start.x_m, sample.y_m - start.y_m);
         (cos * dx + sin * dy, cos * dy - sin * dx)
     })

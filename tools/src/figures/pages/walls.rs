@@ -6,9 +6,10 @@ pub(super) fn mode1() -> Result<Option<Made>, String> {
     let Some([baseline, ours]) = both("mode1", runs::BASELINE)? else {
         return Ok(None);
     };
-    let mut distance = signal(&baseline, &ours, |sample, scale| {
-        100.0 * sample.range_m[2] * scale
-    });
+    let mut distance = vec![
+        Curve::median(REPORT, BASELINE, &baseline.ahead_cm()),
+        Curve::median("ours", OURS, &ours.ahead_cm()),
+    ];
     distance.insert(0, reference(&ours.setup, 100.0));
     let distance = Panel::new("distance to the wall, cm", distance);
     let plot = Plot::over_time(vec![distance, pwm(&baseline, &ours)]);
@@ -73,9 +74,9 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
     ) else {
         return Ok(None);
     };
-    let mut distance = signal(&baseline, &ours, |sample, _| 100.0 * ahead_m(sample));
+    let mut distance = signal(&baseline, &ours, |sample| 100.0 * ahead_m(sample));
     distance.insert(0, reference(&ours.setup, 100.0));
-    let angle = signal(&baseline, &ours, |sample, _| DEG * sample.heading_rad);
+    let angle = signal(&baseline, &ours, |sample| DEG * sample.heading_rad);
     let plot = Plot::over_time(vec![
         Panel::new("distance to the wall, cm", distance).exactly(0.0, 125.0),
         Panel::new("angle to its normal, deg", angle).exactly(-20.0, 40.0),
@@ -140,7 +141,7 @@ pub(super) fn mode3() -> Result<Option<Made>, String> {
     let Some([baseline, ours]) = both("mode3", runs::BASELINE)? else {
         return Ok(None);
     };
-    let curves = signal(&baseline, &ours, |sample, _| {
+    let curves = signal(&baseline, &ours, |sample| {
         100.0 * (beside_m(sample) - 0.575)
     });
     let plot = Plot::over_time(vec![Panel::new("error of the distance, cm", curves)]);
@@ -187,7 +188,7 @@ pub(super) fn mode4() -> Result<Option<Made>, String> {
         return Ok(None);
     };
     let panel = |name, ink, runs: &Runs| {
-        let distance = runs.over_time(|sample, _| 100.0 * beside_m(sample));
+        let distance = runs.over_time(|sample| 100.0 * beside_m(sample));
         let distance = Curve::median(name, ink, &distance);
         let curves = vec![reference(&runs.setup, 100.0), distance];
         Panel::new("distance, cm", curves).exactly(20.0, 70.0)

@@ -137,7 +137,7 @@ fn shapes(setup: &Setup) -> Vec<Shape> {
 }
 
 fn in_the_world(runs: &Runs) -> Ways {
-    runs.each(|sample, _| (sample.x_m, sample.y_m))
+    runs.each(|sample| (sample.x_m, sample.y_m))
 }
 
 /// A mission: maps, and the figures that its metrics give.

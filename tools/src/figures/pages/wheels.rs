@@ -30,7 +30,7 @@ pub(super) fn mode5() -> Result<Option<Made>, String> {
     // Of a part only its own points are drawn: of all, too few would lie in it.
     let speed = |until_s: f64| {
         let median = |name, ink, runs: &Runs| {
-            let mut speeds = runs.over_time(|sample, _| RPM * sample.wheel_rad_s[0]);
+            let mut speeds = runs.over_time(|sample| RPM * sample.wheel_rad_s[0]);
             for points in &mut speeds {
                 points.retain(|(t_s, _)| *t_s < until_s);
             }

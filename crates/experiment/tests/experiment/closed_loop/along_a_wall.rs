@@ -225,7 +225,7 @@ fn a_spiking_sonar_on_the_way_to_another_distance_never_leads_it_into_a_wall() {
             assert_eq!(run.metrics["contacts"], 0.0, "{what}");
             let side = sonar as usize;
             let after = run.trace.between(8.2, f64::INFINITY);
-            let least_m = after.iter().map(|sample| sample.range_m[side]);
+            let least_m = after.iter().map(|sample| run.trace.range_m(sample, side));
             let least_m = least_m.fold(f64::INFINITY, f64::min);
             assert!(least_m > 0.2, "{what}: {least_m} m");
         }

@@ -160,8 +160,8 @@ fn a_stuck_sonar_on_the_way_around_a_box_never_drives_the_robot_hard_against_it(
                 assert!(speed_m_s < 0.1, "{what}: {speed_m_s} m/s");
                 let named = fault(&run) == Some(Fault::SonarFaulty);
                 let before = run.trace.between(at_s - 0.1, at_s);
-                let heard =
-                    (before.iter()).all(|sample| sample.range_m[sonar as usize].is_finite());
+                let heard = (before.iter())
+                    .all(|sample| run.trace.range_m(sample, sonar as usize).is_finite());
                 let touches = run.metrics["contacts"] > 0.0;
                 assert!(named || !(heard && touches), "{what}: not named");
             }
