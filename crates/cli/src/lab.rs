@@ -9,7 +9,7 @@ use crate::output;
 use crate::tune;
 use crate::workshop::{self, Workshop};
 use rumbo_experiment::files::{Kind, Library, Overrides, ScenarioFile};
-use rumbo_lab::{FleetRobot, OwnProgram, SimulatedRobot};
+use rumbo_lab::{OwnProgram, SimulatedRobot};
 use rumbo_log::Choice;
 use rumbo_sim::debugging::Debugging;
 use rumbo_station::{Lab, LabConfig, Named};
@@ -27,8 +27,10 @@ pub(crate) fn lab(args: &mut LabArgs) -> Result<(), Failure> {
 fn serve(args: &mut LabArgs) -> Result<Lab, Failure> {
     let robots = match fleet(args)? {
         Some(scenario) => several(args, &scenario)?,
-        None => vec![(String::new(), Box::new(simulated(args)?) as _)],
+        None => vec![simulated(args)?],
     };
+    let named = |robot: SimulatedRobot| -> Named { (robot.name(), Box::new(robot)) };
+    let robots = robots.into_iter().map(named).collect();
     rumbo_station::serve_all(config(args), robots, calibrate::in_dashboard())
         .map_err(Failure::input)
 }
@@ -93,7 +95,7 @@ fn config(args: &LabArgs) -> LabConfig {
 }
 
 /// Several robots in one world: those of the scenario, or as many as asked for.
-fn several(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Vec<Named>, Failure> {
+fn several(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Vec<SimulatedRobot>, Failure> {
     #[cfg(unix)]
     let alone = args.pty || args.usb_pty || args.gdb.is_some();
     #[cfg(not(unix))]
@@ -114,9 +116,13 @@ fn several(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Vec<Named>, Fa
     let library = Library::new().beside(&args.scenario);
     let library = library.holding(Kind::Scenario, &scenario.name, &scenario.text);
     let choice = choice(args, &scenario.name);
-    let robots = rumbo_lab::fleet(library, overrides(args), &choice, args.robots.into())?;
-    let named = |robot: FleetRobot| -> Named { (robot.name(), Box::new(robot)) };
-    Ok(robots.into_iter().map(named).collect())
+    let robots = args.robots.into();
+    Ok(rumbo_lab::robots(
+        library,
+        overrides(args),
+        &choice,
+        robots,
+    )?)
 }
 
 /// The port for a debugger, printed to stderr.

@@ -19,6 +19,13 @@ pub(crate) struct Prepared {
     pub(crate) manifest: Manifest,
 }
 
+impl Prepared {
+    /// What a scenario of several calls it.
+    pub(crate) fn name(&self) -> &str {
+        self.manifest.member.as_deref().unwrap_or_default()
+    }
+}
+
 /// The overrides with the world and the rig of a choice.
 pub(crate) fn chosen(overrides: &Overrides, choice: &Choice) -> Overrides {
     Overrides {

@@ -72,7 +72,7 @@ pub(crate) fn in_lab(drive: &Drive<'_>, robot: &str, seed: u64) -> Result<Drivin
         ..Overrides::default()
     };
     let robot = SimulatedRobot::new(overrides, choice)?;
-    let truth = *robot.params();
+    let truth = robot.params();
     let battery_v = drive.battery_v.unwrap_or(truth.battery.open_circuit_v);
     let mut driven = Driven::begin(robot, drive.folder)?;
     let asked = Arc::new(AtomicBool::new(false));

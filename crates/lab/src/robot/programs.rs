@@ -12,6 +12,7 @@ use rumbo_log::{
     ProgramState,
 };
 use rumbo_session::{GivenProgram, LinkNews, ShownSketch, TargetError};
+use rumbo_sim::Sim;
 use rumbo_sim::boards::Board;
 use rumbo_sim::bus::BusDevice;
 use rumbo_sim::wiring::Part;
@@ -72,7 +73,11 @@ fn device_state(device: &BusDevice) -> PartState {
 impl SimulatedRobot {
     /// For the page.
     pub(crate) fn program_state(&self) -> Option<ProgramState> {
-        let (mega, program) = (self.sim.mega()?, self.program.as_ref());
+        let robots = self.robots.lock();
+        let [only] = &robots.all[..] else {
+            return None;
+        };
+        let (mega, program) = (only.sim.mega()?, self.program.as_ref());
         Some(ProgramState {
             name: match program {
                 Some(program) => program.name.clone(),
@@ -93,18 +98,20 @@ impl SimulatedRobot {
     }
 
     /// Counts the cycles of the program at the pins from zero, if they are to be counted.
-    pub(crate) fn begin_profile(&mut self) {
-        let Some(mega) = self.sim.mega_mut() else {
-            return;
-        };
-        let counts = self
-            .profiling
-            .then(|| Profile::new(mega.firmware().image()));
-        let observers = mega.chip_mut().observers_mut();
-        match counts {
-            Some(counts) => observers.profile(counts),
-            None => observers.end_profile(),
-        }
+    pub(crate) fn begin_profile(&self) {
+        self.sim(|sim| {
+            let Some(mega) = sim.mega_mut() else {
+                return;
+            };
+            let counts = self
+                .profiling
+                .then(|| Profile::new(mega.firmware().image()));
+            let observers = mega.chip_mut().observers_mut();
+            match counts {
+                Some(counts) => observers.profile(counts),
+                None => observers.end_profile(),
+            }
+        });
     }
 
     /// Takes what the workshop has made.
@@ -155,7 +162,7 @@ impl SimulatedRobot {
         if let Some(board) = self.chip_board() {
             return Ok(board);
         }
-        let setup = set_up(&self.library, &self.overrides, None, &self.scene.choice);
+        let setup = set_up(&self.library, &self.overrides, None, &self.choice());
         let (setup, _) = setup.map_err(|error| TargetError::Setup(error.to_string()))?;
         Ok(setup.robot.board)
     }
@@ -187,7 +194,7 @@ impl SimulatedRobot {
         let wrong = |error: FileError| TargetError::Setup(error.to_string());
         let held = Held::new(name, bytes).map_err(wrong)?;
         let before = self.held.replace(held);
-        if let Err(error) = self.start_again(self.scene.choice.clone()) {
+        if let Err(error) = self.start_again(&self.choice()) {
             self.held = before;
             return Err(wrong(error));
         }
@@ -205,10 +212,11 @@ impl SimulatedRobot {
     fn start_program(&mut self, image: PathBuf, attach: Option<Attach>) {
         let shown = image.display().to_string();
         let before = self.overrides.firmware.replace(image);
-        match self.start_again(self.scene.choice.clone()) {
+        match self.start_again(&self.choice()) {
             Ok(()) => {
                 self.enter(ProgramPhase::Running, Vec::new());
-                self.in_hand = attach.and_then(|attach| InHand::new(attach, self.sim.clone()));
+                self.in_hand =
+                    attach.and_then(|attach| InHand::new(attach, self.sim(|sim| sim.clone())));
                 self.news.push_back(LinkNews::Renewed);
             }
             Err(error) => {
@@ -222,7 +230,7 @@ impl SimulatedRobot {
     }
 
     fn reject(&mut self, complaints: Vec<Complaint>) {
-        self.sim.switch_off();
+        self.sim(Sim::switch_off);
         let text = "the changed program does not compile: the robot is switched off until it does";
         self.news
             .push_back(LinkNews::Program(Level::Fault, text.into()));
