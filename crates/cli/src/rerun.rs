@@ -251,7 +251,6 @@ fn same(log: &Log, result: &RunResult, other_protocol: Option<u8>) -> Verdict {
 }
 
 fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<Verdict, Failure> {
-    let setup = &*setup.of_seed(seed)?;
     let mut sim = Sim::new(Config {
         memory: recorded.memory(),
         ..run::prepare(setup, seed)?.config(seed)?

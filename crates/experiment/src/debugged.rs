@@ -76,11 +76,8 @@ impl Machine for Debugged {
 }
 
 impl World for Debugged {
-    fn go_to(&mut self, cycle: u64) -> Stopped {
-        self.world.mega_mut().halt_at(Some(cycle));
-        let stopped = self.go();
-        self.world.mega_mut().halt_at(None);
-        stopped
+    fn halt_at(&mut self, cycle: Option<u64>) {
+        self.world.mega_mut().halt_at(cycle);
     }
 
     fn now_us(&self) -> u64 {

@@ -82,16 +82,15 @@ fn ready(
     memory: &[u8],
     manifest: Manifest,
 ) -> Result<Prepared, FileError> {
-    let setup = setup.of_seed(choice.seed)?;
-    let ready = run::prepare(&setup, choice.seed)?;
+    let setup = run::prepare(setup, choice.seed)?;
     Ok(Prepared {
         sim: Sim::new(Config {
             memory: memory.to_vec(),
-            ..ready.config(choice.seed)?
+            ..setup.config(choice.seed)?
         })?,
         mode: setup.scenario.mode,
         scene: scene(library, &setup, choice)?,
-        first_commands: first_words(&ready)?,
+        first_commands: first_words(&setup)?,
         manifest,
     })
 }

@@ -372,8 +372,7 @@ pub fn drive_all(
             if failures.is_empty() {
                 return Ok(Vec::new());
             }
-            let own = setup.of_seed(seed)?;
-            let mut own = prepare(&own, seed)?.into_owned();
+            let mut own = prepare(&setup, seed)?.into_owned();
             let mut done = Vec::new();
             for at_s in instants_s.into_iter().take(instants) {
                 for failure in &failures {

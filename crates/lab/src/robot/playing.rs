@@ -15,7 +15,7 @@ impl SimulatedRobot {
     pub(crate) fn begin_experiment(&mut self, values: &[(u8, f32)]) -> Result<(), FileError> {
         let choice = self.choice();
         let (setup, _) = set_up(&self.library, &self.overrides, self.held.as_ref(), &choice)?;
-        let own = parameters(&*prepare(&*setup.of_seed(choice.seed)?, choice.seed)?)?;
+        let own = parameters(&*prepare(&setup, choice.seed)?)?;
         let changed = values.iter().filter_map(|(number, value)| {
             let id = ParamId::from_number(*number)?;
             let other = own.as_ref().is_some_and(|own| own.get(id) != *value);
