@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use rumbo_experiment::files::FileError;
 use rumbo_experiment::note::Note;
 use rumbo_experiment::run::{RunResult, run_all_on};
-use rumbo_sim::trace::Sample;
+use rumbo_sim::trace::TruthSample;
 
 /// Why the runs ended early.
 pub(crate) enum Stop {
@@ -89,10 +89,10 @@ fn in_python(py: Python<'_>, result: RunResult, trace: bool) -> PyResult<Bound<'
 }
 
 /// A signal's name and its value in a sample.
-type Column = (&'static str, fn(&Sample) -> f64);
+type Column = (&'static str, fn(&TruthSample) -> f64);
 
 /// The samples as one array for each signal.
-fn columns<'py>(py: Python<'py>, samples: &[Sample]) -> PyResult<Bound<'py, PyDict>> {
+fn columns<'py>(py: Python<'py>, samples: &[TruthSample]) -> PyResult<Bound<'py, PyDict>> {
     let trace = PyDict::new(py);
     let numbers: [Column; 11] = [
         ("t_s", |sample| sample.t_s),

@@ -8,7 +8,7 @@
 
 use rumbo_control::mode::ModeId;
 use rumbo_control::{ServoAngle, Wheels};
-use rumbo_experiment::batch::{Batch, Driver};
+use rumbo_experiment::batch::{Batch, DrivenBy};
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup, fleet_around};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
@@ -149,7 +149,7 @@ fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
     let world = arena.world.world()?;
     let mut robots: Vec<(Plant, State, Eyes)> = (0..ROBOTS as u64)
         .map(|seed| {
-            let plant = Plant::new(rumbo_plant::plant::Setup {
+            let plant = Plant::new(rumbo_plant::plant::PlantSetup {
                 params: Params::default().draw(seed, 0),
                 rig,
                 world: world.clone(),
@@ -199,7 +199,7 @@ fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
 fn commanded(arena: &Setup, seconds: u64) -> Result<Speed, FileError> {
     let mut arena = arena.clone();
     arena.scenario.mode = ModeId::WheelSpeed;
-    let mut batch = Batch::new(&arena, Driver::Caller, &seeds(ROBOTS))?;
+    let mut batch = Batch::new(&arena, DrivenBy::Caller, &seeds(ROBOTS))?;
     batch.for_each(|_, group| {
         // A robot at its start obeys.
         let _ = group.robots_mut()[0].command(&Command::Arm);
@@ -225,7 +225,7 @@ fn commanded(arena: &Setup, seconds: u64) -> Result<Speed, FileError> {
 
 /// The same of mode 8 by the scenario's commands over the link.
 fn by_scenario(arena: &Setup, seconds: u64) -> Result<Speed, FileError> {
-    let mut batch = Batch::new(arena, Driver::Scenario, &seeds(ROBOTS))?;
+    let mut batch = Batch::new(arena, DrivenBy::Scenario, &seeds(ROBOTS))?;
     let start = Start::now();
     batch.advance(seconds as u32 * 100);
     Ok(start.speed(seconds * 100))
@@ -243,7 +243,7 @@ fn together(arena: &Setup, robots: usize, seconds: u64) -> Result<Speed, FileErr
         );
     let setup = library.setup("bench", &Overrides::default())?;
     let rounds = ROBOTS / robots;
-    let mut batch = Batch::new(&setup, Driver::Scenario, &seeds(rounds))?;
+    let mut batch = Batch::new(&setup, DrivenBy::Scenario, &seeds(rounds))?;
     let start = Start::now();
     batch.advance(seconds as u32 * 100);
     Ok(start.speed_of(rounds * robots, seconds * 100))
@@ -259,7 +259,7 @@ fn memory(arena: &Setup) -> Result<f64, Box<dyn Error>> {
     };
     let count = 8_192;
     let before_kib = resident_kib()?;
-    let batch = Batch::new(arena, Driver::Caller, &seeds(count))?;
+    let batch = Batch::new(arena, DrivenBy::Caller, &seeds(count))?;
     let each = (resident_kib()? - before_kib) * 1024.0 / count as f64;
     drop(batch);
     Ok(each)

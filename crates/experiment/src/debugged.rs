@@ -5,7 +5,7 @@ use crate::operator::Operator;
 use crate::run::of_seed;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
-use rumbo_emulator::gdb::{Machine, World};
+use rumbo_emulator::gdb::{DebuggedWorld, Machine};
 use rumbo_sim::emulated::Emulated;
 use rumbo_sim::mega::USB;
 use rumbo_sim::trace::SAMPLE_US;
@@ -75,7 +75,7 @@ impl Machine for Debugged {
     }
 }
 
-impl World for Debugged {
+impl DebuggedWorld for Debugged {
     fn halt_at(&mut self, cycle: Option<u64>) {
         self.world.mega_mut().halt_at(cycle);
     }

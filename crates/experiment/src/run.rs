@@ -245,15 +245,8 @@ impl<S: Deref<Target = Setup> + Clone> Member<S> {
 /// # Errors
 /// The setup's values do not fit together.
 pub fn parameters(setup: &Setup) -> Result<Option<Params>, FileError> {
-    if !setup.takes_parameters() {
-        return Ok(None);
-    }
-    let mut parameters = Params::default();
-    for (id, value) in setup.control_parameters()? {
-        // Checked when it was read.
-        let _ = parameters.set(id, value);
-    }
-    Ok(Some(parameters))
+    let takes_parameters = setup.takes_parameters();
+    takes_parameters.then(|| setup.params()).transpose()
 }
 
 /// Runs a scenario once.

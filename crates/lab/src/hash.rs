@@ -4,7 +4,6 @@ use crate::program::Held;
 use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_log::{Entry, Row};
-use rumbo_sim::trace::Sample;
 
 const CRC: crc::Crc<u64> = crc::Crc::<u64>::new(&crc::CRC_64_XZ);
 
@@ -60,7 +59,8 @@ fn of(result: &RunResult) -> u64 {
     // Of several robots each has its own trace.
     for RunResult { trace, .. } in std::iter::once(result).chain(&result.robots) {
         for sample in &trace.samples {
-            values_of(sample).for_each(|value| digest.update(&bits(value)));
+            let values = sample.values().into_iter();
+            values.for_each(|value| digest.update(&bits(value)));
         }
         for burst in &trace.link {
             digest.update(&burst.t_us.to_le_bytes());
@@ -78,35 +78,6 @@ fn of(result: &RunResult) -> u64 {
         digest.update(&bits(*value));
     }
     digest.finalize()
-}
-
-fn values_of(sample: &Sample) -> impl Iterator<Item = f64> {
-    let Sample {
-        t_s,
-        x_m,
-        y_m,
-        heading_rad,
-        wheel_rad_s,
-        duty,
-        range_m,
-        servo_rad,
-        battery_v,
-        touching,
-    } = *sample;
-    let [left, right] = duty.map(f64::from);
-    let touching = f64::from(u8::from(touching));
-    let rest = [
-        t_s,
-        x_m,
-        y_m,
-        heading_rad,
-        left,
-        right,
-        servo_rad,
-        battery_v,
-        touching,
-    ];
-    rest.into_iter().chain(wheel_rad_s).chain(range_m)
 }
 
 /// Not a number has many bit patterns, which processors choose as they like.

@@ -3,7 +3,7 @@
 use crate::sight;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
-use rumbo_emulator::gdb::{Machine, World};
+use rumbo_emulator::gdb::{DebuggedWorld, Machine};
 use rumbo_session::{SLICE_US, Shown};
 use rumbo_sim::Sim;
 use rumbo_sim::emulated::Emulated;
@@ -73,7 +73,7 @@ impl Machine for Live {
     }
 }
 
-impl World for Live {
+impl DebuggedWorld for Live {
     fn halt_at(&mut self, cycle: Option<u64>) {
         self.world.mega_mut().halt_at(cycle);
     }

@@ -8,7 +8,7 @@ use crate::program::Held;
 use crate::robot::SimulatedRobot;
 use crate::sight;
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, fleet_around};
-use rumbo_log::{Choice, Other, Scene, Source};
+use rumbo_log::{Choice, Other, ReadingSource, Scene};
 use rumbo_session::Shown;
 use rumbo_sim::Sim;
 use rumbo_sim::fleet::Fleet;
@@ -130,7 +130,7 @@ impl Robots {
         let others = others.filter(|(other, _)| *other != number);
         let signals = others
             .flat_map(|(_, robot)| Other::signals(robot.name(), sight::truth(&robot.sim).pose));
-        Some((Source::Others, signals.collect()))
+        Some((ReadingSource::Others, signals.collect()))
     }
 
     /// What is typed has an effect that all of them see, and their logs too.

@@ -2,7 +2,7 @@
 
 use crate::instruments::READING_US;
 use crate::mega::CONSOLES;
-use crate::sim::{Burst, Sim};
+use crate::sim::{LinkBurst, Sim};
 use rumbo_control::params::Params;
 use rumbo_robot::Loops;
 use rumbo_wire::FromRobot;
@@ -13,7 +13,7 @@ pub const SAMPLE_US: u64 = 10_000;
 
 /// Ground truth at one instant.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
+pub struct TruthSample {
     /// Time since the start [s].
     pub t_s: f64,
     /// Position in the world [m].
@@ -38,31 +38,36 @@ pub struct Sample {
 }
 
 /// Two unknown ranges are equal.
-impl PartialEq for Sample {
+impl PartialEq for TruthSample {
     fn eq(&self, other: &Self) -> bool {
-        let whole = |sample: &Self| {
-            let Self {
-                t_s,
-                x_m,
-                y_m,
-                heading_rad,
-                wheel_rad_s,
-                duty,
-                range_m,
-                servo_rad,
-                battery_v,
-                touching,
-            } = *sample;
-            let numbers = [t_s, x_m, y_m, heading_rad, servo_rad, battery_v];
-            (
-                numbers,
-                wheel_rad_s,
-                range_m.map(f64::to_bits),
-                duty,
-                touching,
-            )
-        };
-        whole(self) == whole(other)
+        let mut pairs = std::iter::zip(self.values(), other.values());
+        pairs.all(|(own, other)| own == other || own.is_nan() && other.is_nan())
+    }
+}
+
+impl TruthSample {
+    /// All of it, as numbers.
+    #[must_use]
+    pub fn values(&self) -> [f64; 14] {
+        let [left, right] = self.duty.map(f64::from);
+        let [left_rad_s, right_rad_s] = self.wheel_rad_s;
+        let [left_m, right_m, front_m] = self.range_m;
+        [
+            self.t_s,
+            self.x_m,
+            self.y_m,
+            self.heading_rad,
+            left,
+            right,
+            self.servo_rad,
+            self.battery_v,
+            f64::from(u8::from(self.touching)),
+            left_rad_s,
+            right_rad_s,
+            left_m,
+            right_m,
+            front_m,
+        ]
     }
 }
 
@@ -83,11 +88,11 @@ pub struct Trace {
     /// Telemetry, status, events and heading references as they arrived at the station.
     pub messages: Vec<TimedMessage>,
     /// The samples, in order of time.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<TruthSample>,
     /// What crossed the link, in order.
-    pub link: Vec<Burst>,
+    pub link: Vec<LinkBurst>,
     /// What the USARTs of an emulated Mega have sent, in order.
-    pub consoles: Vec<Said>,
+    pub consoles: Vec<UsartOutput>,
     /// What instruments at an emulated Mega have shown, in order.
     pub readings: Vec<Shown>,
     /// What the control loops of our native robot added up, with its time [us], in order.
@@ -118,7 +123,7 @@ impl PartialEq for Shown {
 
 /// What a USART of an emulated Mega has sent since the sample before.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Said {
+pub struct UsartOutput {
     /// Time of the sample [us].
     pub t_us: u64,
     /// Which USART.
@@ -138,7 +143,7 @@ impl Trace {
                 - std::f64::consts::TAU * (change / std::f64::consts::TAU).round()
         });
         let duty = sim.duty();
-        self.samples.push(Sample {
+        self.samples.push(TruthSample {
             t_s: truth.now_us as f64 * 1e-6,
             x_m: truth.pose.x_m,
             y_m: truth.pose.y_m,
@@ -170,7 +175,7 @@ impl Trace {
             self.loops.push((t_us, loops));
         }
         if let Some(mega) = sim.mega_mut() {
-            let said = (0..CONSOLES).map(|usart| Said {
+            let said = (0..CONSOLES).map(|usart| UsartOutput {
                 t_us,
                 usart,
                 bytes: mega.take_console(usart),
@@ -188,7 +193,7 @@ impl Trace {
     }
 
     /// The samples from `from_s` to just before `until_s`.
-    pub fn between(&self, from_s: f64, until_s: f64) -> &[Sample] {
+    pub fn between(&self, from_s: f64, until_s: f64) -> &[TruthSample] {
         let index = |t_s: f64| {
             self.samples
                 .partition_point(|sample| sample.t_s < t_s - 1e-9)
@@ -207,19 +212,21 @@ impl Trace {
             "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,range_left_m,range_right_m,range_front_m,servo_rad,battery_v\n",
         );
         for sample in &self.samples {
-            let Sample {
+            let [
                 t_s,
                 x_m,
                 y_m,
                 heading_rad,
-                wheel_rad_s,
-                duty,
-                range_m,
+                left,
+                right,
                 servo_rad,
                 battery_v,
-                touching: _,
-            } = sample;
-            let [left_m, right_m, front_m] = range_m.map(|range_m| {
+                _,
+                left_rad_s,
+                right_rad_s,
+                ranges_m @ ..,
+            ] = sample.values();
+            let [left_m, right_m, front_m] = ranges_m.map(|range_m| {
                 match range_m.is_nan() {
                     true => String::new(),
                     // `inf` where nothing is within reach.
@@ -229,8 +236,7 @@ impl Trace {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
-                "{t_s:.3},{x_m:.5},{y_m:.5},{heading_rad:.5},{:.4},{:.4},{},{},{left_m},{right_m},{front_m},{servo_rad:.4},{battery_v:.3}",
-                wheel_rad_s[0], wheel_rad_s[1], duty[0], duty[1],
+                "{t_s:.3},{x_m:.5},{y_m:.5},{heading_rad:.5},{left_rad_s:.4},{right_rad_s:.4},{left},{right},{left_m},{right_m},{front_m},{servo_rad:.4},{battery_v:.3}",
             );
         }
         text

@@ -32,7 +32,7 @@ pub use echo::Print;
 pub use ending::asked_to_end;
 pub use error::{ServeError, SessionError};
 pub use folder::{Folder, serve_folder};
-pub use recorder::{Recording, now_utc, today_utc};
+pub use recorder::{RecordingSetting, now_utc, today_utc};
 pub use serve::{
     Addresses, DEFAULT_PORT, Lab, LabConfig, Named, ServeAt, serve, serve_all, serve_log,
 };

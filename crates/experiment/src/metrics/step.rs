@@ -9,7 +9,7 @@
 use super::Metrics;
 use crate::files::{Setup, TimedCommand};
 use rumbo_sim::Sim;
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_sim::trace::{Trace, TruthSample};
 use rumbo_wire::Command;
 
 /// Band in which a wheel's speed counts as settled [rad/s]: 3.2 rpm.
@@ -35,7 +35,7 @@ impl Step {
         trace: &Trace,
         wheel: usize,
         band: f64,
-        signal: impl Fn(&Sample) -> f64,
+        signal: impl Fn(&TruthSample) -> f64,
     ) -> Option<Response> {
         let samples = trace.between(self.from_s, self.until_s);
         let start = signal(samples.first()?);
@@ -119,26 +119,26 @@ impl Response {
 /// that rests elsewhere has neither settled nor overshot, nor is it steady. A signal at its reference from the start
 /// does not respond.
 fn response(
-    samples: &[Sample],
+    samples: &[TruthSample],
     from_s: f64,
     start: f64,
     reference: f64,
     band: f64,
-    signal: impl Fn(&Sample) -> f64,
+    signal: impl Fn(&TruthSample) -> f64,
 ) -> Response {
     if !start.is_finite() {
         return Response::NONE;
     }
     let direction = if reference < start { -1.0 } else { 1.0 };
     let span = (reference - start).abs();
-    let progress = |sample: &Sample| direction * (signal(sample) - start);
+    let progress = |sample: &TruthSample| direction * (signal(sample) - start);
     let first = |level: f64| {
         samples
             .iter()
             .find(|sample| progress(sample) >= level * span)
             .map(|sample| sample.t_s)
     };
-    let within = |sample: &Sample| (signal(sample) - reference).abs() <= band;
+    let within = |sample: &TruthSample| (signal(sample) - reference).abs() <= band;
     let responds = (start - reference).abs() > band;
     let arrives = samples
         .iter()
@@ -147,22 +147,17 @@ fn response(
     let last_outside = samples.iter().rev().find(|sample| !within(sample));
     let settled = samples.last().is_some_and(within);
     let steady = &samples[(samples.len() as f64 * (1.0 - STEADY_SHARE)) as usize..];
-    let (least, most) = steady.iter().map(&signal).fold(
-        (f64::INFINITY, f64::NEG_INFINITY),
-        |(least, most), value| (least.min(value), most.max(value)),
-    );
+    let values = || steady.iter().map(&signal);
+    let least = values().fold(f64::INFINITY, f64::min);
+    let most = values().fold(f64::NEG_INFINITY, f64::max);
     let count = steady.len() as f64;
-    let mean = steady.iter().map(&signal).sum::<f64>() / count;
-    let variance = steady
-        .iter()
-        .map(|sample| (signal(sample) - mean).powi(2))
-        .sum::<f64>()
-        / count;
+    let mean = values().sum::<f64>() / count;
+    let variance = values().map(|value| (value - mean).powi(2)).sum::<f64>() / count;
     let square = samples
         .iter()
-        .map(|sample| (signal(sample) - reference).powi(2))
-        .sum::<f64>()
-        / samples.len() as f64;
+        .map(|sample| (signal(sample) - reference).powi(2));
+    let square = square.sum::<f64>() / samples.len() as f64;
+    let beyond = samples.iter().map(|sample| progress(sample) - span);
     Response {
         settling_s: if settled && responds {
             last_outside.map_or(0.0, |sample| sample.t_s - from_s)
@@ -173,13 +168,7 @@ fn response(
             (Some(low), Some(high)) if responds => high - low,
             _ => f64::NAN,
         },
-        overshoot: if_so(
-            arrives,
-            samples
-                .iter()
-                .map(|sample| progress(sample) - span)
-                .fold(0.0, f64::max),
-        ),
+        overshoot: if_so(arrives, beyond.fold(0.0, f64::max)),
         steady_error: (mean - reference).abs(),
         rests: most - least <= 2.0 * band,
         rms: square.sqrt(),
@@ -196,7 +185,7 @@ pub(super) fn sound_scale(sim: &Sim) -> f64 {
 /// it.
 pub(super) fn distance_steps(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Metrics) {
     let scale = sound_scale(sim);
-    let distance = |sample: &Sample| sample.range_m[2] * scale;
+    let distance = |sample: &TruthSample| sample.range_m[2] * scale;
     for (index, step) in steps(&setup.scenario.commands, setup.scenario.duration_s)
         .iter()
         .enumerate()
@@ -261,10 +250,10 @@ pub(super) fn speed_steps(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
 mod tests {
     use super::*;
 
-    fn samples(signal: impl Fn(f64) -> f64) -> Vec<Sample> {
+    fn samples(signal: impl Fn(f64) -> f64) -> Vec<TruthSample> {
         (1..=400)
             .map(|n| f64::from(n) * 0.01)
-            .map(|t_s| Sample {
+            .map(|t_s| TruthSample {
                 t_s,
                 x_m: 0.0,
                 y_m: 0.0,

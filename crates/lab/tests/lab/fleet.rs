@@ -6,7 +6,9 @@ use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::{Kind, Library, Overrides};
 use rumbo_lab::SimulatedRobot;
 use rumbo_log::{Choice, Level, Manifest};
-use rumbo_session::{Driver, Event, Extras, Host, LinkNews, Order, SLICE_US, Target, TargetError};
+use rumbo_session::{
+    Event, Extras, Host, LinkNews, Order, SLICE_US, SessionDriver, Target, TargetError,
+};
 use rumbo_wire::Command;
 
 const THREE: &str = "title = \"t\"\nrobot = \"memoria\"\nrig = \"final\"\nworld = \"open\"\nmode = \"wheel_speed\"\nduration_s = 10\n\
@@ -44,14 +46,14 @@ impl Host for Quiet {
 
 /// The sessions; the first one has the time.
 struct Bench {
-    drivers: Vec<Driver<Quiet, SimulatedRobot>>,
+    drivers: Vec<SessionDriver<Quiet, SimulatedRobot>>,
     wall_us: u64,
 }
 
 impl Bench {
     fn new() -> Self {
         let drivers = robots().into_iter().map(|robot| {
-            let mut driver = Driver::new(Box::new(robot), Quiet, 1.0, Extras::default());
+            let mut driver = SessionDriver::new(Box::new(robot), Quiet, 1.0, Extras::default());
             driver.begin(0);
             driver
         });

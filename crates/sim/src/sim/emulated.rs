@@ -10,7 +10,7 @@ use crate::bus::Motion;
 use crate::mega::{Action, Faults, Mega, Pause};
 use rumbo_control::{Duty, SonarId};
 use rumbo_plant::drivetrain::{Bridge, Side};
-use rumbo_plant::plant::Truth;
+use rumbo_plant::plant::GroundTruth;
 
 /// How far the plant looks ahead, and the grid it keeps to [us].
 const AHEAD_US: u64 = 1_000;
@@ -31,7 +31,7 @@ impl Sim {
                 mega.see_obstacles(self.world(), &self.pose(), self.now_us());
             }
             if !mega.firmware().bus().is_empty() {
-                let Truth {
+                let GroundTruth {
                     forward_m_s,
                     yaw_rad_s,
                     ..

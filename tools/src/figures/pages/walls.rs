@@ -62,7 +62,7 @@ pub(super) fn mode1() -> Result<Option<Made>, String> {
 }
 
 /// Distance of the middle of the front pair from the wall at x = 1.2 m.
-fn ahead_m(sample: &Sample) -> f64 {
+fn ahead_m(sample: &TruthSample) -> f64 {
     1.2 - sample.x_m - 0.13 * sample.heading_rad.cos()
 }
 
@@ -81,37 +81,39 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
         Panel::new("angle to its normal, deg", angle).exactly(-20.0, 40.0),
     ]);
     let rows = [
-        row(
+        (
             "119 -> 30 cm, within 5 %",
             "step1.settling_s",
             1.0,
             "s",
             "3.4 s",
         ),
-        row(
+        (
             "steady error",
             "step1.steady_error_m",
             100.0,
             "cm",
             "0.64 cm",
         ),
-        row(
+        (
             "angle to the wall at rest",
             "step1.angle_rad",
             DEG,
             "deg",
             "not measured",
         ),
-        row(
+        (
             "50 -> 15 cm, within 2 cm",
             "step3.within_2cm_s",
             1.0,
             "s",
             "5.5 s",
         ),
-        row("overshoot", "step3.overshoot_m", 100.0, "cm", "5.7 cm"),
-        row("contacts", "contacts", 1.0, "", "0"),
+        ("overshoot", "step3.overshoot_m", 100.0, "cm", "5.7 cm"),
+        ("contacts", "contacts", 1.0, "", "0"),
     ];
+    let rows =
+        rows.map(|(what, metric, factor, unit, report)| row(what, metric, factor, unit, report));
     Ok(Some(Made {
         figures: vec![(
             "mode2",
@@ -131,7 +133,7 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
 }
 
 /// Distance of the middle of the side pair from the wall at y = 0.65 m.
-fn beside_m(sample: &Sample) -> f64 {
+fn beside_m(sample: &TruthSample) -> f64 {
     let (sin, cos) = sample.heading_rad.sin_cos();
     0.65 - sample.y_m - 0.03 * sin - 0.075 * cos
 }

@@ -93,9 +93,8 @@ impl Mission<'_> {
             state.proof = None;
         }
         if !state.watch.suspects() {
-            if state.proof.take().is_some() {
-                state.watch.landmarks.trust();
-            }
+            let proved = state.proof.take();
+            proved.inspect(|_| state.watch.landmarks.trust());
             return Ok(None);
         }
         let Some(mut proof) = state.proof.or_else(|| begin(state, estimate)) else {
