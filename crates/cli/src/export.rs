@@ -57,15 +57,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     let figures = figures::of_one(&log, &args.signals);
     for format in formats {
         match format {
-            Format::Svg if figures.is_empty() => {
-                let none = format!("{}: holds no signals to draw", args.log.display());
-                // Nobody asked for one: the tables are what there is.
-                if !args.formats.is_empty() {
-                    let remedy = "--format csv writes what there is";
-                    return Err(Failure::Input(format!("{none}; {remedy}")));
-                }
-                output::note(&format!("{none}, so there is no figure"));
-            }
+            Format::Svg if figures.is_empty() => without_figure(args)?,
             Format::Csv => {
                 write(&path("csv"), signals(&log))?;
                 write(&path("events.csv"), events(&log))?;
@@ -78,6 +70,17 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
             }
         }
     }
+    Ok(())
+}
+
+/// Nothing is there to draw: wrong if a figure was asked for, else the tables are what there is.
+fn without_figure(args: &ExportArgs) -> Result<(), Failure> {
+    let none = format!("{}: holds no signals to draw", args.log.display());
+    if !args.formats.is_empty() {
+        let remedy = "--format csv writes what there is";
+        return Err(Failure::Input(format!("{none}; {remedy}")));
+    }
+    output::note(&format!("{none}, so there is no figure"));
     Ok(())
 }
 

@@ -194,14 +194,7 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
         }
         Topic::Logs => logs::entries()?,
         Topic::Sketches => rumbo_sketch::examples().into_iter().map(titled).collect(),
-        Topic::Plant => {
-            let limits = Params::limits();
-            let entry = |limit: &Limit| {
-                json!({ "name": limit.key, "min": limit.min, "max": limit.max,
-                    "default": limit.nominal, "unit": limit.unit, "help": limit.help })
-            };
-            limits.iter().map(entry).collect()
-        }
+        Topic::Plant => Params::limits().iter().map(plant_entry).collect(),
     })
 }
 
@@ -214,6 +207,11 @@ fn files<T>(
     let names = library.list(kind);
     let entries = names.iter().map(|name| entry(name));
     entries.collect::<Result<_, _>>().map_err(Failure::input)
+}
+
+fn plant_entry(limit: &Limit) -> Value {
+    json!({ "name": limit.key, "min": limit.min, "max": limit.max,
+            "default": limit.nominal, "unit": limit.unit, "help": limit.help })
 }
 
 fn parameter_entry(id: ParamId) -> Value {

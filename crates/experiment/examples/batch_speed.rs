@@ -15,6 +15,7 @@ use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Event, Mount, Mounts, Plant, State};
 use rumbo_plant::sonar::SonarId;
+use rumbo_plant::world::World;
 use rumbo_wire::Command;
 use std::error::Error;
 use std::fmt::Write;
@@ -131,8 +132,7 @@ struct Eyes {
     range_m: [f64; 3],
 }
 
-/// Steps a second of the plant, each robot with one ping a tick and wheels that turn it away from what is near.
-fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
+fn robots(world: &World) -> Vec<(Plant, State, Eyes)> {
     let mount = |angle_rad| {
         Some(Mount {
             x_m: 0.1,
@@ -146,8 +146,7 @@ fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
         right: mount(-0.785),
         front: mount(0.0),
     };
-    let world = arena.world.world()?;
-    let mut robots: Vec<(Plant, State, Eyes)> = (0..ROBOTS as u64)
+    (0..ROBOTS as u64)
         .map(|seed| {
             let plant = Plant::new(rumbo_plant::plant::PlantSetup {
                 params: Params::default().draw(seed, 0),
@@ -168,7 +167,12 @@ fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
             };
             (plant, state, eyes)
         })
-        .collect();
+        .collect()
+}
+
+/// Steps a second of the plant, each robot with one ping a tick and wheels that turn it away from what is near.
+fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
+    let mut robots = robots(&arena.world.world()?);
     let ticks = seconds * 100;
     let start = Start::now();
     for (plant, state, eyes) in &mut robots {

@@ -21,7 +21,6 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
     let Setup {
         scenario,
         robot,
-        rig,
         world,
         ..
     } = setup;
@@ -29,22 +28,6 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
     let standing = world
         .world()
         .map_err(|error| FileError::Setting(format!("world {}: {error}", world.name)))?;
-    let sonar = |id: SonarId, mount: Mount| SonarMount {
-        id: id as u8,
-        at: MapPose {
-            x_m: mount.x_m,
-            y_m: mount.y_m,
-            heading_rad: mount.angle_rad,
-        },
-        half_angle_rad: plant.sonar.beam_half_angle_rad,
-        reach_m: plant.sonar.reach_m,
-        on_servo: mount.on_servo,
-    };
-    let mounts = [
-        (SonarId::Left, rig.left),
-        (SonarId::Right, rig.right),
-        (SonarId::Front, rig.front),
-    ];
     let footprint = Footprint::new(&plant.body, &plant.wheels);
     Ok(Scene {
         experiments: experiments(library, scenario, &choice),
@@ -71,10 +54,7 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
         footprint_m: footprint.corners(&Pose::default()).to_vec(),
         base_m: plant.body.base_m,
         wheel_radius_m: (plant.wheels.left.radius_m + plant.wheels.right.radius_m) / 2.0,
-        sonars: mounts
-            .into_iter()
-            .filter_map(|(id, mount)| Some(sonar(id, mount?)))
-            .collect(),
+        sonars: sonars(setup),
         of_ghost: false,
         choice,
     })
@@ -96,6 +76,30 @@ pub fn others(fleet: &[Setup], number: usize) -> Vec<Other> {
             footprint_m: outline(setup),
         })
         .collect()
+}
+
+fn sonars(setup: &Setup) -> Vec<SonarMount> {
+    let (rig, sonar) = (&setup.rig, &setup.robot.plant.sonar);
+    let mounts = [
+        (SonarId::Left, rig.left),
+        (SonarId::Right, rig.right),
+        (SonarId::Front, rig.front),
+    ];
+    let mount = |(id, mount): (SonarId, Option<Mount>)| {
+        let mount = mount?;
+        Some(SonarMount {
+            id: id as u8,
+            at: MapPose {
+                x_m: mount.x_m,
+                y_m: mount.y_m,
+                heading_rad: mount.angle_rad,
+            },
+            half_angle_rad: sonar.beam_half_angle_rad,
+            reach_m: sonar.reach_m,
+            on_servo: mount.on_servo,
+        })
+    };
+    mounts.into_iter().filter_map(mount).collect()
 }
 
 fn obstacle(corners: impl Iterator<Item = [f64; 2]>) -> SceneObstacle {

@@ -75,15 +75,8 @@ pub(super) fn find(folder: &Path) -> Result<Class, Failure> {
     let own = folder.canonicalize().map_err(wrong)?;
     let name = stem(&own);
     if !is_archive(&own) && (about.is_file() || own.join(format!("{name}.ino")).is_file()) {
-        let is_late = false;
-        let given = given(&own, false);
-        let found = Found {
-            name,
-            is_late,
-            given,
-        };
         return Ok(Class {
-            found: vec![found],
+            found: vec![Found { name, ..only(&own) }],
             others: Vec::new(),
             _unpacked: None,
         });

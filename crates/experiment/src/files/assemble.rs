@@ -82,14 +82,10 @@ impl Library {
             firmware::beside(firmware, policy.as_ref()).map(Arc::new)
         };
         let firmware = overrides.firmware.as_ref().map(load).transpose()?;
-        let parts = firmware
-            .as_ref()
-            .map(|firmware| firmware.parts())
-            .unwrap_or_default();
-        has_its_parts(&whose, &scenario.texts, parts)?;
-        has_its_parts(&whose, &overrides.texts, parts)?;
         let mut texts = [&scenario.texts[..], &overrides.texts].concat();
         texts.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
+        let parts = firmware.as_ref().map(|firmware| firmware.parts());
+        has_its_parts(&whose, &texts, parts.unwrap_or_default())?;
         Ok(Setup {
             scenario,
             robot,

@@ -66,6 +66,16 @@ fn ahead_m(sample: &TruthSample) -> f64 {
     1.2 - sample.x_m - 0.13 * sample.heading_rad.cos()
 }
 
+fn mode2_plot(baseline: &Runs, ours: &Runs) -> Plot {
+    let mut distance = signal(baseline, ours, |sample, _| 100.0 * ahead_m(sample));
+    distance.insert(0, reference(&ours.setup, 100.0));
+    let angle = signal(baseline, ours, |sample, _| DEG * sample.heading_rad);
+    Plot::over_time(vec![
+        Panel::new("distance to the wall, cm", distance).exactly(0.0, 125.0),
+        Panel::new("angle to its normal, deg", angle).exactly(-20.0, 40.0),
+    ])
+}
+
 pub(super) fn mode2() -> Result<Option<Made>, String> {
     let (Some([baseline, ours]), Some(turning)) = (
         both("mode2", runs::BASELINE)?,
@@ -73,52 +83,43 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
     ) else {
         return Ok(None);
     };
-    let mut distance = signal(&baseline, &ours, |sample, _| 100.0 * ahead_m(sample));
-    distance.insert(0, reference(&ours.setup, 100.0));
-    let angle = signal(&baseline, &ours, |sample, _| DEG * sample.heading_rad);
-    let plot = Plot::over_time(vec![
-        Panel::new("distance to the wall, cm", distance).exactly(0.0, 125.0),
-        Panel::new("angle to its normal, deg", angle).exactly(-20.0, 40.0),
-    ]);
     let rows = [
-        (
+        row(
             "119 -> 30 cm, within 5 %",
             "step1.settling_s",
             1.0,
             "s",
             "3.4 s",
         ),
-        (
+        row(
             "steady error",
             "step1.steady_error_m",
             100.0,
             "cm",
             "0.64 cm",
         ),
-        (
+        row(
             "angle to the wall at rest",
             "step1.angle_rad",
             DEG,
             "deg",
             "not measured",
         ),
-        (
+        row(
             "50 -> 15 cm, within 2 cm",
             "step3.within_2cm_s",
             1.0,
             "s",
             "5.5 s",
         ),
-        ("overshoot", "step3.overshoot_m", 100.0, "cm", "5.7 cm"),
-        ("contacts", "contacts", 1.0, "", "0"),
+        row("overshoot", "step3.overshoot_m", 100.0, "cm", "5.7 cm"),
+        row("contacts", "contacts", 1.0, "", "0"),
     ];
-    let rows =
-        rows.map(|(what, metric, factor, unit, report)| row(what, metric, factor, unit, report));
     Ok(Some(Made {
         figures: vec![(
             "mode2",
             "Distance and angle to the wall over time: ours stands square at every reference",
-            figure("Mode 2", &plot),
+            figure("Mode 2", &mode2_plot(&baseline, &ours)),
         )],
         words: words(
             &[

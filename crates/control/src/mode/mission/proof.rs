@@ -89,8 +89,7 @@ impl Mission<'_> {
         }
         if waited {
             // What it was going around, or what should answer, may have gone.
-            state.detour = None;
-            state.proof = None;
+            (state.detour, state.proof) = (None, None);
         }
         if !state.watch.suspects() {
             let proved = state.proof.take();
