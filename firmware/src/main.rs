@@ -19,7 +19,7 @@ use hal::{
     adc, clock, eeprom, encoder::Encoders, link, network, outputs, power, record, sonar::Listener,
 };
 use rumbo_control::{Inputs, TICK_US};
-use rumbo_robot::{Cell, RobotConfig, Robot, START_AT};
+use rumbo_robot::{Cell, Robot, RobotConfig, START_AT};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {

@@ -1,7 +1,7 @@
 //! What a page of the lab begins with.
 
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup};
-use rumbo_lab::{EDITED, SimulatedRobot, robots};
+use rumbo_lab::{EDITED, SimulatedRobot};
 use rumbo_log::Choice;
 use rumbo_session::Target;
 use serde::Deserialize;
@@ -110,7 +110,7 @@ impl Start {
             rig: self.rig.clone(),
             seed: self.seed,
         };
-        let robots = robots(library, overrides, &choice, self.robots)?.into_iter();
+        let robots = SimulatedRobot::all(library, overrides, &choice, self.robots)?.into_iter();
         let named = |robot: SimulatedRobot| -> Named { (robot.name(), Box::new(robot)) };
         Ok(robots.map(named).collect())
     }

@@ -117,7 +117,7 @@ fn several(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Vec<SimulatedR
     let library = library.holding(Kind::Scenario, &scenario.name, &scenario.text);
     let choice = choice(args, &scenario.name);
     let robots = args.robots.into();
-    Ok(rumbo_lab::robots(
+    Ok(SimulatedRobot::all(
         library,
         overrides(args),
         &choice,

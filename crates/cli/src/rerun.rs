@@ -3,6 +3,8 @@
 //! A headless run is simply repeated. A session of the lab is driven by the recorded bytes to the robot, each at the
 //! simulated instant at which it was sent. The output of the USARTs of an emulated Mega is compared as well.
 
+mod recorder;
+
 use crate::args::RerunArgs;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
@@ -10,7 +12,7 @@ use crate::logs;
 use crate::manifest;
 use crate::output;
 use crate::run_log;
-use rumbo_control::params::SCHEMA;
+use recorder::Recorder;
 use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_experiment::{MODEL, calibration_run};
@@ -25,74 +27,6 @@ use std::path::Path;
 
 /// Longest line of text from a robot that is put together.
 const LINE: usize = 160;
-
-/// The program that recorded, where it was not this one.
-struct Recorder {
-    /// Which it was and which this is; empty where they are the same.
-    version: String,
-    /// Which model of robot and world it had, where that was another one: then other metrics are expected.
-    model: Option<String>,
-    /// What the robot's table of parameters was and is now, where they differ: then nothing else can be the same.
-    table: Option<String>,
-    /// The protocol that the robot spoke, where it was another one: then it said the same in other bytes, at other
-    /// instants.
-    protocol: Option<u8>,
-}
-
-impl Recorder {
-    fn of(log: &Log, recorded: &Manifest) -> Self {
-        let here = env!("CARGO_PKG_VERSION");
-        let version = match recorded.version == here {
-            true => String::new(),
-            false => format!("; recorded by version {}, this is {here}", recorded.version),
-        };
-        let model = (recorded.model != Some(MODEL)).then(|| {
-            let number = recorded.model.map_or_else(
-                || "before models had numbers".to_owned(),
-                |number| format!("with model {number}"),
-            );
-            format!("recorded {number}, this is model {MODEL}: robot or world changed between them")
-        });
-        let hello = log.hello();
-        let protocol = hello
-            .map(|hello| hello.protocol)
-            .filter(|protocol| *protocol != PROTOCOL_VERSION);
-        let table = hello
-            .filter(|_| recorded.program == "rumbo")
-            .map(|hello| hello.schema)
-            .filter(|table| *table != SCHEMA);
-        let table = table.map(|table| {
-            format!(
-                "the robot had another table of parameters ({table:08x}, this program's is {SCHEMA:08x}); run it again with the program that \
-                 recorded it"
-            )
-        });
-        Self {
-            version,
-            model,
-            table,
-            protocol,
-        }
-    }
-}
-
-impl Recorder {
-    /// Text before a difference; empty where the model is the same.
-    fn model_words(&self) -> String {
-        self.model
-            .as_ref()
-            .map_or_else(String::new, |model| format!("{model}; "))
-    }
-
-    /// Why not all is compared; empty where it is.
-    fn protocol_words(&self) -> String {
-        self.protocol.map_or_else(String::new, |protocol| {
-            format!(
-                "; the metrics alone are compared: the robot spoke protocol {protocol}, now {PROTOCOL_VERSION}, in other bytes at other instants"
-            )
-        })
-    }
-}
 
 /// The result of the comparison.
 enum Verdict {

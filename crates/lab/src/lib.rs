@@ -27,6 +27,5 @@ pub use in_hand::{Attach, Holder};
 pub use live::Live;
 pub use program::{Made, Make, OwnProgram, Sketches, Workshop, problem};
 pub use robot::{Cable, SimulatedRobot, type_to};
-pub use robots::robots;
 pub use scene::{others, scene};
 pub use world::{EDITED, edited_world};

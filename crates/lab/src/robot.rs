@@ -10,7 +10,7 @@ use crate::in_hand::InHand;
 use crate::play::Experiment;
 use crate::prepare::Prepared;
 use crate::program::{Held, OwnProgram, Sketches};
-use crate::robots::{Robots, Shared};
+use crate::robots::{Robots, Shared, with_copies};
 use rumbo_experiment::files::{FileError, Library, Overrides};
 use rumbo_log::{Choice, Level};
 use rumbo_session::{LinkNews, Standing};
@@ -78,13 +78,26 @@ impl SimulatedRobot {
         Ok(Self::one_of(&Shared::new(robots), 0, library, overrides))
     }
 
-    /// The robot of this number, with the files of all.
-    pub(crate) fn one_of(
-        robots: &Shared,
-        number: usize,
+    /// The robots of a scenario at their start, in order; or as many copies of its robot as asked for.
+    ///
+    /// # Errors
+    /// The problems of the files that overrides and choice name; copies of robots that are several already.
+    pub fn all(
         library: Library,
         overrides: Overrides,
-    ) -> Self {
+        choice: &Choice,
+        robots: usize,
+    ) -> Result<Vec<Self>, FileError> {
+        let library = with_copies(library, &overrides, choice, robots)?;
+        let begun = Robots::begin(&library, &overrides, None, choice, &[], usize::MAX)?;
+        let count = begun.all.len();
+        let shared = Shared::new(begun);
+        let robot = |number| Self::one_of(&shared, number, library.clone(), overrides.clone());
+        Ok((0..count).map(robot).collect())
+    }
+
+    /// The robot of this number, with the files of all.
+    fn one_of(robots: &Shared, number: usize, library: Library, overrides: Overrides) -> Self {
         let robot = Self {
             robots: robots.clone(),
             number,

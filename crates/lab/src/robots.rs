@@ -5,7 +5,6 @@
 use crate::hand::{self, HAND};
 use crate::prepare::{Prepared, chosen, prepare};
 use crate::program::Held;
-use crate::robot::SimulatedRobot;
 use crate::sight;
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, fleet_around};
 use rumbo_log::{Choice, Other, ReadingSource, Scene};
@@ -14,27 +13,8 @@ use rumbo_sim::Sim;
 use rumbo_sim::fleet::Fleet;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The robots of a scenario at their start, in order; or as many copies of its robot as asked for.
-///
-/// # Errors
-/// The problems of the files that overrides and choice name; copies of robots that are several already.
-pub fn robots(
-    library: Library,
-    overrides: Overrides,
-    choice: &Choice,
-    robots: usize,
-) -> Result<Vec<SimulatedRobot>, FileError> {
-    let library = with_copies(library, &overrides, choice, robots)?;
-    let begun = Robots::begin(&library, &overrides, None, choice, &[], usize::MAX)?;
-    let count = begun.all.len();
-    let shared = Shared::new(begun);
-    let robot =
-        |number| SimulatedRobot::one_of(&shared, number, library.clone(), overrides.clone());
-    Ok((0..count).map(robot).collect())
-}
-
 /// The library with the scenario of the choice as one of so many robots, if they are several.
-fn with_copies(
+pub(crate) fn with_copies(
     library: Library,
     overrides: &Overrides,
     choice: &Choice,
@@ -57,7 +37,7 @@ fn with_copies(
 
 /// All of them, at least one.
 pub(crate) struct Robots {
-    pub(crate) fleet: Fleet,
+    fleet: Fleet,
     pub(crate) all: Vec<Prepared>,
     /// Counts the starts.
     pub(crate) start: u32,

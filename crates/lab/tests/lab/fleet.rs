@@ -27,7 +27,7 @@ fn choice() -> Choice {
 
 fn robots() -> Vec<SimulatedRobot> {
     let library = Library::new().holding(Kind::Scenario, "three", THREE);
-    rumbo_lab::robots(library, Overrides::default(), &choice(), 1).unwrap()
+    SimulatedRobot::all(library, Overrides::default(), &choice(), 1).unwrap()
 }
 
 struct Quiet;
