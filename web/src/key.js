@@ -60,10 +60,11 @@ export async function askForKey() {
  * The answer of the station to a request with the page's key.
  * @param {string} path
  * @param {'GET' | 'POST' | 'DELETE'} [method]
+ * @param {string} [body]
  * @returns {Promise<string>}
  */
-export async function ask(path, method = 'GET') {
-  const answer = await fetch(path, { method, headers: { Authorization: `Bearer ${shown()}` } });
+export async function ask(path, method = 'GET', body) {
+  const answer = await fetch(path, { method, body, headers: { Authorization: `Bearer ${shown()}` } });
   const text = await answer.text();
   if (!answer.ok) throw new Error(text);
   return text;

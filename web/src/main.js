@@ -222,6 +222,14 @@ const calibration = new CalibrationDialog(send);
 new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
 const report = new ReportDialog();
 const tune = new TuneDialog(send);
+/** @type {import('./wire_dialog.js').WireDialog | null} */
+let wired = null;
+// A site has nothing that compiles.
+element('wire', HTMLButtonElement).hidden = isSite;
+element('wire', HTMLButtonElement).addEventListener('click', async () => {
+  const { WireDialog } = await import('./wire_dialog.js');
+  (wired ??= new WireDialog(send)).open();
+});
 const robotPort = new RobotPort(askLab);
 element('calibrate', HTMLButtonElement).addEventListener('click', () => calibration.open());
 makeEnlargeable();
@@ -325,6 +333,7 @@ function receive(message) {
       tour.show(state);
       program.show(state);
       code.show(state, message.run);
+      wired?.show(state, message.orders);
       parts.show(state.program?.parts ?? [], (signal) => store.readings.truth.columns.get(signal)?.at(-1) ?? null);
       profile.show(state);
       document.body.classList.toggle('own', isOwn(state));

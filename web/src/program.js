@@ -21,7 +21,7 @@ export function phaseWords({ program }) {
 const LARGEST = 1_000_000;
 
 /** A file's content as the station takes it. @param {File} file @returns {Promise<string>} */
-function base64(file) {
+export function base64(file) {
   return new Promise((done, failed) => {
     const reader = new FileReader();
     reader.addEventListener('load', () => done(String(reader.result).replace(/^.*?,/, '')));

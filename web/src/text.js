@@ -13,9 +13,10 @@ import { PARAMETERS } from './spanish/parameters.js';
 import { PROGRAM } from './spanish/program.js';
 import { ROBOT, UNDERSCORED } from './spanish/robot.js';
 import { SCENARIOS } from './spanish/scenarios.js';
+import { WIRING } from './spanish/wiring.js';
 
 /** Every text with its Spanish. @type {Record<string, string>} */
-export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...PROGRAM, ...SCENARIOS, ...GUIDE, ...FILES, ...CODE };
+export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...PROGRAM, ...SCENARIOS, ...GUIDE, ...FILES, ...CODE, ...WIRING };
 
 /** The languages, by the code that browsers have for them. */
 export const LANGUAGES = /** @type {const} */ ({ en: 'English', es: 'Español' });

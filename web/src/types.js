@@ -159,8 +159,7 @@
  *   | {type: 'waypoint', x_m: number, y_m: number}
  *   | {type: 'rig', rig: string}
  *   | {type: 'set_param', id: number, value: number}
- *   | {type: 'program', name: string, data: string}
- *   | {type: 'program', name: string, files: SketchFile[], debug: boolean}
+ *   | {type: 'program', name: string, data?: string, files?: SketchFile[], debug?: boolean, robot?: string}
  *   | {type: 'sketch', ticket: number, example?: string}
  *   | {type: 'debug', request: object}
  *   | {type: 'profile', on: boolean}

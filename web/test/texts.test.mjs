@@ -11,8 +11,9 @@ import { PARAMETERS } from '../src/spanish/parameters.js';
 import { PROGRAM } from '../src/spanish/program.js';
 import { ROBOT } from '../src/spanish/robot.js';
 import { SCENARIOS } from '../src/spanish/scenarios.js';
+import { WIRING } from '../src/spanish/wiring.js';
 
-const TABLES = [PAGE, ROBOT, PROGRAM, PARAMETERS, SCENARIOS, GUIDE, FILES, CODE];
+const TABLES = [PAGE, ROBOT, PROGRAM, PARAMETERS, SCENARIOS, GUIDE, FILES, CODE, WIRING];
 /** @type {Record<string, string>} */
 const SPANISH = Object.assign({}, ...TABLES);
 

@@ -32,6 +32,7 @@ fn serve(args: &ConnectArgs) -> Result<Lab, Failure> {
         recording: logs::recording(args.session.out.as_deref()),
         echo: Some(output::aside),
         tuner: None,
+        wired: None,
     };
     let robot: Box<dyn Target> = match &args.ghost {
         Some(scenario) => Box::new(WithGhost::new(robot, scenario)?),

@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::logs;
 use crate::output;
 use crate::tune;
+use crate::wired;
 use crate::workshop::{self, Workshop};
 use rumbo_experiment::files::{Kind, Library, Overrides, ScenarioFile};
 use rumbo_lab::{OwnProgram, SimulatedRobot};
@@ -91,6 +92,7 @@ fn config(args: &LabArgs) -> LabConfig {
             args.setting.robot.as_deref(),
             &args.scenario,
         )),
+        wired: Some(wired::answer),
     }
 }
 

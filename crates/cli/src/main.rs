@@ -51,6 +51,7 @@ mod run_log;
 mod sketch;
 mod sweep;
 mod tune;
+mod wired;
 mod workshop;
 
 use args::{Cli, Command, NewKind};

@@ -87,7 +87,7 @@ pub(crate) fn compiler(board: &Board) -> Result<Compiler, SketchError> {
 
 /// A compiler for sketches of others, in the sandbox; for a debugger or to run.
 pub(crate) fn walled_compiler(board: &Board, debug: bool) -> Result<Compiler, SketchError> {
-    let toolchain = Toolchain::find()?;
+    let toolchain = Toolchain::find()?.with_libraries(libraries());
     let limits = Limits {
         time: DROPPED,
         ..Limits::default()

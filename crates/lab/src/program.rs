@@ -108,6 +108,8 @@ pub struct OwnProgram {
     pub(crate) workshop: Option<Box<dyn Workshop>>,
     /// Gives its source as it is now.
     pub(crate) source: Option<Box<dyn Fn() -> Files + Send>>,
+    /// The robot that it drives from its first image on, by the text of its file.
+    pub(crate) robot: Option<String>,
 }
 
 impl OwnProgram {
@@ -122,6 +124,7 @@ impl OwnProgram {
             watched: workshop.is_some(),
             workshop,
             source: None,
+            robot: None,
         }
     }
 

@@ -180,6 +180,7 @@ enum Message {
         files: Vec<SketchFile>,
         #[serde(default)]
         debug: bool,
+        robot: Option<String>,
     },
     Sketch {
         ticket: u32,
@@ -337,7 +338,11 @@ impl FromStr for Order {
                 data,
                 files,
                 debug,
-            } => Order::Program(GivenProgram::of(name, data, files, debug).map_err(BadOrder)?),
+                robot,
+            } => Order::Program(GivenProgram {
+                robot,
+                ..GivenProgram::of(name, data, files, debug).map_err(BadOrder)?
+            }),
             Message::Sketch { ticket, example } => Order::Sketch(ticket, example),
             Message::Debug { request } => Order::Debug(request),
             Message::Profile { on } => Order::Profile(on),

@@ -18,6 +18,8 @@ pub struct GivenProgram {
     pub files: Vec<(String, Vec<u8>)>,
     /// It begins under the debugger, at its first line.
     pub debug: bool,
+    /// The text of a robot's file: the robot that it drives from here on.
+    pub robot: Option<String>,
 }
 
 impl GivenProgram {
@@ -27,7 +29,7 @@ impl GivenProgram {
         Self {
             name: name.to_owned(),
             files: vec![(name.to_owned(), content.to_owned())],
-            debug: false,
+            ..Self::default()
         }
     }
 
@@ -58,7 +60,12 @@ impl GivenProgram {
                 ));
             }
         };
-        Ok(Self { name, files, debug })
+        Ok(Self {
+            name,
+            files,
+            debug,
+            robot: None,
+        })
     }
 }
 

@@ -34,6 +34,6 @@ pub use error::{ServeError, SessionError};
 pub use folder::{Folder, serve_folder};
 pub use recorder::{RecordingSetting, now_utc, today_utc};
 pub use serve::{
-    Addresses, DEFAULT_PORT, Lab, LabConfig, Named, ServeAt, serve, serve_all, serve_log,
+    Addresses, Answer, DEFAULT_PORT, Lab, LabConfig, Named, ServeAt, serve, serve_all, serve_log,
 };
 pub use tuning::{NotTuned, Tuner};

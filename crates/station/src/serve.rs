@@ -66,7 +66,12 @@ pub struct LabConfig {
     pub echo: Option<Print>,
     /// What searches for parameters, for the page in control.
     pub tuner: Option<Box<dyn Tuner>>,
+    /// What answers a page of this computer that wires a robot.
+    pub wired: Option<Answer>,
 }
+
+/// Answers what a page asks.
+pub type Answer = fn(&serde_json::Value) -> serde_json::Value;
 
 impl Default for LabConfig {
     fn default() -> Self {
@@ -76,6 +81,7 @@ impl Default for LabConfig {
             recording: None,
             echo: None,
             tuner: None,
+            wired: None,
         }
     }
 }
@@ -186,12 +192,14 @@ pub fn serve_all(config: LabConfig, robots: Vec<Named>, extras: Extras) -> Resul
         recording,
         echo,
         tuner,
+        wired,
     } = config;
     let recordings =
         recording.map(|recording| Arc::new(Recordings::new(recording.folder, serve_replay)));
     let beside = Beside {
         recordings: recordings.clone(),
         tuning: tuner.map(|tuner| Arc::new(Tuning::new(tuner))),
+        wired,
     };
     let (names, targets): (Vec<_>, Vec<_>) = robots.into_iter().unzip();
     let speakers = names.clone();
@@ -246,6 +254,7 @@ type Chair = (Arc<Board>, Orders);
 struct Beside {
     recordings: Option<Arc<Recordings>>,
     tuning: Option<Arc<Tuning>>,
+    wired: Option<Answer>,
 }
 
 /// Serves boards that `session` writes, one for each of these robots, in a thread of its own, until there are no more
@@ -299,6 +308,7 @@ fn start_on(
             local: at.ip().is_loopback(),
             recordings: beside.recordings.clone(),
             tuning: beside.tuning.clone(),
+            wired: beside.wired,
         });
     }
     let session_over = opens.clone();

@@ -11,6 +11,7 @@ use crate::guard::Role;
 use crate::lease::{Lease, Place};
 use crate::order_sender::{OrderSender, TOO_MANY};
 use crate::recordings::Recordings;
+use crate::serve::Answer;
 use crate::tuning::Tuning;
 use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
@@ -52,6 +53,7 @@ pub(crate) struct Hub {
     pub(crate) local: bool,
     pub(crate) recordings: Option<Arc<Recordings>>,
     pub(crate) tuning: Option<Arc<Tuning>>,
+    pub(crate) wired: Option<Answer>,
 }
 
 impl Hub {
@@ -286,6 +288,7 @@ mod tests {
             local: true,
             recordings: None,
             tuning: None,
+            wired: None,
         }
     }
 

@@ -7,7 +7,7 @@ use crate::assets;
 use crate::guard::{Denied, Guard, Role};
 use crate::socket::{self, Hub};
 use axum::Router;
-use axum::body::Body;
+use axum::body::{Body, Bytes};
 use axum::extract::{Extension, FromRef, Request, State, WebSocketUpgrade};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, header};
 use axum::middleware::{self, Next};
@@ -77,6 +77,7 @@ pub(crate) fn router(guard: Arc<Guard>, hubs: Vec<Hub>) -> Router {
         )
         .route("/recordings/{name}/replay", post(recordings::replay))
         .route("/explain", get(explain))
+        .route("/robot", post(wired))
         .route("/tune", get(tuning::offers))
         .route("/tune/search", get(tuning::search))
         .fallback(file)
@@ -158,6 +159,26 @@ async fn explain(
     // In a thread of its own: STOP does not wait for it.
     let causes = tokio::task::spawn_blocking(move || board.explain(from_s, to_s)).await;
     let json = serde_json::to_string(&causes.unwrap_or_default()).unwrap_or_default();
+    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+}
+
+/// Answers a page of this computer that wires a robot: in a thread of its own, since it reads files.
+async fn wired(
+    State(hub): State<Hub>,
+    Extension(guard): Extension<Arc<Guard>>,
+    headers: HeaderMap,
+    request: Bytes,
+) -> Result<Response, Denied> {
+    guard.role_of(bearer(&headers))?;
+    let Some(wired) = hub.wired.filter(|_| hub.local) else {
+        return Ok((StatusCode::NOT_FOUND, "no robot is wired here").into_response());
+    };
+    let request = match serde_json::from_slice(&request) {
+        Ok(request) => request,
+        Err(error) => return Ok((StatusCode::BAD_REQUEST, error.to_string()).into_response()),
+    };
+    let answer = tokio::task::spawn_blocking(move || wired(&request)).await;
+    let json = answer.unwrap_or_default().to_string();
     Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
 }
 

@@ -17,7 +17,7 @@ pub(crate) use runs::{
 };
 
 pub(crate) use studies::{SweepArgs, TuneArgs};
-pub(crate) use values::{driver_named, driver_names};
+pub(crate) use values::{driver_named, driver_names, drivers, pin};
 
 use crate::failure::Failure;
 use clap::error::{ContextKind, ContextValue};

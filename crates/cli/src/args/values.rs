@@ -15,14 +15,19 @@ pub(super) fn board(text: &str) -> Result<&'static Board, String> {
     Board::named(text).ok_or_else(|| format!("no such board; there are {}", known()))
 }
 
-/// The drivers that a new robot may have.
-pub(crate) fn driver_names() -> String {
-    let names = DRIVERS.iter().flat_map(|driver| {
+/// The drivers that a new robot may have, by name, and whether jumpers hold the enables.
+pub(crate) fn drivers() -> impl Iterator<Item = (String, &'static Driver, bool)> {
+    DRIVERS.into_iter().flat_map(|driver| {
         let jumpers = driver.has_enable && driver.source.is_none();
-        let jumpers = jumpers.then(|| format!("{}{JUMPERS}", driver.name));
-        std::iter::once(driver.name.to_owned()).chain(jumpers)
-    });
-    names.collect::<Vec<_>>().join(", ")
+        let jumpers = jumpers.then(|| (format!("{}{JUMPERS}", driver.name), driver, true));
+        std::iter::once((driver.name.to_owned(), driver, false)).chain(jumpers)
+    })
+}
+
+/// Their names, for people.
+pub(crate) fn driver_names() -> String {
+    let names: Vec<String> = drivers().map(|(name, ..)| name).collect();
+    names.join(", ")
 }
 
 /// A driver by its name, and whether jumpers hold its enables.
@@ -38,7 +43,7 @@ pub(crate) fn driver_named(text: &str) -> Result<(&'static Driver, bool), String
 }
 
 /// A signal and its pin: `left_forward=7`.
-pub(super) fn pin(text: &str) -> Result<(String, String), String> {
+pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
     let (signal, pin) = text
         .split_once('=')
         .ok_or("write it as left_forward=7,left_backward=8")?;

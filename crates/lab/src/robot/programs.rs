@@ -6,10 +6,10 @@ use crate::prepare::set_up;
 use crate::program::{Held, Made, OwnProgram, problem, shown};
 use rumbo_emulator::devices::CLOCK_HZ;
 use rumbo_emulator::observe::profile::Profile;
-use rumbo_experiment::files::FileError;
+use rumbo_experiment::files::{FileError, Kind, RobotFile};
 use rumbo_log::{
-    Complaint, FunctionShare, InterruptShare, Level, PartState, ProgramPhase, ProgramProfile,
-    ProgramState,
+    Choice, Complaint, FunctionShare, InterruptShare, Level, PartState, ProgramPhase,
+    ProgramProfile, ProgramState,
 };
 use rumbo_session::{GivenProgram, LinkNews, ShownSketch, TargetError};
 use rumbo_sim::Sim;
@@ -20,6 +20,17 @@ use std::path::{Path, PathBuf};
 
 /// Most functions that the page lists.
 const FUNCTIONS: usize = 30;
+
+/// The robot that a page has wired, among the robots.
+const WIRED: &str = "wired";
+/// The scenario in which it starts.
+const FREE: &str = "free";
+
+/// What the text of a robot's file says.
+fn file_of(text: &str) -> Result<RobotFile, TargetError> {
+    RobotFile::parse(WIRED, "robot.toml", text)
+        .map_err(|error| TargetError::Setup(error.to_string()))
+}
 
 /// A profile for the page.
 fn shares(profile: &Profile) -> ProgramProfile {
@@ -71,29 +82,35 @@ fn device_state(device: &BusDevice) -> PartState {
 }
 
 impl SimulatedRobot {
-    /// For the page.
+    /// For the page; there is no chip yet while its first program is made.
     pub(crate) fn program_state(&self) -> Option<ProgramState> {
         let robots = self.robots.lock();
         let [only] = &robots.all[..] else {
             return None;
         };
-        let (mega, program) = (only.sim.mega()?, self.program.as_ref());
-        Some(ProgramState {
-            name: match program {
-                Some(program) => program.name.clone(),
-                None => mega.firmware().name().to_owned(),
+        let state = match &self.program {
+            Some(program) => ProgramState {
+                name: program.name.clone(),
+                watched: program.watched,
+                phase: program.phase,
+                complaints: program.complaints.clone(),
+                ..ProgramState::default()
             },
+            None => ProgramState {
+                name: only.sim.mega()?.firmware().name().to_owned(),
+                ..ProgramState::default()
+            },
+        };
+        let Some(mega) = only.sim.mega() else {
+            return Some(state);
+        };
+        let devices = mega.firmware().bus().iter().map(device_state);
+        Some(ProgramState {
             link_usart: mega.firmware().link_usart(),
-            parts: mega
-                .parts()
-                .map(part_state)
-                .chain(mega.firmware().bus().iter().map(device_state))
-                .collect(),
-            watched: program.is_some_and(|program| program.watched),
-            phase: program.map(|program| program.phase).unwrap_or_default(),
-            complaints: program.map_or_else(Vec::new, |program| program.complaints.clone()),
+            parts: mega.parts().map(part_state).chain(devices).collect(),
             profile: mega.chip().observers().profiled().map(shares),
             held: self.in_hand.as_ref().map(InHand::state),
+            ..state
         })
     }
 
@@ -145,9 +162,15 @@ impl SimulatedRobot {
         if program.debug && self.debugging.is_some() {
             return Err(TargetError::Debugged);
         }
-        let workshop = (sketches.make)(self.board()?, program.clone())?;
+        let board = match &program.robot {
+            Some(text) => file_of(text)?.board,
+            None => self.board()?,
+        };
+        let workshop = (sketches.make)(board, program.clone())?;
         let own = OwnProgram {
             watched: false,
+            phase: ProgramPhase::Compiling,
+            robot: program.robot.clone(),
             ..OwnProgram::new(&program.name, Some(workshop))
         };
         self.program = Some(match is_sketch {
@@ -155,6 +178,20 @@ impl SimulatedRobot {
             false => own,
         });
         Ok(())
+    }
+
+    /// Takes another robot, by the text of its file, for the next start: in the scenario that commands nothing.
+    fn with_robot(&mut self, text: &str) -> Choice {
+        self.library = self.library.clone().holding(Kind::Robot, WIRED, text);
+        self.overrides.robot = Some(WIRED.into());
+        self.overrides.wiring = None;
+        let before = self.choice();
+        Choice {
+            scenario: FREE.into(),
+            world: before.world.filter(|_| before.scenario == FREE),
+            rig: None,
+            seed: before.seed,
+        }
     }
 
     /// The board that a program is for.
@@ -211,8 +248,17 @@ impl SimulatedRobot {
 
     fn start_program(&mut self, image: PathBuf, attach: Option<Attach>) {
         let shown = image.display().to_string();
-        let before = self.overrides.firmware.replace(image);
-        match self.start_again(&self.choice()) {
+        let before = (self.library.clone(), self.overrides.clone());
+        self.overrides.firmware = Some(image);
+        let robot = self
+            .program
+            .as_mut()
+            .and_then(|program| program.robot.take());
+        let choice = match robot {
+            Some(text) => self.with_robot(&text),
+            None => self.choice(),
+        };
+        match self.start_again(&choice) {
             Ok(()) => {
                 self.enter(ProgramPhase::Running, Vec::new());
                 self.in_hand =
@@ -220,7 +266,7 @@ impl SimulatedRobot {
                 self.news.push_back(LinkNews::Renewed);
             }
             Err(error) => {
-                self.overrides.firmware = before;
+                (self.library, self.overrides) = before;
                 // By its name: which file that is, and in whose folder, no page says.
                 let name = self.program.as_ref().map_or("", |program| &program.name);
                 let text = error.to_string().replace(&shown, name);

@@ -2,9 +2,10 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests too")]
 
 use rumbo_experiment::files::Overrides;
-use rumbo_lab::{Made, OwnProgram, SimulatedRobot, Workshop};
+use rumbo_lab::{Made, OwnProgram, SimulatedRobot, Sketches, Workshop};
 use rumbo_log::{Choice, ProgramPhase};
 use rumbo_session::{GivenProgram, LinkNews, Target, TargetError};
+use rumbo_sim::boards::Board;
 use std::path::{Path, PathBuf};
 
 /// `rjmp .-2` at address 0, as Intel HEX: a program that does nothing.
@@ -135,4 +136,56 @@ fn a_program_that_stands_still_for_good_is_reported_once_with_the_reason() {
     // The same with interrupts on: `sei` first, and no interrupt comes.
     let enabled = b":0A000000789481E083BF8895FECF5D\n:00000001FF\n";
     assert_eq!(said_of(enabled), [""; 0]);
+}
+
+/// Compiles anything into [`IDLE`], for an Uno only; `broken.ino` into what is no image.
+fn make(board: &'static Board, program: GivenProgram) -> Result<Box<dyn Workshop>, TargetError> {
+    assert_eq!(board.name, "uno");
+    let image: &[u8] = if program.name == "broken" { b"?" } else { IDLE };
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}.hex", program.name));
+    std::fs::write(&path, image).unwrap();
+    Ok(Box::new(Wrong(Some(path))))
+}
+
+#[test]
+fn a_sketch_brings_the_robot_that_it_is_wired_for() {
+    let mut robot = robot();
+    robot.take_sketches(Sketches {
+        make,
+        examples: Vec::new,
+        example: |_| None,
+    });
+    let given = |name: &str, robot: &str| GivenProgram {
+        name: name.into(),
+        robot: Some(robot.into()),
+        ..GivenProgram::file("a.ino", b"")
+    };
+    let car = "title = \"A car\"\nboard = \"uno\"\n[wiring.own]\nleft_enable = 5\nleft_forward = 7\nleft_backward = 8\n\
+               right_enable = 6\nright_forward = 11\nright_backward = 9\n";
+    let wrong = robot.run_program(given("a", &car.replace("= 7", "= 77")));
+    let why = wrong.unwrap_err().to_string();
+    assert!(why.contains("robot.toml:5") && why.contains("77"), "{why}");
+
+    // What does not start leaves the robot that is there.
+    robot.run_program(given("broken", car)).unwrap();
+    while robot.news().is_some() {}
+    assert!(robot.chip_board().is_none());
+    assert_eq!(robot.scene().unwrap().choice.scenario, "mode1");
+
+    robot.run_program(given("a", car)).unwrap();
+    let mut news = std::iter::from_fn(|| robot.news());
+    assert!(news.any(|news| news == LinkNews::Renewed));
+    assert_eq!(robot.chip_board().map(|board| board.name), Some("uno"));
+    assert_eq!(robot.scene().unwrap().choice.scenario, "free");
+    assert_eq!(robot.manifest().files["robot"], car);
+    // It stays that one in another world, and with another program.
+    let choice = Choice {
+        world: Some("line_loop".into()),
+        ..robot.scene().unwrap().choice
+    };
+    robot.reset(&choice).unwrap();
+    robot.run_program(GivenProgram::file("b.ino", b"")).unwrap();
+    while robot.news().is_some() {}
+    assert_eq!(robot.manifest().files["robot"], car);
+    assert_eq!(robot.scene().unwrap().choice, choice);
 }

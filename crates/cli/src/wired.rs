@@ -1,0 +1,283 @@
+//! The robot that a page of the lab wires: what there is to choose from, and the file that its choices make, checked.
+
+use crate::args::{driver_named, drivers, pin};
+use rumbo_experiment::files::new_robot::{JUMPERS, NewRobot, looks_like, needed, remarks};
+use rumbo_experiment::files::{FileError, Kind, Library, RobotFile};
+use rumbo_sim::boards::{BOARDS, Board};
+use rumbo_sim::bus::DeviceKind;
+use rumbo_sim::wiring::{PartKind, Wiring};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use toml::Table;
+
+/// What a page asks: nothing yet, or what its choices make.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Request {
+    plan: Option<Plan>,
+}
+
+/// The choices of a page. Of a known robot, `like`, its file says all but where the signals are.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Plan {
+    name: String,
+    like: Option<String>,
+    board: String,
+    driver: String,
+    four_wheels: bool,
+    pins: Vec<(String, String)>,
+    parts: Vec<[String; 3]>,
+}
+
+/// Answers a page: `{"choices": …}`, or `{"toml": …, "remarks": […], "alike": …, "on": …}` of its plan, or `{"problem": …}`.
+pub(crate) fn answer(request: &Value) -> Value {
+    let library = Library::new();
+    let answer = match Request::deserialize(request) {
+        Err(error) => Err(error.to_string()),
+        Ok(Request { plan: None }) => choices(&library).map_err(|error| error.to_string()),
+        Ok(Request { plan: Some(plan) }) => made(&library, plan),
+    };
+    answer.unwrap_or_else(|problem| json!({ "problem": problem }))
+}
+
+fn choices(library: &Library) -> Result<Value, FileError> {
+    let drivers: Vec<Value> = drivers()
+        .map(|(name, driver, jumpers)| {
+            json!({
+                "name": name,
+                "title": driver.title,
+                "jumpers": jumpers,
+                "needed": needed(driver, jumpers),
+                "standby": driver.has_standby,
+                "shield": driver.shield.is_some(),
+            })
+        })
+        .collect();
+    let known = library.list(Kind::Robot).into_iter();
+    let known = known
+        .map(|name| known_robot(library, &name))
+        .collect::<Result<Vec<_>, _>>()?;
+    let parts = PartKind::ALL.map(PartKind::name).into_iter();
+    let devices = DeviceKind::ALL.into_iter().map(DeviceKind::name);
+    Ok(json!({ "choices": {
+        "boards": BOARDS.map(board),
+        "drivers": drivers,
+        "known": known.into_iter().flatten().collect::<Vec<_>>(),
+        "parts": parts.chain(devices).collect::<Vec<_>>(),
+    } }))
+}
+
+fn board(board: &Board) -> Value {
+    let pins: Vec<Value> = (0..=board.last_pin())
+        .map(|pin| {
+            json!({
+                "name": board.shown(pin),
+                "pwm": board.pwm.contains(&pin),
+                "interrupt": board.interrupts.contains(&pin),
+            })
+        })
+        .collect();
+    json!({ "name": board.name, "title": board.title, "pins": pins })
+}
+
+/// A known robot to begin with; none where it has no wiring, or several.
+fn known_robot(library: &Library, name: &str) -> Result<Option<Value>, FileError> {
+    let robot = library.robot(name)?;
+    let mut wirings = robot.wirings.values();
+    let (Some(wiring), None) = (wirings.next(), wirings.next()) else {
+        return Ok(None);
+    };
+    Ok(Some(json!({
+        "name": name,
+        "title": robot.title,
+        "board": wiring.board.name,
+        "driver": driver_of(wiring),
+        "pins": signals(wiring),
+    })))
+}
+
+fn driver_of(wiring: &Wiring) -> String {
+    let jumpers = if wiring.held.is_empty() { "" } else { JUMPERS };
+    format!("{}{jumpers}", wiring.driver.name)
+}
+
+/// Where the signals of a wiring are, those of motors on a shield too.
+fn signals(wiring: &Wiring) -> BTreeMap<String, String> {
+    let pins = wiring.pins.iter();
+    let pins = pins.map(|(signal, pin)| (signal.clone(), wiring.board.shown(*pin)));
+    let motors = ["left", "right"].into_iter().zip(wiring.motors);
+    let motors = motors.filter_map(|(side, motor)| {
+        let motor = motor?;
+        let way = if motor.reversed {
+            "backward"
+        } else {
+            "forward"
+        };
+        Some((format!("{side}_{way}"), format!("M{}", motor.number)))
+    });
+    pins.chain(motors).collect()
+}
+
+fn made(library: &Library, plan: Plan) -> Result<Value, String> {
+    let say = |error: FileError| error.to_string();
+    let (text, robot) = match &plan.like {
+        Some(like) => rewired(library, like, &plan.pins)?,
+        None => new(plan)?.checked().map_err(say)?,
+    };
+    let wiring = robot.wirings.values().next();
+    let wiring = wiring.ok_or("a robot needs pins")?;
+    let alike = looks_like(library, wiring).map_err(say)?;
+    let on: BTreeMap<String, &str> = (0..=wiring.board.last_pin())
+        .filter_map(|pin| Some((wiring.board.shown(pin), wiring.owner_of(pin)?)))
+        .collect();
+    Ok(json!({
+        "toml": text,
+        "remarks": remarks(wiring),
+        "alike": alike.map(|alike| json!({
+            "robot": alike.robot, "same": alike.same, "of": alike.of, "others": alike.others,
+        })),
+        "on": on,
+    }))
+}
+
+fn new(plan: Plan) -> Result<NewRobot, String> {
+    let (driver, jumpers) = driver_named(&plan.driver)?;
+    let board = Board::named(&plan.board);
+    let is_plain = |c: char| c.is_alphanumeric() || "_- ".contains(c);
+    if !plan.name.chars().all(is_plain) {
+        return Err("a robot's name has letters, digits, blanks, _ and - only".into());
+    }
+    for (signal, place) in &plan.pins {
+        pin(&format!("{signal}={place}"))?;
+    }
+    Ok(NewRobot {
+        name: plan.name,
+        board: board.ok_or_else(|| format!("no board {}", plan.board))?,
+        driver,
+        jumpers,
+        pins: plan.pins,
+        four_wheels: plan.four_wheels,
+        parts: plan.parts,
+    })
+}
+
+/// The file of a known robot, as it is where its signals stay, else with these in their places.
+fn rewired(
+    library: &Library,
+    like: &str,
+    pins: &[(String, String)],
+) -> Result<(String, RobotFile), String> {
+    let say = |error: FileError| error.to_string();
+    let parsed = |text: &str| RobotFile::parse(like, &format!("{like}.toml"), text).map_err(say);
+    let text = library.text(Kind::Robot, like).map_err(say)?;
+    let robot = parsed(&text)?;
+    let wiring = robot.wirings.iter().next();
+    let (name, wiring) = wiring.ok_or("it has no wiring")?;
+    let before = signals(wiring);
+    let after: BTreeMap<String, String> = pins.iter().cloned().collect();
+    if before == after {
+        return Ok((text, robot));
+    }
+    let mut file: Table = text
+        .parse()
+        .map_err(|error: toml::de::Error| error.to_string())?;
+    let own = file
+        .get_mut("wiring")
+        .and_then(|wirings| wirings.get_mut(name.as_str()));
+    let own = own.and_then(toml::Value::as_table_mut);
+    let own = own.ok_or("it has no wiring")?;
+    own.retain(|signal, _| !before.contains_key(signal));
+    own.extend(after.into_iter().map(|(signal, pin)| {
+        let pin = pin
+            .parse::<i64>()
+            .map_or(toml::Value::from(pin), toml::Value::from);
+        (signal, pin)
+    }));
+    let text = toml::to_string(&file).map_err(|error| error.to_string())?;
+    let robot = parsed(&text)?;
+    Ok((text, robot))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(changes: Value) -> Value {
+        let mut plan = json!({
+            "name": "my car", "like": null, "board": "uno", "driver": "l298n-jumpers", "four_wheels": false, "parts": [],
+            "pins": [["left_forward", "5"], ["left_backward", "6"], ["right_forward", "9"], ["right_backward", "10"]],
+        });
+        let (plan_fields, changes) = (plan.as_object_mut().unwrap(), changes.as_object().unwrap());
+        plan_fields.extend(changes.clone());
+        answer(&json!({ "plan": plan }))
+    }
+
+    #[test]
+    fn a_plan_is_answered_by_its_file_or_by_what_is_wrong_with_it() {
+        let good = plan(json!({}));
+        assert!(
+            good["toml"].as_str().unwrap().contains("left_forward = 5"),
+            "{good}"
+        );
+        assert_eq!(good["on"]["10"], "right_backward");
+        for (wrong, why) in [
+            (json!({ "driver": "l297" }), "no such driver"),
+            (json!({ "board": "due" }), "no board due"),
+            (json!({ "name": "a\nboard = 1" }), "letters, digits"),
+            (
+                json!({ "pins": [["left_foward", "5"]] }),
+                "no signal `left_foward`",
+            ),
+            (
+                json!({ "parts": [["go", "button", "5"]] }),
+                "left_forward is on that pin",
+            ),
+            (json!({ "extra": 1 }), "unknown field"),
+        ] {
+            let problem = plan(wrong.clone());
+            let problem = problem["problem"].as_str().unwrap_or_default().to_owned();
+            assert!(problem.contains(why), "{wrong}: {problem}");
+        }
+    }
+
+    #[test]
+    fn a_known_robot_is_as_its_file_has_it_but_for_the_pins_that_differ() {
+        let choices = answer(&json!({}));
+        let known = choices["choices"]["known"].as_array().unwrap();
+        assert!(known.len() > 4);
+        for robot in known {
+            let pins = |change: Option<&str>| -> Vec<Value> {
+                let pins = robot["pins"].as_object().unwrap().iter();
+                pins.map(|(signal, pin)| match change {
+                    Some(to) if signal == "servo" => json!([signal, to]),
+                    _ => json!([signal, pin]),
+                })
+                .collect()
+            };
+            let like = |pins: Vec<Value>| {
+                plan(
+                    json!({ "like": robot["name"], "board": robot["board"], "driver": robot["driver"], "pins": pins }),
+                )
+            };
+            let same = like(pins(None));
+            let name = robot["name"].as_str().unwrap();
+            assert_eq!(
+                same["toml"],
+                Library::new().text(Kind::Robot, name).unwrap(),
+                "{same}"
+            );
+            if robot["pins"]["servo"].is_string() {
+                let is_free = |pin: &&str| same["on"][pin].is_null();
+                let free = ["13", "12", "2", "A1"].into_iter().find(is_free).unwrap();
+                let moved = like(pins(Some(free)));
+                assert_eq!(moved["on"][free], "servo", "{moved}");
+                assert_eq!(
+                    moved["on"].as_object().unwrap().len(),
+                    same["on"].as_object().unwrap().len()
+                );
+            }
+        }
+    }
+}
