@@ -19,7 +19,7 @@ use hal::{
     adc, clock, eeprom, encoder::Encoders, link, network, outputs, power, record, sonar::Listener,
 };
 use rumbo_control::{Inputs, TICK_US};
-use rumbo_robot::{Cell, Config, Robot, START_AT};
+use rumbo_robot::{Cell, Robot, RobotConfig, START_AT};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
@@ -32,7 +32,7 @@ fn main() -> ! {
     power::start_watchdog();
     hal::start();
     let start = eeprom::read(START_AT).wrapping_add(1);
-    let mut robot = Robot::new(Config {
+    let mut robot = Robot::new(RobotConfig {
         image: hal::image_hash(),
         reset,
         start,

@@ -6,7 +6,7 @@ use rumbo_emulator::chip::Chip;
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::observe::profile::Profile;
-use rumbo_wire::{Command, Decoder, FromRobot, Message, Received};
+use rumbo_wire::{Command, Decoder, FrameMessage, FromRobot, Received};
 
 const CYCLES_PER_MS: u64 = 16_000;
 /// Vectors of the encoders, and of the echoes.

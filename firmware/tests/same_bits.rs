@@ -8,7 +8,7 @@ use crate::world::World;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Inputs, Outputs, SonarId};
-use rumbo_robot::{Config, Robot};
+use rumbo_robot::{Robot, RobotConfig};
 use rumbo_sim::wire_fault::{TimedWireFault, Wire, WireFault};
 use rumbo_wire::ResetCause;
 use std::collections::BTreeSet;
@@ -145,7 +145,7 @@ fn recorded() -> impl Iterator<Item = (String, Given)> {
 
 /// The modes' states that the native robot visits with these inputs.
 fn visited(mut given: Given) -> BTreeSet<(u8, u8)> {
-    let mut robot = Robot::new(Config {
+    let mut robot = Robot::new(RobotConfig {
         image: 0,
         reset: ResetCause::PowerOn,
         start: 0,
@@ -173,7 +173,7 @@ fn compare(what: &str, mut world: Given) {
         return;
     };
     let mut board = Board::new(&elf, &image);
-    let mut robot = Robot::new(Config {
+    let mut robot = Robot::new(RobotConfig {
         image: board.hash(),
         reset: ResetCause::PowerOn,
         start: 0,

@@ -8,7 +8,7 @@ use rumbo_experiment::files::{Library, Overrides};
 use rumbo_robot::START_AT;
 use rumbo_sim::{Config, Sim};
 use rumbo_wire::{
-    Command, Decoder, EventKind, FromRobot, Message, Recalled, Received, RobotTime, ToRobot,
+    Command, Decoder, EventKind, FrameMessage, FromRobot, Recalled, Received, RobotTime, ToRobot,
 };
 
 /// Longest duration of a save: a byte a tick [ms].

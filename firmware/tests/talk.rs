@@ -5,7 +5,7 @@ use rumbo_emulator::chip::Chip;
 use rumbo_emulator::devices::ports::Pin;
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
-use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, RobotTime, ToRobot};
+use rumbo_wire::{Command, Decoder, FrameMessage, FromRobot, Received, RobotTime, ToRobot};
 
 /// Cycles of a millisecond.
 pub(crate) const MS: u64 = 16_000;

@@ -7,7 +7,7 @@ use rumbo_experiment::files::{FileError, Library, Overrides};
 use rumbo_experiment::run::{prepare, run_by};
 use rumbo_sim::Latched;
 use rumbo_sim::wire_fault::TimedWireFault;
-use rumbo_wire::{Command, Message, RobotTime, ToRobot};
+use rumbo_wire::{Command, FrameMessage, RobotTime, ToRobot};
 
 /// Bytes that fit into a tick beside other traffic.
 const BYTES_PER_TICK: usize = 40;

@@ -10,7 +10,7 @@ use rumbo_control::{Duty, Inputs, Micros, Outputs, SIDES, SonarId, TICK_US, Whee
 use rumbo_emulator::devices::Input;
 use rumbo_emulator::devices::ports::Pin;
 use rumbo_robot::latch::{EchoLatch, EchoLine, EdgeCounter, Stamp};
-use rumbo_robot::{Config, Robot};
+use rumbo_robot::{Robot, RobotConfig};
 use rumbo_wire::ResetCause;
 use std::cell::Cell;
 use std::collections::VecDeque;
@@ -154,7 +154,7 @@ fn compare(seed: u64) -> Option<[u64; 2]> {
     let pin = |port, bit| Pin::new(port, bit).unwrap();
     let at = |name: &str| image.variable(name).unwrap().address as usize;
     let mut board = Board::new(&elf, &image);
-    let mut robot = Robot::new(Config {
+    let mut robot = Robot::new(RobotConfig {
         image: board.hash(),
         reset: ResetCause::PowerOn,
         start: 0,

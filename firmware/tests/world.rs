@@ -1,10 +1,10 @@
 //! Random surroundings and a random operator for the robot, plausible enough that modes go through their states.
 
 use rumbo_control::mode::waypoints::Waypoint;
-use rumbo_control::mode::{Level, ModeId, Movement};
+use rumbo_control::mode::{ModeId, Movement, MovementLevel};
 use rumbo_control::params::ParamId;
 use rumbo_control::{Echo, Edges, Inputs, Micros, Outputs, SonarId, TICK_US, Velocity, Wheels};
-use rumbo_wire::{Command, Message, RobotTime, ToRobot};
+use rumbo_wire::{Command, FrameMessage, RobotTime, ToRobot};
 use std::collections::VecDeque;
 
 /// Ticks of one mode.
@@ -270,9 +270,9 @@ impl World {
                 let movement =
                     Movement::ALL[self.random.below(Movement::ALL.len() as u32) as usize];
                 let level = if self.random.chance(2) {
-                    Level::Duty(self.random.between(0.0, 1.0))
+                    MovementLevel::Duty(self.random.between(0.0, 1.0))
                 } else {
-                    Level::Speed(self.random.between(0.0, 12.0))
+                    MovementLevel::Speed(self.random.between(0.0, 12.0))
                 };
                 self.command(Command::Move { movement, level });
             }

@@ -11,7 +11,7 @@ use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyBytes;
 use rumbo_control::mode::ModeId;
 use rumbo_control::{ServoAngle, Wheels};
-use rumbo_experiment::batch::{Batch as Robots, Driver, OBSERVED, Robot, TRUE};
+use rumbo_experiment::batch::{Batch as Robots, DrivenBy, OBSERVED, Robot, TRUE};
 use rumbo_experiment::files::FileError;
 use rumbo_lab::run_log::RunSource;
 use rumbo_log::LogKind;
@@ -111,8 +111,8 @@ impl Batch {
         let histories = histories.chain(std::iter::repeat(Vec::new()));
         let lives: Vec<_> = seeds.into_iter().zip(histories).collect();
         let drivers = callers.iter().map(|caller| match caller {
-            true => Driver::Caller,
-            false => Driver::Scenario,
+            true => DrivenBy::Caller,
+            false => DrivenBy::Scenario,
         });
         let drivers: Vec<_> = drivers.collect();
         let files = &setup.get().files;

@@ -7,7 +7,7 @@ use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use rumbo_experiment::files::{RobotFile, bounded};
 use rumbo_identify::sonar_stats::Comparison;
-use rumbo_identify::{IdentifyError, Outcome, Progress, Recordings, rewrite};
+use rumbo_identify::{FitProgress, IdentifyError, Recordings, RecordingsOutcome, rewrite};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -17,7 +17,7 @@ use std::sync::mpsc::Sender;
 #[derive(Serialize)]
 struct Found {
     #[serde(flatten)]
-    outcome: Outcome,
+    outcome: RecordingsOutcome,
     sonars: Vec<Comparison>,
     notes: Vec<String>,
     /// The robot file with what was found, and its content.
@@ -51,7 +51,7 @@ pub(crate) fn identify(
             // Nobody listens any more: `stop` is set.
             let _ = shares.send(share);
         };
-        let progress = Progress {
+        let progress = FitProgress {
             report: &report,
             stop,
         };

@@ -5,7 +5,7 @@ use numpy::IntoPyArray;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rumbo_log::{Log, Source};
+use rumbo_log::{Log, ReadingSource};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::PathBuf;
@@ -94,12 +94,12 @@ fn by_source(log: &Log) -> BTreeMap<String, Readings> {
     sources
 }
 
-fn name(source: Source) -> String {
+fn name(source: ReadingSource) -> String {
     match source {
-        Source::Truth => "truth".to_owned(),
-        Source::Loops => "loops".to_owned(),
-        Source::Others => "others".to_owned(),
-        Source::Usart(number) => format!("usart{number}"),
+        ReadingSource::Truth => "truth".to_owned(),
+        ReadingSource::Loops => "loops".to_owned(),
+        ReadingSource::Others => "others".to_owned(),
+        ReadingSource::Usart(number) => format!("usart{number}"),
     }
 }
 

@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use rumbo_experiment::files::FileError;
 use rumbo_experiment::note::Note;
 use rumbo_experiment::run::{RunResult, run_all_on};
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_sim::trace::{Trace, TruthSample};
 
 /// Why the runs ended early.
 pub(crate) enum Stop {
@@ -89,7 +89,7 @@ fn in_python(py: Python<'_>, result: RunResult, trace: bool) -> PyResult<Bound<'
 }
 
 /// A signal's name and its value in a sample.
-type Column = (&'static str, fn(&Trace, &Sample) -> f64);
+type Column = (&'static str, fn(&Trace, &TruthSample) -> f64);
 
 /// The samples as one array for each signal.
 fn columns<'py>(py: Python<'py>, trace: &Trace) -> PyResult<Bound<'py, PyDict>> {

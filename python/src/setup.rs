@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 use rumbo_control::params::ParamId;
 use rumbo_experiment::files::parameters;
 use rumbo_experiment::files::{
-    Kind, Library, NativeProgram, Overrides, ScenarioFile, Setup as Files, Spread,
+    Kind, Library, NativeProgram, Overrides, ScenarioFile, SeedSpread, Setup as Files,
 };
 use rumbo_plant::params::Params;
 use std::path::PathBuf;
@@ -91,8 +91,8 @@ impl Setup {
             .setup(scenario, &overrides)
             .map_err(|error| exception(&error))?;
         match randomize {
-            Some(true) => files.scenario.spread = Spread::Drawn,
-            Some(false) => files.scenario.spread = Spread::None,
+            Some(true) => files.scenario.spread = SeedSpread::Drawn,
+            Some(false) => files.scenario.spread = SeedSpread::None,
             None => {}
         }
         Ok(Self {

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use rumbo_experiment::compare::{Variant, differences as of_variants};
 use rumbo_experiment::metrics::Metrics;
 use rumbo_experiment::run::{in_order, run_unless};
-use rumbo_experiment::sweep::{Axis, Design, Plan};
+use rumbo_experiment::sweep::{Axis, Design, SweepPlan};
 use std::fmt::Display;
 use std::sync::atomic::AtomicBool;
 
@@ -46,7 +46,7 @@ pub(crate) fn plan(
             )));
         }
     };
-    let plan = Plan::new(axes, design, seed, runs).map_err(refuse)?;
+    let plan = SweepPlan::new(axes, design, seed, runs).map_err(refuse)?;
     let checked = detached(py, || {
         for point in 0..plan.points.len() {
             plan.setup(&setup.files, point)?;

@@ -5,7 +5,7 @@ use crate::setup::Setup;
 use crate::study::refuse;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rumbo_experiment::tune::{Objective, Over, Plan, Request, Search};
+use rumbo_experiment::tune::{Objective, Over, Search, TuningPlan, TuningRequest};
 use std::sync::atomic::Ordering;
 
 /// Searches, and drives the robots that the search has not seen with the present values and the found ones: a
@@ -35,14 +35,14 @@ pub(crate) fn tune<'py>(
     };
     // So a search from seed 1 is checked as that of the command is.
     let first = held_out.first().copied().unwrap_or_default();
-    let request = Request {
+    let request = TuningRequest {
         over,
         objective,
         seed: first.wrapping_sub(Search::SEEDS),
         runs,
         held_out,
     };
-    let plan = Plan::new(setup.files.clone(), &setup.own, request);
+    let plan = TuningPlan::new(setup.files.clone(), &setup.own, request);
     let plan = plan.map_err(|error| exception(&error))?;
     let done = watched(py, &pool, progress.as_ref(), |shares, stop| {
         let tell = |share| {

@@ -15,8 +15,8 @@ use crate::output;
 use crate::settings::Settings;
 use crate::station::{News, Order, Seat, Station};
 use rumbo_log::{Level, LoggedEvent, Scene, State};
-use rumbo_ros::convert::{ConvertError, Converter, Sent, clock};
-use rumbo_ros::geometry::Geometry;
+use rumbo_ros::convert::{ConvertError, Converter, TopicMessage, clock};
+use rumbo_ros::geometry::BodyGeometry;
 use rumbo_ros::messages::DiagnosticStatus;
 use rumbo_ros::types::Byte;
 use std::collections::BTreeMap;
@@ -211,7 +211,7 @@ impl Live {
         self.trouble = Some((trouble, Instant::now()));
     }
 
-    fn publish(&mut self, message: &Sent) {
+    fn publish(&mut self, message: &TopicMessage) {
         let published = self.node.publish(message);
         report(published, &mut self.reported);
     }
@@ -232,7 +232,7 @@ impl Live {
             self.know(parameters);
         }
         let parameter = |name: &str| self.settings.value(name);
-        if let Some(geometry) = Geometry::new(self.scene.as_deref(), parameter) {
+        if let Some(geometry) = BodyGeometry::new(self.scene.as_deref(), parameter) {
             self.converter.know(geometry);
         }
         if let Some(scene) = &self.scene {

@@ -3,7 +3,7 @@
 use crate::bridge::{Bridge, BridgeError, Caller, Channel, Incoming};
 use crate::navigate;
 use crate::parameters;
-use rumbo_ros::convert::Sent;
+use rumbo_ros::convert::TopicMessage;
 use rumbo_ros::messages::{Triggered, Twist, TwistStamped};
 use rumbo_ros::topics::{Quality, Topic};
 use rumbo_ros::types::{Message, decode, encode};
@@ -177,7 +177,7 @@ impl<B: Bridge> Node<B> {
     ///
     /// # Errors
     /// If the middleware refuses.
-    pub(crate) fn publish(&mut self, message: &Sent) -> Result<(), BridgeError> {
+    pub(crate) fn publish(&mut self, message: &TopicMessage) -> Result<(), BridgeError> {
         let channel = self.announce(message.topic)?;
         self.bridge.publish(channel, &message.data)
     }

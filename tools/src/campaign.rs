@@ -3,7 +3,7 @@
 //! `cargo xtask campaign` builds and starts it. Arguments: the number of seeds, then names of scenarios (none: all). Exit status 1 if
 //! a requirement was not met, 2 for wrong arguments.
 
-use rumbo_experiment::campaign::{Finding, campaign};
+use rumbo_experiment::campaign::{Requirement, campaign};
 use std::process::ExitCode;
 
 pub(crate) fn main() -> ExitCode {
@@ -21,8 +21,8 @@ pub(crate) fn main() -> ExitCode {
     };
     row(["what", "required", &format!("{seeds} seeds"), ""]);
     println!("|{:-<63}|{:-<30}|{:-<24}|{:-<8}|", "", "", "", "");
-    let show = |finding: Finding| {
-        let Finding {
+    let show = |finding: Requirement| {
+        let Requirement {
             what,
             required,
             measured,

@@ -14,7 +14,7 @@ use rumbo_log::{Log, LogKind};
 use rumbo_plant::plant::{self, Plant};
 use rumbo_plant::{contact::Pose, drivetrain::Bridge, drivetrain::Side, sonar::SonarId};
 use rumbo_session::headless::record_run;
-use rumbo_wire::{Decoder, FromRobot, Message, Received, Telemetry};
+use rumbo_wire::{Decoder, FrameMessage, FromRobot, Received, Telemetry};
 use std::error::Error;
 use std::io::Cursor;
 use std::path::Path;
@@ -109,7 +109,7 @@ fn drive(scenario: &str, image: Option<&str>, seeds: u64) -> Done {
 
 /// A minute in an empty world, a sonar after the other at 50 pings a second.
 fn plant() -> Done {
-    let plant = Plant::new(plant::Setup::default());
+    let plant = Plant::new(plant::PlantSetup::default());
     let mut state = plant.start(Pose::default());
     let mut events = 0;
     for tick in 0..6_000_u64 {

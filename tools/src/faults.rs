@@ -7,7 +7,7 @@
 
 use crate::pages;
 use rumbo_experiment::campaign::faults::{
-    Class, DRIVES, Drive, Failure, GENTLE_M_S, INSTANTS, Named, Verdict, drive_all,
+    Class, DRIVES, DetectionSummary, Failure, FaultDrive, GENTLE_M_S, INSTANTS, Named, drive_all,
 };
 use rumbo_experiment::files::{FileError, Overrides};
 use std::process::ExitCode;
@@ -97,8 +97,8 @@ fn campaign(args: &Args) -> Result<bool, FileError> {
     Ok(met)
 }
 
-fn line(drive: &Drive) -> String {
-    let Drive {
+fn line(drive: &FaultDrive) -> String {
+    let FaultDrive {
         seed,
         at_s,
         failure,
@@ -120,7 +120,7 @@ fn line(drive: &Drive) -> String {
 
 /// Rows of failures, columns of drives: runs, those with a contact, and the fastest contact. A failure without a contact
 /// has no row.
-fn table(drives: &[Drive]) -> String {
+fn table(drives: &[FaultDrive]) -> String {
     let columns: Vec<usize> = (0..DRIVES.len())
         .filter(|column| drives.iter().any(|drive| drive.drive == *column))
         .collect();
@@ -132,8 +132,8 @@ fn table(drives: &[Drive]) -> String {
     let (mut rows, mut quiet) = (0, 0);
     for class in [Class::Knowable, Class::FreeFloor] {
         for failure in Failure::all() {
-            let of_row = |drive: &&Drive| drive.failure == failure && drive.class == class;
-            let row: Vec<&Drive> = drives.iter().filter(of_row).collect();
+            let of_row = |drive: &&FaultDrive| drive.failure == failure && drive.class == class;
+            let row: Vec<&FaultDrive> = drives.iter().filter(of_row).collect();
             if row.is_empty() {
                 continue;
             }
@@ -160,7 +160,7 @@ fn table(drives: &[Drive]) -> String {
     text
 }
 
-fn cell(drives: &[&Drive]) -> String {
+fn cell(drives: &[&FaultDrive]) -> String {
     let touches: Vec<f64> = drives
         .iter()
         .filter_map(|drive| Some(drive.touch?.1))
@@ -174,9 +174,9 @@ fn cell(drives: &[&Drive]) -> String {
 }
 
 /// What the page says below its table, and whether no more happened than it allows.
-fn summary(drives: &[Drive]) -> (String, bool) {
-    let verdict = Verdict::of(drives);
-    let Verdict {
+fn summary(drives: &[FaultDrive]) -> (String, bool) {
+    let verdict = DetectionSummary::of(drives);
+    let DetectionSummary {
         runs,
         touches,
         hard,

@@ -90,14 +90,7 @@ fn run() -> Result<bool, Box<dyn Error>> {
     let numbers = numbers?;
     let number = |index: usize, usual| numbers.get(index).copied().unwrap_or(usual);
     let (count, scenarios, seeds) = (number(0, 100), number(1, 5), number(2, 10));
-    let mut assignment = Assignment::read(&format!("{ASSIGNMENT}/assignment.toml"))?;
-    let mut test = assignment.tests[0].clone();
-    // The first are those whose marks the model has in full.
-    let known: Vec<u64> = test.seeds().collect();
-    test.public = known.iter().copied().chain(1000..).take(seeds).collect();
-    test.hidden = Vec::new();
-    assignment.tests = vec![test; scenarios.max(1)];
-
+    let assignment = assignment(scenarios, seeds)?;
     let toolchain = Toolchain::find()?;
     let limits = Limits {
         time: Duration::from_secs_f64(assignment.compile_s),
@@ -149,6 +142,18 @@ fn run() -> Result<bool, Box<dyn Error>> {
     let gained: Vec<_> = gained.map(|mark| mark.name.as_str()).collect();
     println!("hostile programs with points: {gained:?}");
     Ok(same && gained.is_empty())
+}
+
+/// The assignment with so many scenarios and seeds.
+fn assignment(scenarios: usize, seeds: usize) -> Result<Assignment, Box<dyn Error>> {
+    let mut assignment = Assignment::read(&format!("{ASSIGNMENT}/assignment.toml"))?;
+    let mut test = assignment.tests[0].clone();
+    // The first are those whose marks the model has in full.
+    let known: Vec<u64> = test.seeds().collect();
+    test.public = known.iter().copied().chain(1000..).take(seeds).collect();
+    test.hidden = Vec::new();
+    assignment.tests = vec![test; scenarios.max(1)];
+    Ok(assignment)
 }
 
 /// A hand-in: hostile ones between models that each have a comment of their own.

@@ -7,7 +7,7 @@
 
 use crate::pages;
 use rumbo_experiment::campaign::faults::GENTLE_M_S;
-use rumbo_experiment::campaign::moving::{Outcome, Place, drive};
+use rumbo_experiment::campaign::moving::{MovingDraw, MovingOutcome, drive};
 use rumbo_experiment::files::{FileError, Overrides};
 use std::process::ExitCode;
 
@@ -22,7 +22,7 @@ struct Args {
     write: bool,
     print: bool,
     overrides: Overrides,
-    places: Vec<Place>,
+    places: Vec<MovingDraw>,
 }
 
 fn parse() -> Option<Args> {
@@ -50,7 +50,7 @@ fn parse() -> Option<Args> {
                 parsed.overrides.parameters.push((name.to_owned(), value));
             }
             name => {
-                let mut places = Place::ALL.into_iter();
+                let mut places = MovingDraw::ALL.into_iter();
                 parsed
                     .places
                     .push(places.find(|place| place.to_string() == name)?);
@@ -58,7 +58,7 @@ fn parse() -> Option<Args> {
         }
     }
     if parsed.places.is_empty() {
-        parsed.places = Place::ALL.to_vec();
+        parsed.places = MovingDraw::ALL.to_vec();
     }
     Some(parsed)
 }
@@ -110,8 +110,8 @@ fn campaign(args: &Args) -> Result<bool, FileError> {
     Ok(met)
 }
 
-fn row(place: Place, outcomes: &[Outcome]) -> (String, bool) {
-    let sum = |of: fn(&Outcome) -> usize| outcomes.iter().map(of).sum::<usize>() as f64;
+fn row(place: MovingDraw, outcomes: &[MovingOutcome]) -> (String, bool) {
+    let sum = |of: fn(&MovingOutcome) -> usize| outcomes.iter().map(of).sum::<usize>() as f64;
     let arrived = sum(|run| run.arrived) / sum(|run| run.robots);
     let hard = outcomes
         .iter()
@@ -130,7 +130,7 @@ fn row(place: Place, outcomes: &[Outcome]) -> (String, bool) {
     (row, arrived >= ARRIVE && touched <= TOUCH)
 }
 
-fn list(place: Place, run: &Outcome) {
+fn list(place: MovingDraw, run: &MovingOutcome) {
     println!(
         "{place} seed {}: fastest {:.3} m/s, {} of {} arrived",
         run.seed, run.fastest_m_s, run.arrived, run.robots

@@ -10,7 +10,7 @@
 use rumbo_control::params::{ParamId, Params};
 use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
 use rumbo_experiment::run::run_all;
-use rumbo_experiment::sweep::{Axis, Design, Plan, Values};
+use rumbo_experiment::sweep::{Axis, Design, SweepPlan, Values};
 use rumbo_experiment::tune::{Objective, Over, Search, tuned};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -128,7 +128,7 @@ fn campaign(scenario: &str, gains: &[&str], aims: &str, starts: usize) -> Result
 }
 
 /// Starts: each gain times a factor.
-fn drawn(setup: &Setup, gains: &[ParamId]) -> Result<Plan, FileError> {
+fn drawn(setup: &Setup, gains: &[ParamId]) -> Result<SweepPlan, FileError> {
     let mut now = Params::default();
     for (id, value) in setup.control_parameters()? {
         // Checked when it was read.
@@ -147,7 +147,7 @@ fn drawn(setup: &Setup, gains: &[ParamId]) -> Result<Plan, FileError> {
             },
         }
     };
-    Plan::new(
+    SweepPlan::new(
         gains.iter().map(axis).collect(),
         Design::Random(DRAWN),
         1,

@@ -53,18 +53,7 @@ pub(crate) fn build(project: &Project) -> Result<(), Stop> {
     tools::bubblewrap(project)?;
     let out = project.target.join("sketches");
     let failed = |error: SketchError| Stop::Failed(error.to_string());
-    let toolchain = Toolchain::find().map_err(failed)?;
-    println!("{}", toolchain.in_words());
-    let sandbox = Sandbox::trusting(Limits::default());
-    let compilers = BOARDS.map(|board| {
-        let (toolchain, sandbox) = (toolchain.clone(), sandbox.clone());
-        let compiler = Compiler::new(board, toolchain, sandbox, out.join("cache"))?;
-        Ok((board, compiler))
-    });
-    let compilers: Vec<_> = compilers
-        .into_iter()
-        .collect::<Result<_, _>>()
-        .map_err(failed)?;
+    let compilers = compilers(&out.join("cache")).map_err(failed)?;
     let (mut built, mut fresh) = (0, 0);
     for sketch in sketches(project)? {
         let Given::Sketch(source) = given(&sketch, true).map_err(failed)? else {
@@ -108,6 +97,19 @@ pub(crate) fn build(project: &Project) -> Result<(), Stop> {
     }
     println!("{}: {built} built, {fresh} fresh", out.display());
     Ok(())
+}
+
+/// A compiler for each board.
+fn compilers(cache: &Path) -> Result<Vec<(Board, Compiler)>, SketchError> {
+    let toolchain = Toolchain::find()?;
+    println!("{}", toolchain.in_words());
+    let sandbox = Sandbox::trusting(Limits::default());
+    let compilers = BOARDS.into_iter().map(|board| {
+        let (toolchain, sandbox) = (toolchain.clone(), sandbox.clone());
+        let compiler = Compiler::new(board, toolchain, sandbox, cache.to_owned())?;
+        Ok((board, compiler))
+    });
+    compilers.collect()
 }
 
 fn variants(sketch: &Path) -> Vec<Variant> {

@@ -5,7 +5,8 @@ use crate::recording::{ROOM, Recording};
 use rumbo_log::{Level, LoggedEvent, Manifest};
 use rumbo_session::explain::{Cause, explain_news};
 use rumbo_session::{
-    Board, Cursor, Driver, Event, Extras, Host, Lease, Order, PageId, Target, ToPage, View,
+    Board, ControlView, Cursor, Event, Extras, Host, Lease, Order, PageId, SessionDriver, Target,
+    ToPage,
 };
 use rumbo_wire::Command;
 use std::rc::Rc;
@@ -72,7 +73,7 @@ pub(crate) struct Place {
 
 /// A session with its page.
 pub(crate) struct Desk<T: Target + ?Sized> {
-    pub(crate) driver: Driver<Page, T>,
+    pub(crate) driver: SessionDriver<Page, T>,
     place: Place,
     /// Orders since the last round.
     waiting: Vec<Order>,
@@ -81,7 +82,7 @@ pub(crate) struct Desk<T: Target + ?Sized> {
     cursor: Cursor,
     /// The page has had its first message.
     greeted: bool,
-    seat: Option<View>,
+    seat: Option<ControlView>,
     /// Warnings for the page.
     warnings: Vec<String>,
 }
@@ -107,7 +108,7 @@ impl<T: Target + ?Sized> Desk<T> {
             room: ROOM / place.robots.len().max(1),
             ids,
         };
-        let mut driver = Driver::new(target, page, 1.0, extras);
+        let mut driver = SessionDriver::new(target, page, 1.0, extras);
         driver.begin(wall_us);
         let mut lease = Lease::default();
         Self {

@@ -5,7 +5,7 @@
 
 use rumbo_log::parameters;
 use rumbo_session::Order;
-use rumbo_wire::{Command, Level};
+use rumbo_wire::{Command, MovementLevel};
 use serde_json::{Map, Value};
 use std::collections::VecDeque;
 use std::fmt::Display;
@@ -96,8 +96,8 @@ fn words(command: &Command) -> String {
         Command::Move { movement, level } => {
             let movement = *movement as u8;
             match level {
-                Level::Duty(duty) => format!("move_duty {movement} {duty}"),
-                Level::Speed(speed_rad_s) => format!("move_speed {movement} {speed_rad_s}"),
+                MovementLevel::Duty(duty) => format!("move_duty {movement} {duty}"),
+                MovementLevel::Speed(speed_rad_s) => format!("move_speed {movement} {speed_rad_s}"),
             }
         }
         Command::Goal { x_m, y_m } => format!("goal {x_m} {y_m}"),
@@ -189,11 +189,11 @@ mod tests {
             }),
             Command::Move {
                 movement: Movement::ArcLeft,
-                level: Level::Duty(0.4),
+                level: MovementLevel::Duty(0.4),
             },
             Command::Move {
                 movement: Movement::Backward,
-                level: Level::Speed(third),
+                level: MovementLevel::Speed(third),
             },
             Command::Goal {
                 x_m: -0.05,

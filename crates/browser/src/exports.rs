@@ -4,7 +4,7 @@ use crate::lab::Lab as Inner;
 use crate::robot::Robot as Real;
 use crate::showing::Showing;
 use crate::start::Start;
-use rumbo_flash::{Action, Programmer};
+use rumbo_flash::{PortAction, Programmer};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 #[wasm_bindgen]
@@ -233,11 +233,11 @@ impl Flasher {
     /// What to do now.
     pub fn poll(&mut self) -> Result<Turn, String> {
         let action = self.0.poll(wall_us()).map_err(|error| error.to_string())?;
-        let done = action == Action::Done;
+        let done = action == PortAction::Done;
         let (lines, send) = match action {
-            Action::Lines(pulled) => (Some(pulled), None),
-            Action::Send(bytes) => (None, Some(bytes)),
-            Action::Wait | Action::Done => (None, None),
+            PortAction::Lines(pulled) => (Some(pulled), None),
+            PortAction::Send(bytes) => (None, Some(bytes)),
+            PortAction::Wait | PortAction::Done => (None, None),
         };
         Ok(Turn { lines, send, done })
     }

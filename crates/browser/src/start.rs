@@ -1,7 +1,7 @@
 //! What a page of the lab begins with.
 
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup};
-use rumbo_lab::{EDITED, SimulatedRobot, fleet};
+use rumbo_lab::{EDITED, SimulatedRobot};
 use rumbo_log::Choice;
 use rumbo_session::Target;
 use serde::Deserialize;
@@ -110,13 +110,8 @@ impl Start {
             rig: self.rig.clone(),
             seed: self.seed,
         };
-        if self.robots <= 1 && library.scenario(&self.scenario)?.fleet.is_empty() {
-            let robot = SimulatedRobot::of(library, overrides, choice)?;
-            return Ok(vec![(String::new(), Box::new(robot))]);
-        }
-        let robots = fleet(library, overrides, &choice, self.robots)?.into_iter();
-        Ok(robots
-            .map(|robot| -> Named { (robot.name(), Box::new(robot)) })
-            .collect())
+        let robots = SimulatedRobot::all(library, overrides, &choice, self.robots)?.into_iter();
+        let named = |robot: SimulatedRobot| -> Named { (robot.name(), Box::new(robot)) };
+        Ok(robots.map(named).collect())
     }
 }

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::output::{self, figure};
 use crate::place;
 use crate::run_log::{Kept, RunSource};
-use rumbo_experiment::calibrate::{self, Calibration, Row};
+use rumbo_experiment::calibrate::{self, Calibration, CalibrationRow};
 use rumbo_experiment::calibration_run;
 use rumbo_experiment::files::{Library, Overrides, RobotFile, Setup, bounded};
 use rumbo_log::LogKind;
@@ -22,7 +22,7 @@ struct Report<'a> {
     duration_s: f64,
     way_m: f64,
     contacts: u32,
-    quantities: &'a [Row],
+    quantities: &'a [CalibrationRow],
     parameters: Vec<(&'static str, f64)>,
     written: Option<String>,
 }
@@ -60,16 +60,12 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     let found = run.found.map_err(Failure::input)?;
     let rows = calibrate::rows(&found, Some(run.sim.params()));
     let contacts = run.sim.truth().contacts;
-    let written = match &args.out {
-        Some(path) => {
-            write(path, &setup, &found)?;
-            Some(path.as_path())
-        }
-        None => None,
-    };
-    let parameters: Vec<(&'static str, f64)> = found
-        .parameters()
-        .into_iter()
+    let written = args.out.as_deref();
+    if let Some(path) = written {
+        write(path, &setup, &found)?;
+    }
+    let parameters = found.parameters().into_iter();
+    let parameters: Vec<(&'static str, f64)> = parameters
         .map(|(id, value)| (id.name(), rumbo_experiment::files::parameters::exact(value)))
         .collect();
     if args.json {
@@ -99,7 +95,12 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     }
 }
 
-fn report(found: &Calibration, rows: &[Row], contacts: u32, seed: u64) -> Result<(), Failure> {
+fn report(
+    found: &Calibration,
+    rows: &[CalibrationRow],
+    contacts: u32,
+    seed: u64,
+) -> Result<(), Failure> {
     output::line(&format!(
         "seed {seed}: {:.1} m along the wall in {:.0} s, contacts {contacts}",
         found.way_m, found.duration_s

@@ -10,7 +10,7 @@ use crate::output;
 use crate::place::Guard;
 use rumbo_log::{Burst, LogKind, Manifest};
 use rumbo_station::headless::record_text;
-use rumbo_wire::text::{Row, TextCommand, TextError};
+use rumbo_wire::text::{TextCommand, TextError, TextRow};
 use serde_json::json;
 use std::path::Path;
 
@@ -19,7 +19,7 @@ const BAUD: u32 = 9_600;
 
 /// A line of the capture.
 enum Line {
-    Row(Row),
+    Row(TextRow),
     Command,
 }
 
@@ -27,7 +27,7 @@ impl Line {
     fn parse(line: &str) -> Result<Self, TextError> {
         match TextCommand::parse(line) {
             // Ours, not the original's.
-            Ok(TextCommand::Mode(_)) | Err(_) => Row::parse(line).map(Self::Row),
+            Ok(TextCommand::Mode(_)) | Err(_) => TextRow::parse(line).map(Self::Row),
             Ok(_) => Ok(Self::Command),
         }
     }

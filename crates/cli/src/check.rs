@@ -10,11 +10,11 @@ use crate::run::set_threads;
 use crate::sketch;
 use rayon::prelude::*;
 use rumbo_experiment::batch::Robot;
-use rumbo_experiment::claims::{Broken, Given, Suite, Test, Verdict};
+use rumbo_experiment::claims::{Broken, Suite, Test, TestProgram, TestVerdict};
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_lab::run_log::RunSource;
 use rumbo_log::LogKind;
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use rumbo_session::headless::record_run;
 use std::fs::File;
 use std::io::BufWriter;
@@ -25,31 +25,21 @@ use std::sync::Arc;
 pub(crate) fn check(args: &CheckArgs) -> Result<(), Failure> {
     let mut suite = Suite::read(&output::shown(&args.file))?;
     choose(&mut suite, &args.only)?;
-    let stamp = Stamp::of("check", &[suite.path.clone()]);
+    let stamp = FileStamp::of("check", &[suite.path.clone()]);
     let guard = Guard::new([args.file.clone()], args.overwrite.force);
     if let Some(path) = &args.junit {
         guard.check(path, &Mark::of(&stamp))?;
         place::try_file(path)?;
     }
     set_threads(args.threads)?;
-    let image = match &suite.program {
-        Given::Image(path) => path.clone(),
-        Given::Sketch(name) => {
-            sketch::take_libraries(&args.libraries)?;
-            let robot = match &suite.overrides.robot {
-                Some(robot) => robot.clone(),
-                None => beside(&suite).scenario(&suite.scenario)?.robot,
-            };
-            sketch::image(name, beside(&suite).robot(&robot)?.board)?
-        }
-    };
+    let image = image(&suite, args)?;
     let setup = Arc::new(suite.setup(image.clone())?);
     let overrides = Overrides {
         firmware: Some(image),
         ..suite.overrides.clone()
     };
     let recorded = args.out.is_some();
-    let tried: Vec<(&Test, Verdict)> = (suite.tests.par_iter())
+    let tried: Vec<(&Test, TestVerdict)> = (suite.tests.par_iter())
         .map(|test| Ok((test, test.drive(&setup, recorded)?)))
         .collect::<Result<_, Failure>>()?;
     let mut cases = Vec::new();
@@ -92,6 +82,21 @@ pub(crate) fn check(args: &CheckArgs) -> Result<(), Failure> {
     }
 }
 
+/// The image that is tested.
+fn image(suite: &Suite, args: &CheckArgs) -> Result<PathBuf, Failure> {
+    match &suite.program {
+        TestProgram::Image(path) => Ok(path.clone()),
+        TestProgram::Sketch(name) => {
+            sketch::take_libraries(&args.libraries)?;
+            let robot = match &suite.overrides.robot {
+                Some(robot) => robot.clone(),
+                None => beside(suite).scenario(&suite.scenario)?.robot,
+            };
+            sketch::image(name, beside(suite).robot(&robot)?.board)
+        }
+    }
+}
+
 /// Files as the suite names them.
 fn beside(suite: &Suite) -> Library {
     Library::new().beside(&suite.path)
@@ -124,7 +129,7 @@ fn leave(
     robot: &Robot,
     (suite, setup, overrides): (&Suite, &Setup, &Overrides),
     guard: &Guard,
-    stamp: &Stamp,
+    stamp: &FileStamp,
 ) -> Result<(), Failure> {
     let [log, waves]: [PathBuf; 2] = ["mcap", "vcd"].map(|ending| stem.with_extension(ending));
     if let Some(parent) = stem.parent() {

@@ -12,7 +12,7 @@ use crate::mark::Mark;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
 use rumbo_log::{Log, Row};
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use rumbo_station::log_file;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -48,7 +48,7 @@ fn check_ending(path: &Path, ending: &str, what: &str) -> Result<(), Failure> {
 /// Prints metrics and differences, draws all runs overlaid on request, and fails where a tolerance is exceeded.
 fn compare_logs(args: &CompareArgs) -> Result<(), Failure> {
     let names: Vec<String> = args.logs.iter().map(|path| output::shown(path)).collect();
-    let stamp = Stamp::of("compare", &names);
+    let stamp = FileStamp::of("compare", &names);
     if let Some(path) = &args.out {
         Guard::new(&args.logs, args.overwrite.force).check(path, &Mark::of(&stamp))?;
         check_ending(path, "svg", "logs overlaid are a figure")?;

@@ -6,7 +6,7 @@
 use crate::failure::Failure;
 use crate::left_out::LeftOut;
 use rumbo_wire::csv;
-use rumbo_wire::text::{Row, RowKind};
+use rumbo_wire::text::{RowKind, TextRow};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -144,7 +144,7 @@ fn kind_by_rows(header: &str, text: &str) -> Option<RowKind> {
             .filter(|row| !row.is_empty())
     };
     let of = |kind: &RowKind| {
-        let rows = lines().filter(|line| Row::parse(line).is_ok_and(|row| row.kind() == *kind));
+        let rows = lines().filter(|line| TextRow::parse(line).is_ok_and(|row| row.kind() == *kind));
         2 * rows.count() > lines().count()
     };
     RowKind::ALL.into_iter().find(of)
@@ -196,17 +196,16 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
     let mut left_out = LeftOut::default();
     let mut lines = (1..).zip(text.lines().map(str::trim));
     let header = lines.next().unwrap_or_default().1;
-    let kind = match csv::recognise(header) {
-        Some(kind) => kind,
-        None => {
-            let kind = kind_by_rows(header, text).ok_or_else(|| wrong(1, unknown(header)))?;
-            left_out.header(format!(
-                "`{header}` is no header; by its rows it is of {}",
-                modes(kind)
-            ));
-            kind
-        }
+    let by_rows = || {
+        let kind = kind_by_rows(header, text)?;
+        let of = modes(kind);
+        left_out.header(format!(
+            "`{header}` is no header; by its rows it is of {of}"
+        ));
+        Some(kind)
     };
+    let kind = csv::recognise(header).or_else(by_rows);
+    let kind = kind.ok_or_else(|| wrong(1, unknown(header)))?;
     let columns: Vec<Column> = kind.columns().iter().map(Column::of).collect();
     let mut sound = header_of(kind) + "\n";
     let (mut rows, mut time_s, mut longest_gap_s) = (Vec::new(), 0.0, 0.0_f64);
@@ -231,11 +230,13 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Recording, Failure> {
         }
         gap_s = 0.0;
         sound = sound + row + "\n";
-        let scaled = columns
-            .iter()
-            .zip(values)
-            .map(|(column, value)| value * column.factor);
-        rows.push((time_s, scaled.collect()));
+        let scaled = std::iter::zip(&columns, values);
+        rows.push((
+            time_s,
+            scaled
+                .map(|(column, value)| value * column.factor)
+                .collect(),
+        ));
     }
     if let Some((line, what)) = left_out.too_much(rows.len()) {
         return Err(wrong(line, what));

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::output;
 use crate::sketch;
 use rumbo_debug::control::Debugger;
-use rumbo_debug::dap::{Adapter, Host, Launch};
+use rumbo_debug::dap::{Adapter, Launch, LaunchHost};
 use rumbo_debug::symbols::Symbols;
 use rumbo_experiment::debugged::Debugged;
 use rumbo_experiment::files::{Library, Overrides};
@@ -88,7 +88,7 @@ fn read(mut from: impl Read + Send + 'static) -> Receiver<Vec<u8>> {
 /// What the command line says, unless the client says otherwise.
 struct Launcher<'a>(&'a DebugArgs);
 
-impl Host for Launcher<'_> {
+impl LaunchHost for Launcher<'_> {
     type World = Debugged;
 
     fn launch(&mut self, launch: &Launch) -> Result<(Debugger<Debugged>, Vec<String>), String> {

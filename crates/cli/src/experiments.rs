@@ -12,7 +12,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::files::{Library, Overrides};
 use rumbo_lab::manifest;
 use rumbo_log::LogKind;
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use rumbo_report::real::{self, Real};
 use rumbo_report::text::Language;
 use rumbo_report::{Data, Plan, Request, html};
@@ -70,7 +70,7 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
 
 /// Refuses, before anything runs, what would write over something else than an older report of the same. Gives what the
 /// report is known by.
-fn check_places(args: &ExperimentsArgs, plan: &Plan) -> Result<Stamp, Failure> {
+fn check_places(args: &ExperimentsArgs, plan: &Plan) -> Result<FileStamp, Failure> {
     let stamp = plan.stamp(language(args.language));
     let inputs = args.robot.iter().map(Into::into);
     let guard = Guard::new(

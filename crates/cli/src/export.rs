@@ -8,8 +8,8 @@ use crate::mark::Mark;
 use crate::output;
 use crate::place::{self, Guard};
 use crate::ros2bag::Bag;
-use rumbo_log::{Log, LogKind, Manifest, Reading, Row, SIGNALS, Source};
-use rumbo_report::Stamp;
+use rumbo_log::{Log, LogKind, Manifest, Reading, ReadingSource, Row, SIGNALS};
+use rumbo_report::FileStamp;
 use rumbo_station::log_file;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -21,7 +21,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     let stem = args.log.file_stem().unwrap_or(args.log.as_os_str());
     let stem = stem.to_string_lossy();
     let path = |ending: &str| folder.join(format!("{stem}.{ending}"));
-    let stamp = Stamp::of("export", &[stem.to_string()]);
+    let stamp = FileStamp::of("export", &[stem.to_string()]);
     let formats = match args.formats.is_empty() && !args.ros2bag {
         true => &[Format::Csv, Format::Svg][..],
         false => &args.formats,
@@ -39,20 +39,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     logs::mend(&args.log);
     let mut log = log_file::read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log)?;
-    if let Some(name) = args
-        .signals
-        .iter()
-        .find(|name| figures::signal(name).is_none())
-    {
-        let known = SIGNALS.iter().map(|signal| signal.name);
-        let known: Vec<&str> = known
-            .filter(|name| figures::signal(name).is_some())
-            .collect();
-        return Err(Failure::Input(format!(
-            "--signals {name}: no signal that is plotted; known are {}",
-            known.join(", ")
-        )));
-    }
+    check_signals(&args.signals)?;
     cut_out(&mut log, args)?;
     // Which columns they have is known only now.
     let readings = readings_of(&log);
@@ -70,19 +57,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     let figures = figures::of_one(&log, &args.signals);
     for format in formats {
         match format {
-            // Nobody asked for one: the tables are what there is.
-            Format::Svg if figures.is_empty() && args.formats.is_empty() => {
-                output::note(&format!(
-                    "{}: holds no signals to draw, so there is no figure",
-                    args.log.display()
-                ));
-            }
-            Format::Svg if figures.is_empty() => {
-                return Err(Failure::Input(format!(
-                    "{}: holds no signals to draw; --format csv writes what there is",
-                    args.log.display()
-                )));
-            }
+            Format::Svg if figures.is_empty() => without_figure(args)?,
             Format::Csv => {
                 write(&path("csv"), signals(&log))?;
                 write(&path("events.csv"), events(&log))?;
@@ -96,6 +71,31 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// Nothing is there to draw: wrong if a figure was asked for, else the tables are what there is.
+fn without_figure(args: &ExportArgs) -> Result<(), Failure> {
+    let none = format!("{}: holds no signals to draw", args.log.display());
+    if !args.formats.is_empty() {
+        let remedy = "--format csv writes what there is";
+        return Err(Failure::Input(format!("{none}; {remedy}")));
+    }
+    output::note(&format!("{none}, so there is no figure"));
+    Ok(())
+}
+
+/// Refuses a signal that is not plotted.
+fn check_signals(signals: &[String]) -> Result<(), Failure> {
+    let is_plotted = |name: &str| figures::signal(name).is_some();
+    let Some(name) = signals.iter().find(|name| !is_plotted(name)) else {
+        return Ok(());
+    };
+    let known = SIGNALS.iter().map(|signal| signal.name);
+    let known: Vec<&str> = known.filter(|name| is_plotted(name)).collect();
+    Err(Failure::Input(format!(
+        "--signals {name}: no signal that is plotted; known are {}",
+        known.join(", ")
+    )))
 }
 
 /// Leaves of a log what lies between the times that were asked for.
@@ -118,7 +118,7 @@ fn cut_out(log: &mut Log, args: &ExportArgs) -> Result<(), Failure> {
 }
 
 /// The files of a format: suffix and mark.
-fn files(format: Format, stamp: &Stamp) -> Vec<(&'static str, Mark)> {
+fn files(format: Format, stamp: &FileStamp) -> Vec<(&'static str, Mark)> {
     let nothing = Log::default();
     match format {
         Format::Csv => vec![
@@ -192,13 +192,13 @@ fn signals(log: &Log) -> String {
 /// The signals beside the telemetry, as far as there are any, each table with its suffix: ground truth and pins, and what
 /// the program printed on each port.
 fn readings_of(log: &Log) -> Vec<(String, String)> {
-    let sources: BTreeSet<Source> = log.readings.iter().map(|each| each.source).collect();
+    let sources: BTreeSet<ReadingSource> = log.readings.iter().map(|each| each.source).collect();
     let tables = sources.into_iter().map(|source| {
         let ending = match source {
-            Source::Truth => "instruments.csv".to_owned(),
-            Source::Loops => "loops.csv".to_owned(),
-            Source::Others => "others.csv".to_owned(),
-            Source::Usart(usart) => format!("printed{usart}.csv"),
+            ReadingSource::Truth => "instruments.csv".to_owned(),
+            ReadingSource::Loops => "loops.csv".to_owned(),
+            ReadingSource::Others => "others.csv".to_owned(),
+            ReadingSource::Usart(usart) => format!("printed{usart}.csv"),
         };
         let of_it = log.readings.iter().filter(|each| each.source == source);
         (ending, table(&of_it.collect::<Vec<_>>()))

@@ -8,7 +8,9 @@ use rumbo_experiment::files::Overrides;
 use rumbo_lab::SimulatedRobot;
 use rumbo_log::{Choice, Log, LogKind, Manifest, Scene, Truth};
 use rumbo_session::{Abilities, Ghost, LinkNews, Standing, Target, TargetError};
-use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
+use rumbo_wire::{
+    Command, Decoder, EventKind, FrameMessage, FromRobot, Received, RobotTime, ToRobot,
+};
 use std::collections::VecDeque;
 use std::path::Path;
 

@@ -19,7 +19,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use likeness::Likeness;
 use rumbo_experiment::grade::{Assignment, Mark, grade as grade_all};
 use rumbo_experiment::note::Note;
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use rumbo_report::grade::{class, student};
 use rumbo_report::text::Language;
 use rumbo_sketch::limits::Limits;
@@ -144,8 +144,8 @@ fn class_notes(assignment: &Assignment, compiler: Option<&Compiler>) -> Vec<Note
 }
 
 /// Refuses, before anything runs, to write among files that are not its own.
-fn check_places(args: &GradeArgs, assignment: &Assignment) -> Result<Stamp, Failure> {
-    let stamp = Stamp::of("grade", std::slice::from_ref(&assignment.name));
+fn check_places(args: &GradeArgs, assignment: &Assignment) -> Result<FileStamp, Failure> {
+    let stamp = FileStamp::of("grade", std::slice::from_ref(&assignment.name));
     let guard = Guard::new([args.assignment.clone()], args.overwrite.force);
     let page = args.out.join(PAGE);
     guard.check(&page, &mark::Mark::of(&stamp))?;
@@ -164,7 +164,7 @@ fn check_places(args: &GradeArgs, assignment: &Assignment) -> Result<Stamp, Fail
 fn check_files(
     args: &GradeArgs,
     assignment: &Assignment,
-    stamp: &Stamp,
+    stamp: &FileStamp,
     files: &[String],
 ) -> Result<(), Failure> {
     let guard = Guard::new([args.assignment.clone()], args.overwrite.force);
@@ -194,7 +194,7 @@ fn write(
     (marks, files): (&[Mark], &[String]),
     notes: &[Note],
     likeness: &Likeness,
-    stamp: &Stamp,
+    stamp: &FileStamp,
 ) -> Result<(), Failure> {
     let language = language(args.language);
     let out = |name: &str| args.out.join(name);

@@ -13,10 +13,10 @@ use drive::Driving;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::files::{Library, RobotFile, bounded};
 use rumbo_identify::sonar_stats::{self, Comparison};
-use rumbo_identify::{AgainstTruth, Identification, Outcome, Progress, Recordings};
+use rumbo_identify::{AgainstTruth, FitProgress, Identification, Recordings, RecordingsOutcome};
 use rumbo_plant::params::Params;
 use rumbo_plot::{Sheet, WIDTH, Words};
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -26,7 +26,7 @@ use std::time::Duration;
 struct Report<'a> {
     robot: &'a str,
     #[serde(flatten)]
-    drive: &'a Outcome,
+    drive: &'a RecordingsOutcome,
     /// Measured and simulated figures of each sonar of the runs.
     sonars: &'a [Comparison],
     plots: Vec<String>,
@@ -63,7 +63,7 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     }
     let bar = bar(args);
     let shown = |share: f64| bar.set_position((100.0 * share) as u64);
-    let progress = Progress::to(&shown);
+    let progress = FitProgress::to(&shown);
     let outcome = match args.check {
         _ if args.leave_one_out => logs.leave_one_out(&robot.plant, &progress),
         Some(_) => logs.check(&robot.plant),
@@ -178,8 +178,8 @@ fn place_of(folder: &Path, name: &str) -> PathBuf {
     folder.join(Path::new(name).with_extension("svg"))
 }
 
-fn stamp(name: &str) -> Stamp {
-    Stamp::of("identify", &[name.to_owned()])
+fn stamp(name: &str) -> FileStamp {
+    FileStamp::of("identify", &[name.to_owned()])
 }
 
 /// Refuses, before anything is fitted, plots that would be written over something else.
@@ -196,7 +196,7 @@ fn check_plots(args: &IdentifyArgs, logs: &Recordings, folder: &Path) -> Result<
 
 fn plot(
     logs: &Recordings,
-    outcome: &Outcome,
+    outcome: &RecordingsOutcome,
     params: &Params,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, Failure> {
@@ -248,8 +248,8 @@ fn beside_truth(parameters: &[AgainstTruth]) -> Vec<Vec<String>> {
 /// Prints all but what was written.
 fn print(logs: &Recordings, report: &Report<'_>, plots: &[PathBuf]) -> Result<(), Failure> {
     let text = match report.drive {
-        Outcome::Identified(found) => found.to_string(),
-        Outcome::Checked { runs } => runs.iter().map(ToString::to_string).collect(),
+        RecordingsOutcome::Identified(found) => found.to_string(),
+        RecordingsOutcome::Checked { runs } => runs.iter().map(ToString::to_string).collect(),
     };
     if !text.is_empty() {
         output::lines(text.trim())?;

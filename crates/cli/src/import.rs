@@ -12,7 +12,7 @@ mod table;
 
 use crate::args::ImportArgs;
 use crate::capture;
-use crate::csv_rows::{self, Recording};
+use crate::csv_rows::{self, Column, Recording};
 use crate::failure::Failure;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
@@ -98,19 +98,8 @@ fn encode(recording: &Recording, path: &Path, bytes: &[u8]) -> mcap::McapResult<
         .compression(None)
         .library(concat!("rumbo ", env!("CARGO_PKG_VERSION")));
     let mut log = options.create(Cursor::new(Vec::new()))?;
-    let properties: Map<String, Value> = recording
-        .columns
-        .iter()
-        .skip(1)
-        .map(|column| (column.name.clone(), json!({ "type": "number" })))
-        .collect();
-    let schema =
-        json!({ "type": "object", "title": "original_telemetry", "properties": properties });
-    let schema = log.add_schema(
-        "original_telemetry",
-        "jsonschema",
-        schema.to_string().as_bytes(),
-    )?;
+    let schema = schema(&recording.columns).to_string();
+    let schema = log.add_schema("original_telemetry", "jsonschema", schema.as_bytes())?;
     let channel = log.add_channel(schema, "telemetry", "json", &BTreeMap::new())?;
     for (sequence, (time_s, values)) in recording.rows.iter().enumerate() {
         let named = recording.columns.iter().zip(values).skip(1);
@@ -152,6 +141,15 @@ fn encode(recording: &Recording, path: &Path, bytes: &[u8]) -> mcap::McapResult<
     })?;
     log.finish()?;
     Ok(log.into_inner().into_inner())
+}
+
+/// Of a message: a number for each column but the time.
+fn schema(columns: &[Column]) -> Value {
+    let columns = columns.iter().skip(1);
+    let properties: Map<String, Value> = columns
+        .map(|column| (column.name.clone(), json!({ "type": "number" })))
+        .collect();
+    json!({ "type": "object", "title": "original_telemetry", "properties": properties })
 }
 
 fn summary(recording: &Recording, out: &Path, as_json: bool) -> Result<(), Failure> {

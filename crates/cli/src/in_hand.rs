@@ -1,7 +1,7 @@
 //! The page's debugger: the adapter for editors with the lab's simulation in its hands.
 
 use rumbo_debug::control::Debugger;
-use rumbo_debug::dap::{Adapter, Host, Launch};
+use rumbo_debug::dap::{Adapter, Launch, LaunchHost};
 use rumbo_debug::symbols::{SymbolError, Symbols};
 use rumbo_lab::{Attach, Holder, Live};
 use serde_json::Value;
@@ -28,7 +28,7 @@ pub(crate) fn attach(elf: &[u8], files: &[String]) -> Result<Attach, SymbolError
 #[derive(Default)]
 struct Output(Vec<(u8, Vec<u8>)>);
 
-impl Host for Output {
+impl LaunchHost for Output {
     type World = Live;
 
     fn launch(&mut self, _: &Launch) -> Result<(Debugger<Live>, Vec<String>), String> {

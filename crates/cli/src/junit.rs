@@ -1,6 +1,6 @@
 //! JUnit XML, for continuous integration.
 
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use std::fmt::Write;
 
 /// A group of cases.
@@ -22,7 +22,7 @@ pub(crate) struct Case {
 }
 
 /// A whole file.
-pub(crate) fn document(title: &str, suites: &[Suite], stamp: &Stamp) -> String {
+pub(crate) fn document(title: &str, suites: &[Suite], stamp: &FileStamp) -> String {
     let failures = |suite: &Suite| {
         let failed = suite.cases.iter().filter(|case| case.failure.is_some());
         failed.count()

@@ -10,7 +10,7 @@ use crate::tune;
 use crate::wired;
 use crate::workshop::{self, Workshop};
 use rumbo_experiment::files::{Kind, Library, Overrides, ScenarioFile};
-use rumbo_lab::{FleetRobot, OwnProgram, SimulatedRobot};
+use rumbo_lab::{OwnProgram, SimulatedRobot};
 use rumbo_log::Choice;
 use rumbo_sim::debugging::Debugging;
 use rumbo_station::{Lab, LabConfig, Named};
@@ -28,8 +28,10 @@ pub(crate) fn lab(args: &mut LabArgs) -> Result<(), Failure> {
 fn serve(args: &mut LabArgs) -> Result<Lab, Failure> {
     let robots = match fleet(args)? {
         Some(scenario) => several(args, &scenario)?,
-        None => vec![(String::new(), Box::new(simulated(args)?) as _)],
+        None => vec![simulated(args)?],
     };
+    let named = |robot: SimulatedRobot| -> Named { (robot.name(), Box::new(robot)) };
+    let robots = robots.into_iter().map(named).collect();
     rumbo_station::serve_all(config(args), robots, calibrate::in_dashboard())
         .map_err(Failure::input)
 }
@@ -95,7 +97,7 @@ fn config(args: &LabArgs) -> LabConfig {
 }
 
 /// Several robots in one world: those of the scenario, or as many as asked for.
-fn several(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Vec<Named>, Failure> {
+fn several(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Vec<SimulatedRobot>, Failure> {
     #[cfg(unix)]
     let alone = args.pty || args.usb_pty || args.gdb.is_some();
     #[cfg(not(unix))]
@@ -116,9 +118,13 @@ fn several(args: &mut LabArgs, scenario: &ScenarioFile) -> Result<Vec<Named>, Fa
     let library = Library::new().beside(&args.scenario);
     let library = library.holding(Kind::Scenario, &scenario.name, &scenario.text);
     let choice = choice(args, &scenario.name);
-    let robots = rumbo_lab::fleet(library, overrides(args), &choice, args.robots.into())?;
-    let named = |robot: FleetRobot| -> Named { (robot.name(), Box::new(robot)) };
-    Ok(robots.into_iter().map(named).collect())
+    let robots = args.robots.into();
+    Ok(SimulatedRobot::all(
+        library,
+        overrides(args),
+        &choice,
+        robots,
+    )?)
 }
 
 /// The port for a debugger, printed to stderr.

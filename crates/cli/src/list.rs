@@ -9,7 +9,7 @@ use rumbo_control::mode::{ModeId, ReferenceDescription, ReferenceKind};
 use rumbo_control::params::ParamId;
 use rumbo_control::rig::Rig;
 use rumbo_experiment::files::{FileError, Kind, Library, MOVEMENTS, parameters::exact};
-use rumbo_plant::params::Params;
+use rumbo_plant::params::{Limit, Params};
 use rumbo_plant::plant::{Mount, Mounts};
 use serde_json::{Map, Value, json};
 
@@ -144,79 +144,82 @@ fn name(topic: Topic) -> &'static str {
 }
 
 fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
-    let wrong = |error: FileError| Failure::input(error);
-    let mut entries = Vec::new();
-    match topic {
+    let titled = |(name, title): (String, String)| json!({ "name": name, "title": title });
+    Ok(match topic {
         Topic::Scenarios => {
-            for name in library.list(Kind::Scenario) {
-                let file = library.scenario(&name).map_err(wrong)?;
-                entries.push(
+            let mut entries = files(library, Kind::Scenario, |name| {
+                let file = library.scenario(name)?;
+                Ok(
                     json!({ "name": name, "title": file.title, "group": file.group,
                     "mode": file.mode.name(), "rig": file.rig, "world": file.world }),
-                );
-            }
+                )
+            })?;
             // Stable: by name within a group.
             entries.sort_by(|one, other| one["group"].as_str().cmp(&other["group"].as_str()));
+            entries
         }
-        Topic::Worlds => {
-            for name in library.list(Kind::World) {
-                let file = library.world(&name).map_err(wrong)?;
-                entries.push(json!({ "name": name, "title": file.title }));
-            }
-        }
-        Topic::Robots => {
-            for name in library.list(Kind::Robot) {
-                let file = library.robot(&name).map_err(wrong)?;
-                let rigs: Vec<_> = file.rigs.keys().collect();
-                entries.push(
-                    json!({ "name": name, "title": file.title, "board": file.board.name,
-                    "driver": file.driver.in_words(), "rigs": rigs }),
-                );
-            }
-        }
-        Topic::Policies => {
-            for name in library.list(Kind::Policy) {
-                let file = library.policy(&name).map_err(wrong)?;
-                entries.push(json!({ "name": name, "title": file.title }));
-            }
-        }
-        Topic::Modes => {
-            entries.extend(ModeId::ALL.map(mode_entry));
-        }
+        Topic::Worlds => files(library, Kind::World, |name| {
+            Ok(json!({ "name": name, "title": library.world(name)?.title }))
+        })?,
+        Topic::Robots => files(library, Kind::Robot, |name| {
+            let file = library.robot(name)?;
+            let rigs: Vec<_> = file.rigs.keys().collect();
+            Ok(
+                json!({ "name": name, "title": file.title, "board": file.board.name,
+                "driver": file.driver.in_words(), "rigs": rigs }),
+            )
+        })?,
+        Topic::Policies => files(library, Kind::Policy, |name| {
+            Ok(json!({ "name": name, "title": library.policy(name)?.title }))
+        })?,
+        Topic::Modes => ModeId::ALL.map(mode_entry).into(),
         Topic::Rigs => {
-            for robot in library.list(Kind::Robot) {
-                let file = library.robot(&robot).map_err(wrong)?;
-                entries.extend(file.rigs.iter().map(
-                    |(name, rig)| json!({ "name": name, "robot": robot, "sonars": sonars(rig) }),
-                ));
-            }
+            let rigs = files(library, Kind::Robot, |robot| {
+                let file = library.robot(robot)?;
+                let rigs = file.rigs.iter();
+                let entry =
+                    |(name, rig)| json!({ "name": name, "robot": robot, "sonars": sonars(rig) });
+                Ok(rigs.map(entry).collect::<Vec<_>>())
+            })?;
+            rigs.concat()
         }
         Topic::Movements => {
-            entries.extend(MOVEMENTS.iter().map(|(_, name)| json!({ "name": name })))
+            let movements = MOVEMENTS.iter();
+            movements.map(|(_, name)| json!({ "name": name })).collect()
         }
-        Topic::Parameters => entries.extend(ParamId::ALL.iter().map(|id| {
-            let limits = id.limits();
-            json!({ "name": id.name(), "min": exact(limits.min), "max": exact(limits.max),
-                    "default": exact(limits.default), "unit": id.unit(), "help": id.help(),
-                    "type": id.kind().name(), "choices": id.kind().names(),
-                    "modes": id.modes().map(ModeId::name).collect::<Vec<_>>() })
-        })),
+        Topic::Parameters => ParamId::ALL.into_iter().map(parameter_entry).collect(),
         Topic::Ports => {
             let ports = rumbo_station::port::serial_ports().map_err(Failure::input)?;
-            let entry = |(name, what): (String, String)| json!({ "name": name, "title": what });
-            entries.extend(ports.into_iter().map(entry));
+            ports.into_iter().map(titled).collect()
         }
-        Topic::Logs => entries = logs::entries()?,
-        Topic::Sketches => {
-            let entry = |(name, title): (String, String)| json!({ "name": name, "title": title });
-            entries.extend(rumbo_sketch::examples().into_iter().map(entry));
-        }
-        Topic::Plant => entries.extend(Params::limits().iter().map(|limit| {
-            json!({ "name": limit.key, "min": limit.min, "max": limit.max, "default": limit.nominal,
-                    "unit": limit.unit, "help": limit.help })
-        })),
-    }
-    Ok(entries)
+        Topic::Logs => logs::entries()?,
+        Topic::Sketches => rumbo_sketch::examples().into_iter().map(titled).collect(),
+        Topic::Plant => Params::limits().iter().map(plant_entry).collect(),
+    })
+}
+
+/// What is said of each file of a kind.
+fn files<T>(
+    library: &Library,
+    kind: Kind,
+    entry: impl Fn(&str) -> Result<T, FileError>,
+) -> Result<Vec<T>, Failure> {
+    let names = library.list(kind);
+    let entries = names.iter().map(|name| entry(name));
+    entries.collect::<Result<_, _>>().map_err(Failure::input)
+}
+
+fn plant_entry(limit: &Limit) -> Value {
+    json!({ "name": limit.key, "min": limit.min, "max": limit.max,
+            "default": limit.nominal, "unit": limit.unit, "help": limit.help })
+}
+
+fn parameter_entry(id: ParamId) -> Value {
+    let limits = id.limits();
+    json!({ "name": id.name(), "min": exact(limits.min), "max": exact(limits.max),
+            "default": exact(limits.default), "unit": id.unit(), "help": id.help(),
+            "type": id.kind().name(), "choices": id.kind().names(),
+            "modes": id.modes().map(ModeId::name).collect::<Vec<_>>() })
 }
 
 /// A mode's description, with its reference in the units that people use.

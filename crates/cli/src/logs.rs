@@ -4,7 +4,7 @@ use crate::args::PruneArgs;
 use crate::failure::Failure;
 use crate::output::{self, figure, shown};
 use crate::place;
-use rumbo_station::{Recording, log_file};
+use rumbo_station::{RecordingSetting, log_file};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -13,14 +13,14 @@ use std::time::Duration;
 const FOLDER: &str = "RUMBO_LOGS";
 
 /// The log of a session. If it cannot be written, the session runs all the same, and page and terminal report it.
-pub(crate) fn recording(given: Option<&Path>) -> Option<Recording> {
+pub(crate) fn recording(given: Option<&Path>) -> Option<RecordingSetting> {
     let folder = folder(given)?;
     if let Err(why) = place::try_folder(&folder) {
         output::note(&format!("not recording: {why}"));
     }
     // What cannot be listed now is not shown later either.
     paths(&folder).iter().flatten().for_each(|path| mend(path));
-    Some(Recording { folder })
+    Some(RecordingSetting { folder })
 }
 
 /// Makes a log whole whose recording was killed, and says so.

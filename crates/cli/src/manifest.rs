@@ -1,7 +1,9 @@
 //! The manifest of a log, converted back into a run.
 
 use crate::failure::Failure;
-use rumbo_experiment::files::{Kind, Library, NativeProgram, Overrides, Port, Setup, TimedText};
+use rumbo_experiment::files::{
+    Kind, Library, NativeProgram, Overrides, Setup, TimedText, TypedPort,
+};
 use rumbo_lab::manifest::{OF_FLEET, OF_POLICY, hash};
 use rumbo_log::Manifest;
 use rumbo_wire::LineEnding;
@@ -20,7 +22,7 @@ const EEPROM: usize = 4_096;
 fn typed(manifest: &Manifest) -> Vec<TimedText> {
     let ending = manifest.line_ending.as_deref();
     let ending = ending.and_then(LineEnding::named).unwrap_or_default();
-    let lines = |texts: &[(f64, String)], port: Port| -> Vec<TimedText> {
+    let lines = |texts: &[(f64, String)], port: TypedPort| -> Vec<TimedText> {
         let timed = texts.iter().map(|(at_s, text)| TimedText {
             at_s: *at_s,
             text: text.clone(),
@@ -29,10 +31,10 @@ fn typed(manifest: &Manifest) -> Vec<TimedText> {
         });
         timed.collect()
     };
-    let mut texts = lines(&manifest.texts, Port::Link);
-    texts.extend(lines(&manifest.usb_texts, Port::Usb));
-    let parts = lines(&manifest.part_texts, Port::Parts).into_iter();
-    let parts = parts.chain(lines(&manifest.hand_texts, Port::Hand));
+    let mut texts = lines(&manifest.texts, TypedPort::Link);
+    texts.extend(lines(&manifest.usb_texts, TypedPort::Usb));
+    let parts = lines(&manifest.part_texts, TypedPort::Parts).into_iter();
+    let parts = parts.chain(lines(&manifest.hand_texts, TypedPort::Hand));
     texts.extend(parts.map(|text| TimedText {
         ending: LineEnding::None,
         ..text
@@ -78,6 +80,34 @@ fn check_ranges(log: &Path, manifest: &Manifest) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Its files by what follows this prefix in their names.
+fn kept<'a>(
+    manifest: &'a Manifest,
+    prefix: &'static str,
+) -> impl Iterator<Item = (&'a str, &'a str)> {
+    let files = manifest.files.iter();
+    files.filter_map(move |(file, text)| Some((file.strip_prefix(prefix)?, text.as_str())))
+}
+
+/// The library with its files: of scenario, robot and world by these names. An error is the one that it lacks.
+fn library(manifest: &Manifest, names: [&String; 3]) -> Result<Library, &'static str> {
+    let kinds = [
+        (Kind::Scenario, "scenario"),
+        (Kind::Robot, "robot"),
+        (Kind::World, "world"),
+    ];
+    let mut library = Library::new();
+    for ((kind, file), name) in std::iter::zip(kinds, names) {
+        library = library.holding(kind, name, manifest.files.get(file).ok_or(file)?);
+    }
+    for (kind, prefix) in [(Kind::Robot, OF_FLEET), (Kind::Policy, OF_POLICY)] {
+        for (name, text) in kept(manifest, prefix) {
+            library = library.holding(kind, name, text);
+        }
+    }
+    Ok(library)
+}
+
 /// The setup that a manifest describes, and its seed.
 pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Failure> {
     let wrong = |what: &str| Failure::Input(format!("{}: {what}", log.display()));
@@ -92,33 +122,11 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         ));
     };
     check_ranges(log, manifest)?;
-    let mut library = Library::new();
-    for (kind, file, name) in [
-        (Kind::Scenario, "scenario", scenario),
-        (Kind::Robot, "robot", robot),
-        (Kind::World, "world", world),
-    ] {
-        let text = manifest
-            .files
-            .get(file)
-            .ok_or_else(|| wrong(&format!("its {file} is missing; the log is damaged")))?;
-        library = library.holding(kind, name, text);
-    }
-    let of_fleet = manifest.files.iter();
-    let of_fleet = of_fleet.filter_map(|(file, text)| Some((file.strip_prefix(OF_FLEET)?, text)));
-    let mut robots = 0;
-    for (name, text) in of_fleet {
-        library = library.holding(Kind::Robot, name, text);
-        robots += 1;
-    }
-    let of_policy = manifest.files.iter();
-    let of_policy =
-        of_policy.filter_map(|(file, text)| Some((file.strip_prefix(OF_POLICY)?, text)));
-    let mut policies = Vec::new();
-    for (name, text) in of_policy {
-        library = library.holding(Kind::Policy, name, text);
-        policies.push(name.to_owned());
-    }
+    let names = [scenario, robot, world];
+    let library = library(manifest, names)
+        .map_err(|file| wrong(&format!("its {file} is missing; the log is damaged")))?;
+    let robots = kept(manifest, OF_FLEET).count();
+    let policy = kept(manifest, OF_POLICY).last();
     let (program, firmware) = match manifest.program.as_str() {
         "rumbo" => (NativeProgram::Rumbo, None),
         "baseline" => (NativeProgram::Baseline, None),
@@ -138,7 +146,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         robot: (robots < 2).then(|| robot.clone()),
         rig: manifest.rig.clone(),
         world: Some(world.clone()),
-        policy: policies.pop(),
+        policy: policy.map(|(name, _)| name.to_owned()),
         parameters: manifest.parameters.clone(),
         program,
         firmware,
@@ -157,16 +165,19 @@ mod tests {
 
     #[test]
     fn a_line_for_the_usb_port_is_read_from_its_own_list_with_its_ending() {
-        let timed = |text: &str, port: Port| TimedText {
+        let timed = |text: &str, port: TypedPort| TimedText {
             at_s: 2.0,
             text: text.into(),
             ending: LineEnding::Cr,
             port,
         };
-        let texts = vec![timed("REF 30", Port::Link), timed("go", Port::Usb)];
+        let texts = vec![
+            timed("REF 30", TypedPort::Link),
+            timed("go", TypedPort::Usb),
+        ];
         let manifest = Manifest {
-            texts: lines(&texts, Port::Link),
-            usb_texts: lines(&texts, Port::Usb),
+            texts: lines(&texts, TypedPort::Link),
+            usb_texts: lines(&texts, TypedPort::Usb),
             line_ending: Some("cr".into()),
             ..Manifest::default()
         };

@@ -9,7 +9,7 @@
 //! | profile | nothing but chains of functions with their cycles |
 
 use rumbo_log::LogKind;
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use rumbo_station::log_file;
 use std::fs::File;
 use std::io::Read;
@@ -31,7 +31,7 @@ pub(crate) enum Mark {
 
 impl Mark {
     /// That of a stamped file.
-    pub(crate) fn of(stamp: &Stamp) -> Self {
+    pub(crate) fn of(stamp: &FileStamp) -> Self {
         Self::Text(stamp.text().to_owned())
     }
 
@@ -93,7 +93,7 @@ mod tests {
         let svg = sheet.svg();
         let html = b"<!doctype html>\n<html lang=\"en\">\n".to_vec();
         for file in [svg.into_bytes(), html] {
-            let stamp = |about: &str| Stamp::of("compare", &["a".into(), about.into()]);
+            let stamp = |about: &str| FileStamp::of("compare", &["a".into(), about.into()]);
             std::fs::write(&path, stamp("b").put_on(file.clone())).unwrap();
             assert!(Mark::of(&stamp("b")).is_on(&path));
             assert!(!Mark::of(&stamp("c")).is_on(&path));

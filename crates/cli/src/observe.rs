@@ -6,9 +6,9 @@ use crate::mark::Mark;
 use crate::output;
 use crate::place::{self, Guard};
 use rumbo_experiment::files::Setup;
-use rumbo_experiment::observe::{self, Seen, Wanted};
+use rumbo_experiment::observe::{self, Observations, Wanted};
 use rumbo_experiment::run::{RunResult, run_by};
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use std::fs::File;
 use std::io::Write;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -37,8 +37,8 @@ pub(crate) fn check_places(args: &RunArgs, guard: &Guard) -> Result<(), Failure>
 }
 
 /// The mark of a run's waveform.
-fn stamp(args: &RunArgs) -> Stamp {
-    Stamp::of(
+fn stamp(args: &RunArgs) -> FileStamp {
+    FileStamp::of(
         "run",
         &[args.scenarios.clone(), vec![args.seed.seed.to_string()]].concat(),
     )
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &RunArgs, jobs: &[(&Setup, u64)]) -> Result<RunResult, F
             vcd,
             debugger,
         };
-        let mut seen = Seen::default();
+        let mut seen = Observations::default();
         let result = run_by(setup, *seed, |run| {
             seen = observe::go_on(run, wanted)?;
             Ok::<(), Failure>(())
@@ -91,7 +91,7 @@ pub(crate) fn run(args: &RunArgs, jobs: &[(&Setup, u64)]) -> Result<RunResult, F
 /// Records the pins' waveforms to a file.
 fn drawn<T>(
     path: &Path,
-    stamp: &Stamp,
+    stamp: &FileStamp,
     look: impl FnOnce(Option<File>) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     let mut seen = None;

@@ -3,6 +3,8 @@
 //! A headless run is simply repeated. A session of the lab is driven by the recorded bytes to the robot, each at the
 //! simulated instant at which it was sent. The output of the USARTs of an emulated Mega is compared as well.
 
+mod recorder;
+
 use crate::args::RerunArgs;
 use crate::export::warn_if_cut;
 use crate::failure::Failure;
@@ -10,7 +12,7 @@ use crate::logs;
 use crate::manifest;
 use crate::output;
 use crate::run_log;
-use rumbo_control::params::SCHEMA;
+use recorder::Recorder;
 use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_experiment::{MODEL, calibration_run};
@@ -19,80 +21,12 @@ use rumbo_sim::mega::{CONSOLES, PARTS};
 use rumbo_sim::{Config, Sim};
 use rumbo_station::log_file;
 use rumbo_wire::text::TextCommand;
-use rumbo_wire::{Decoder, FromRobot, Message, PROTOCOL_VERSION, Received, Telemetry};
+use rumbo_wire::{Decoder, FrameMessage, FromRobot, PROTOCOL_VERSION, Received, Telemetry};
 use serde_json::json;
 use std::path::Path;
 
 /// Longest line of text from a robot that is put together.
 const LINE: usize = 160;
-
-/// The program that recorded, where it was not this one.
-struct Recorder {
-    /// Which it was and which this is; empty where they are the same.
-    version: String,
-    /// Which model of robot and world it had, where that was another one: then other metrics are expected.
-    model: Option<String>,
-    /// What the robot's table of parameters was and is now, where they differ: then nothing else can be the same.
-    table: Option<String>,
-    /// The protocol that the robot spoke, where it was another one: then it said the same in other bytes, at other
-    /// instants.
-    protocol: Option<u8>,
-}
-
-impl Recorder {
-    fn of(log: &Log, recorded: &Manifest) -> Self {
-        let here = env!("CARGO_PKG_VERSION");
-        let version = match recorded.version == here {
-            true => String::new(),
-            false => format!("; recorded by version {}, this is {here}", recorded.version),
-        };
-        let model = (recorded.model != Some(MODEL)).then(|| {
-            let number = recorded.model.map_or_else(
-                || "before models had numbers".to_owned(),
-                |number| format!("with model {number}"),
-            );
-            format!("recorded {number}, this is model {MODEL}: robot or world changed between them")
-        });
-        let hello = log.hello();
-        let protocol = hello
-            .map(|hello| hello.protocol)
-            .filter(|protocol| *protocol != PROTOCOL_VERSION);
-        let table = hello
-            .filter(|_| recorded.program == "rumbo")
-            .map(|hello| hello.schema)
-            .filter(|table| *table != SCHEMA);
-        let table = table.map(|table| {
-            format!(
-                "the robot had another table of parameters ({table:08x}, this program's is {SCHEMA:08x}); run it again with the program that \
-                 recorded it"
-            )
-        });
-        Self {
-            version,
-            model,
-            table,
-            protocol,
-        }
-    }
-}
-
-impl Recorder {
-    /// Text before a difference; empty where the model is the same.
-    fn model_words(&self) -> String {
-        self.model
-            .as_ref()
-            .map_or_else(String::new, |model| format!("{model}; "))
-    }
-
-    /// Why not all is compared; empty where it is.
-    fn protocol_words(&self) -> String {
-        self.protocol.map_or_else(String::new, |protocol| {
-            format!(
-                "; the metrics alone are compared: the robot spoke protocol {protocol}, now {PROTOCOL_VERSION}, in other bytes at other instants"
-            )
-        })
-    }
-}
 
 /// The result of the comparison.
 enum Verdict {
@@ -251,7 +185,6 @@ fn same(log: &Log, result: &RunResult, other_protocol: Option<u8>) -> Verdict {
 }
 
 fn session(log: &Log, setup: &Setup, seed: u64, recorded: &Manifest) -> Result<Verdict, Failure> {
-    let setup = &*setup.of_seed(seed)?;
     let mut sim = Sim::new(Config {
         memory: recorded.memory(),
         ..run::prepare(setup, seed)?.config(seed)?
@@ -456,46 +389,4 @@ fn differing_signals(was: Telemetry, is: Telemetry) -> Vec<String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn telemetry_differs_by_named_signals() {
-        let frame = |left_rad_s: f32| {
-            let mut telemetry = Telemetry::default();
-            telemetry.wheel_rad_s[1].left = left_rad_s;
-            Burst {
-                t_us: 1_240_000,
-                to_robot: false,
-                bytes: FromRobot::Telemetry(telemetry).frame(7).bytes().to_vec(),
-            }
-        };
-        assert_eq!(
-            frame(3.0).difference(&frame(3.5)),
-            "telemetry at 1.240 s: left_rad_s was 3, is 3.5"
-        );
-    }
-
-    fn link(bytes: &[u8]) -> Vec<Burst> {
-        let burst = |(index, byte): (usize, &u8)| Burst {
-            t_us: 10_000 * index as u64,
-            to_robot: false,
-            bytes: vec![*byte],
-        };
-        bytes.iter().enumerate().map(burst).collect()
-    }
-
-    #[test]
-    fn the_first_difference_is_found_wherever_it_is() {
-        let at = |was: &[u8], is: &[u8], cut| match first_difference(&link(was), &link(is), cut) {
-            Some(Verdict::Differs(t_s, _)) => Some(t_s),
-            _ => None,
-        };
-        assert_eq!(at(b"abc", b"abc", false), None);
-        assert_eq!(at(b"abc", b"abd", false), Some(0.02));
-        assert_eq!(at(b"abc", b"ab", false), Some(0.02));
-        assert_eq!(at(b"ab", b"abc", false), Some(0.02));
-        assert_eq!(at(b"ab", b"abc", true), None);
-        assert_eq!(at(b"abc", b"ab", true), Some(0.02));
-    }
-}
+mod tests;

@@ -5,7 +5,7 @@ use crate::mark::Mark;
 use crate::output;
 use crate::place::{self, Guard, unwritable};
 use rumbo_log::Log;
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use rumbo_ros::{bag, convert};
 use std::fs::File;
 use std::io::BufWriter;
@@ -16,12 +16,12 @@ pub(crate) struct Bag {
     folder: PathBuf,
     /// Name of its MCAP file.
     file: String,
-    stamp: Stamp,
+    stamp: FileStamp,
 }
 
 impl Bag {
     /// The bag of the log with this name, in a folder.
-    pub(crate) fn of(stem: &str, folder: &Path, stamp: Stamp) -> Self {
+    pub(crate) fn of(stem: &str, folder: &Path, stamp: FileStamp) -> Self {
         Self {
             folder: folder.join(format!("{stem}.ros2bag")),
             file: format!("{stem}.mcap"),

@@ -21,17 +21,7 @@ use std::sync::atomic::Ordering;
 
 /// Runs every scenario with every seed; one line or table per scenario, or one JSON object per run.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
-    let ending = args.line_ending;
-    let texts = args.commands.iter().chain(&args.usb).cloned();
-    let texts = texts.map(|text| TimedText { ending, ..text });
-    let overrides = Overrides {
-        texts: texts
-            .chain(args.press.iter().flatten().chain(&args.place).cloned())
-            .collect(),
-        ..args
-            .setting
-            .overrides(args.program, &args.image, &args.parameters)
-    };
+    let overrides = overrides(args);
     let library = Library::new();
     let setup = |name: &String| library.setup(name, &overrides);
     let setups: Vec<Setup> = args.scenarios.iter().map(setup).collect::<Result<_, _>>()?;
@@ -51,14 +41,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let (mut passed, mut results) = (true, Vec::new());
     // One run is over soon, or looked at by a debugger: Ctrl-C ends it.
     let asked = (jobs.len() > 1).then(interrupt::asked);
-    let interrupted = || {
-        asked
-            .as_ref()
-            .is_some_and(|asked| asked.load(Ordering::Relaxed))
-    };
-    let go_on = || match interrupted() {
-        true => Err(Failure::Interrupted),
-        false => Ok(()),
+    let go_on = || match &asked {
+        Some(asked) if asked.load(Ordering::Relaxed) => Err(Failure::Interrupted),
+        _ => Ok(()),
     };
     let source = RunSource {
         kind: LogKind::Run,
@@ -94,24 +79,35 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let done = progress.position();
     progress.finish_and_clear();
     // Of the scenario whose runs were interrupted, those that are over.
-    let last = (done as usize)
-        .checked_sub(1)
-        .and_then(|last| jobs.get(last));
-    if let (false, Some((setup, _))) = (results.is_empty(), last) {
+    if !results.is_empty()
+        && let Some((setup, _)) = jobs[..done as usize].last()
+    {
         report(setup, &results)?;
     }
     kept.report();
     if matches!(ended, Err(Failure::Interrupted)) {
-        output::note(&format!(
-            "interrupted after {done} of {}",
-            output::counted(jobs.len(), "run")
-        ));
+        let all = output::counted(jobs.len(), "run");
+        output::note(&format!("interrupted after {done} of {all}"));
     }
     ended?;
-    if passed {
-        Ok(())
-    } else {
-        Err(Failure::LimitMissed)
+    match passed {
+        true => Ok(()),
+        false => Err(Failure::LimitMissed),
+    }
+}
+
+/// What is in place of the scenarios'.
+fn overrides(args: &RunArgs) -> Overrides {
+    let ending = args.line_ending;
+    let lines = args.commands.iter().chain(&args.usb).cloned();
+    let lines = lines.map(|text| TimedText { ending, ..text });
+    let hands = args.press.iter().flatten().chain(&args.place).cloned();
+    let of_scenario = args
+        .setting
+        .overrides(args.program, &args.image, &args.parameters);
+    Overrides {
+        texts: lines.chain(hands).collect(),
+        ..of_scenario
     }
 }
 

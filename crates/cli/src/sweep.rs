@@ -18,10 +18,10 @@ use rumbo_experiment::MODEL;
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::metrics::{bare, more_is_better};
 use rumbo_experiment::run::{self, check_metrics};
-use rumbo_experiment::sweep::{Design, Plan, Row, Sweep};
+use rumbo_experiment::sweep::{Design, RunRow, SweepOutcome, SweepPlan};
 use rumbo_lab::manifest::{self, crc32};
 use rumbo_log::LogKind;
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use rumbo_report::sweep::{Page, SHOWN};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -51,22 +51,10 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     }
     let header = header(args, &setup, &overrides, &plan);
     let about = serde_json::to_string(&header).map_err(Failure::input)?;
-    let stamp = Stamp::of("sweep", &[about]);
-    let path = args.out.join(JOURNAL);
-    let before = match args.overwrite.force {
-        true => None,
-        false => Journal::resume(&path, &header, &plan, args.resume)?,
-    };
-    let (mut journal, rows) = match before {
-        Some(before) => before,
-        None => {
-            check_places(args)?;
-            place::try_folder(&args.out)?;
-            (Journal::begin(&path, &header)?, Vec::new())
-        }
-    };
+    let stamp = FileStamp::of("sweep", &[about]);
+    let (mut journal, rows) = journal(args, &header, &plan)?;
     let first = rows.len();
-    let mut sweep = Sweep { plan, rows };
+    let mut sweep = SweepOutcome { plan, rows };
     let asked = interrupt::asked();
     let progress = progress_bar(sweep.plan.len());
     progress.set_position(first as u64);
@@ -105,7 +93,24 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     ended
 }
 
-fn plan(args: &SweepArgs, setup: &Setup) -> Result<Plan, Failure> {
+/// The journal of this sweep and its runs so far: the one that is there, or else a new one.
+fn journal(
+    args: &SweepArgs,
+    header: &Header,
+    plan: &SweepPlan,
+) -> Result<(Journal, Vec<RunRow>), Failure> {
+    let path = args.out.join(JOURNAL);
+    if !args.overwrite.force
+        && let Some(before) = Journal::resume(&path, header, plan, args.resume)?
+    {
+        return Ok(before);
+    }
+    check_places(args)?;
+    place::try_folder(&args.out)?;
+    Ok((Journal::begin(&path, header)?, Vec::new()))
+}
+
+fn plan(args: &SweepArgs, setup: &Setup) -> Result<SweepPlan, Failure> {
     let fixed = args.parameters.params.iter().map(|(name, _)| name);
     for name in fixed {
         if args.axes.iter().any(|axis| axis.name == *name) {
@@ -119,7 +124,7 @@ fn plan(args: &SweepArgs, setup: &Setup) -> Result<Plan, Failure> {
         (None, Some(count)) => Design::Sobol(count as usize),
         (None, None) => Design::Grid,
     };
-    let plan = Plan::new(args.axes.clone(), design, args.seed.seed, args.runs);
+    let plan = SweepPlan::new(args.axes.clone(), design, args.seed.seed, args.runs);
     let plan = plan.map_err(Failure::input)?;
     plan.check(setup)?;
     check_control(args.axes.iter().map(|axis| axis.name.as_str()), setup)?;
@@ -139,7 +144,7 @@ pub(crate) fn check_control<'a>(
     }
 }
 
-fn header(args: &SweepArgs, setup: &Setup, overrides: &Overrides, plan: &Plan) -> Header {
+fn header(args: &SweepArgs, setup: &Setup, overrides: &Overrides, plan: &SweepPlan) -> Header {
     let about = manifest::of(LogKind::Run, setup, overrides, plan.seed);
     let files = format!("{:?}", (&about.files, &about.rig, &about.wiring));
     Header {
@@ -193,7 +198,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    fn write(&self, sweep: &Sweep, stamp: &Stamp) -> Result<(), Failure> {
+    fn write(&self, sweep: &SweepOutcome, stamp: &FileStamp) -> Result<(), Failure> {
         let out = |name: &str| self.args.out.join(name);
         let logs = self.logs(sweep)?;
         place::write(&out(CSV), tables::csv(sweep))?;
@@ -208,7 +213,7 @@ impl Writer<'_> {
     }
 
     /// Runs the best and the worst of the points in the page once more, for their logs; returns their addresses.
-    fn logs(&self, sweep: &Sweep) -> Result<BTreeMap<(usize, u64), String>, Failure> {
+    fn logs(&self, sweep: &SweepOutcome) -> Result<BTreeMap<(usize, u64), String>, Failure> {
         let ranked = sweep.ranked(self.by);
         let folder = self.args.out.join(LOGS);
         place::folder(&folder)?;
@@ -232,7 +237,12 @@ impl Writer<'_> {
         Ok(logs)
     }
 
-    fn record(&self, sweep: &Sweep, row: &Row, path: &std::path::Path) -> Result<(), Failure> {
+    fn record(
+        &self,
+        sweep: &SweepOutcome,
+        row: &RunRow,
+        path: &std::path::Path,
+    ) -> Result<(), Failure> {
         let mut overrides = self.overrides.clone();
         let names = sweep.plan.axes.iter().map(|axis| axis.name.clone());
         let values = sweep.plan.points[row.point].iter().copied();
@@ -255,7 +265,7 @@ impl Writer<'_> {
 }
 
 /// The best points, and where the page is.
-fn report(args: &SweepArgs, sweep: &Sweep, by: &str) -> Result<(), Failure> {
+fn report(args: &SweepArgs, sweep: &SweepOutcome, by: &str) -> Result<(), Failure> {
     let axes = sweep.plan.axes.iter().map(|axis| axis.name.clone());
     let more = ["passed".to_owned(), format!("{by}, median")];
     let mut rows: Vec<Vec<String>> = vec![axes.chain(more).collect()];

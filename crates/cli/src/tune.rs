@@ -16,7 +16,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::compare::differences;
 use rumbo_experiment::files::{Library, Overrides};
 use rumbo_experiment::run;
-use rumbo_experiment::tune::{Outcome, Plan, Request, Search, is_tuned};
+use rumbo_experiment::tune::{Search, TuningOutcome, TuningPlan, TuningRequest, is_tuned};
 use serde_json::{Value, json};
 use std::sync::atomic::Ordering;
 
@@ -37,14 +37,14 @@ pub(crate) fn tune(args: &TuneArgs) -> Result<(), Failure> {
     if let Some(out) = &args.out {
         check_robot(out, &setup.robot.name, is_tuned, args.overwrite)?;
     }
-    let request = Request {
+    let request = TuningRequest {
         over: args.over.clone(),
         objective: args.aims.clone().unwrap_or_default(),
         seed: args.seed.seed,
         runs: args.runs,
         held_out: Search::held_out(args.seed.seed, args.held_out),
     };
-    let plan = Plan::new(setup, &library.scenario(&args.scenario)?, request)?;
+    let plan = TuningPlan::new(setup, &library.scenario(&args.scenario)?, request)?;
     set_threads(args.threads)?;
     let asked = interrupt::asked();
     let is_asked = || asked.load(Ordering::Relaxed);
@@ -75,8 +75,8 @@ fn on_image(
     args: &TuneArgs,
     library: &Library,
     overrides: &Overrides,
-    plan: &Plan,
-    outcome: &Outcome,
+    plan: &TuningPlan,
+    outcome: &TuningOutcome,
 ) -> Result<Option<(usize, usize)>, Failure> {
     let Some(image) = &args.image else {
         return Ok(None);
@@ -113,7 +113,7 @@ fn progress_bar() -> ProgressBar {
 }
 
 /// The outcome, for programs and for the dashboard.
-fn as_json(plan: &Plan, outcome: &Outcome, on_image: Option<(usize, usize)>) -> Value {
+fn as_json(plan: &TuningPlan, outcome: &TuningOutcome, on_image: Option<(usize, usize)>) -> Value {
     let values = plan
         .over()
         .iter()
@@ -130,7 +130,11 @@ fn as_json(plan: &Plan, outcome: &Outcome, on_image: Option<(usize, usize)>) -> 
     })
 }
 
-fn report(plan: &Plan, outcome: &Outcome, on_image: Option<(usize, usize)>) -> Result<(), Failure> {
+fn report(
+    plan: &TuningPlan,
+    outcome: &TuningOutcome,
+    on_image: Option<(usize, usize)>,
+) -> Result<(), Failure> {
     let scenario = &plan.setup().scenario;
     output::line(&format!(
         "{}: {} ({} runs of the search)",
@@ -159,7 +163,7 @@ fn report(plan: &Plan, outcome: &Outcome, on_image: Option<(usize, usize)>) -> R
 }
 
 /// Writes the robot file, unless that would be no gain.
-fn write(args: &TuneArgs, plan: &Plan, outcome: &Outcome) -> Result<(), Failure> {
+fn write(args: &TuneArgs, plan: &TuningPlan, outcome: &TuningOutcome) -> Result<(), Failure> {
     let Some(out) = &args.out else {
         return Ok(());
     };

@@ -10,8 +10,8 @@ use crate::params::{ParamId, Params};
 use crate::rig::Rig;
 use crate::sweep::{Sweep, SweepState};
 use crate::types::Look;
-use crate::types::{AgedRange, Fault, Range, Reading, SonarId, TICK_S, View};
-use crate::wall::{Wall, WallFilter};
+use crate::types::{AgedRange, Fault, Range, SonarId, SonarReading, SonarView, TICK_S};
+use crate::wall::{WallEstimate, WallFilter};
 
 /// Bearing of a wall that answers only where the servo looks to one side [rad].
 const ONE_SIDED_RAD: f32 = 0.32;
@@ -82,7 +82,7 @@ impl<'a> Ahead<'a> {
     }
 
     /// Whether a reading is one of the way ahead.
-    pub fn watches(&self, reading: &Reading) -> bool {
+    pub fn watches(&self, reading: &SonarReading) -> bool {
         self.has(reading.sonar) && (self.paired || reading.servo_rad == 0.0)
     }
 
@@ -120,7 +120,7 @@ impl<'a> Ahead<'a> {
     ///
     /// # Errors
     /// There is no wall, or no accepted reading for too long.
-    pub fn wall(&self, state: &mut AheadState, estimate: &Estimate) -> Result<Wall, Fault> {
+    pub fn wall(&self, state: &mut AheadState, estimate: &Estimate) -> Result<WallEstimate, Fault> {
         state.wall.predict(estimate.rolled_m, estimate.turned_rad);
         state.deaf_s += TICK_S;
         if let Some(reading) = estimate.reading
@@ -146,7 +146,7 @@ impl<'a> Ahead<'a> {
 
     /// Corrects by a reading; returns whether it was accepted. The first looks to both sides only show on which side
     /// the wall's normal is.
-    fn correct(&self, state: &mut AheadState, reading: &Reading, range_m: f32) -> bool {
+    fn correct(&self, state: &mut AheadState, reading: &SonarReading, range_m: f32) -> bool {
         let [sides, ..] = LOOKS;
         let first = !state.known && state.sweep.looks_aside() < sides;
         if self.paired || !first || reading.servo_rad == 0.0 {
@@ -188,9 +188,9 @@ impl<'a> Ahead<'a> {
     }
 
     fn start_ahead(&self, state: &mut AheadState, range_m: f32, bearing_rad: f32) {
-        let ahead = View {
+        let ahead = SonarView {
             x_m: self.ahead_m(),
-            ..View::default()
+            ..SonarView::default()
         };
         state.wall.start(&ahead, range_m, bearing_rad, ASKEW_RAD);
     }
@@ -210,7 +210,7 @@ impl<'a> Ahead<'a> {
             }
             state.echo = (false, false);
         }
-        let sure = |wall: Wall| wall.bearing_variance < KNOWN_RAD * KNOWN_RAD;
+        let sure = |wall: WallEstimate| wall.bearing_variance < KNOWN_RAD * KNOWN_RAD;
         state.known = looks >= most || (looks >= well && state.wall.wall().is_some_and(sure));
     }
 

@@ -8,7 +8,7 @@ use crate::estimate::Estimate;
 use crate::math::min;
 use crate::params::Params;
 use crate::rig::Rig;
-use crate::types::{Fault, Range, SIDES, Side, SonarId, View};
+use crate::types::{Fault, Range, SIDES, Side, SonarId, SonarView};
 
 /// Which sonars see a wall beside the robot.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +35,7 @@ impl<'a> Beside<'a> {
     }
 
     /// Position and direction of a sonar at a side.
-    pub fn view(&self, sonar: SonarId) -> View {
+    pub fn view(&self, sonar: SonarId) -> SonarView {
         self.params.view(sonar, 0.0).unwrap_or_default()
     }
 

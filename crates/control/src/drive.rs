@@ -46,7 +46,7 @@ pub struct WheelTerms {
 
 /// The direction in which a wheel was last driven.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Direction {
+pub enum WheelDirection {
     /// Forward; also before it was ever driven.
     #[default]
     Forward,
@@ -54,20 +54,20 @@ pub enum Direction {
     Backward,
 }
 
-impl Direction {
+impl WheelDirection {
     /// `value` with the sign of this direction.
     pub fn sign(self, value: f32) -> f32 {
         match self {
-            Direction::Forward => value,
-            Direction::Backward => -value,
+            WheelDirection::Forward => value,
+            WheelDirection::Backward => -value,
         }
     }
 
-    fn of(value: f32) -> Direction {
+    fn of(value: f32) -> WheelDirection {
         if value < 0.0 {
-            Direction::Backward
+            WheelDirection::Backward
         } else {
-            Direction::Forward
+            WheelDirection::Forward
         }
     }
 }
@@ -75,7 +75,7 @@ impl Direction {
 /// State of one wheel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct WheelState {
-    direction: Direction,
+    direction: WheelDirection,
     pid: PidState,
     /// The ramped reference in the driven direction [rad/s]; `None` while the wheel is not regulated.
     ramp_rad_s: Option<f32>,
@@ -102,7 +102,7 @@ pub struct Driven {
 
 impl DriveLayer {
     /// The direction in which each wheel turns if it turns.
-    pub fn directions(&self) -> Wheels<Direction> {
+    pub fn directions(&self) -> Wheels<WheelDirection> {
         self.wheels.map(|wheel| wheel.direction)
     }
 
@@ -207,13 +207,13 @@ impl WheelState {
     /// Whether the wheel still rolls against its reference.
     fn must_stop(&self, reference_rad_s: f32, motion: &WheelMotion) -> bool {
         abs(reference_rad_s) >= STANDSTILL_RAD_S
-            && Direction::of(reference_rad_s) != self.direction
+            && WheelDirection::of(reference_rad_s) != self.direction
             && !motion.standing
     }
 
     /// Adopts the direction of `request` if the wheel stands; returns whether it may be driven that way.
     fn may_drive(&mut self, request: f32, motion: &WheelMotion) -> bool {
-        let wanted = Direction::of(request);
+        let wanted = WheelDirection::of(request);
         if wanted == self.direction {
             return true;
         }
@@ -285,8 +285,8 @@ impl WheelState {
             acceleration,
         } = wheel_loop.feedforward;
         let friction = match self.direction {
-            Direction::Forward => static_forward,
-            Direction::Backward => static_backward,
+            WheelDirection::Forward => static_forward,
+            WheelDirection::Backward => static_backward,
         };
         let mut feedforward = friction + velocity * ramp_rad_s + acceleration * slope_rad_s2;
         if compensation != 1.0 {
@@ -334,8 +334,8 @@ impl WheelState {
             (ramp_rad_s - ramp_before_rad_s.unwrap_or(measured_rad_s)) * (1.0 / TICK_S);
         let gains = &wheel_loop.feedforward;
         let friction = match self.direction {
-            Direction::Forward => gains.static_forward,
-            Direction::Backward => gains.static_backward,
+            WheelDirection::Forward => gains.static_forward,
+            WheelDirection::Backward => gains.static_backward,
         };
         let feedforward =
             friction + gains.velocity * ramp_rad_s + gains.acceleration * slope_rad_s2;
@@ -356,8 +356,8 @@ impl WheelState {
 
     fn duty(&self, counts: i16) -> Duty {
         match self.direction {
-            Direction::Forward => Duty::new(counts),
-            Direction::Backward => Duty::new(-counts),
+            WheelDirection::Forward => Duty::new(counts),
+            WheelDirection::Backward => Duty::new(-counts),
         }
     }
 }

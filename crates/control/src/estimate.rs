@@ -4,14 +4,15 @@
 //! predicted by the distance rolled in between. The servo has no feedback: its angle is estimated from its commands and
 //! its speed.
 
-use crate::drive::Direction;
+use crate::drive::WheelDirection;
 use crate::math::{abs, clamp, wrap_angle};
 use crate::odometry::advance;
 use crate::params::{ParamId, Params};
 use crate::range::{RangeFilter, range_from_echo};
 use crate::speed::{EDGE_RAD, SpeedEstimator, WheelMotion};
 use crate::types::{
-    AgedRange, Inputs, Pose, Reading, SIDES, ServoAngle, SonarId, TICK_S, Transform, View, Wheels,
+    AgedRange, Inputs, Pose, SIDES, ServoAngle, SonarId, SonarReading, SonarView, TICK_S,
+    Transform, Wheels,
 };
 
 /// The front sonar looks ahead when the servo is within this of it [rad].
@@ -64,7 +65,7 @@ pub struct Estimate {
     /// The servo has reached its setpoint.
     pub servo_arrived: bool,
     /// A sonar's reading of this tick, unfiltered; its view is for modes, after [`Estimate::face_reading`].
-    pub reading: Option<Reading>,
+    pub reading: Option<SonarReading>,
     /// Filtered ranges by `SonarId` number; for a sonar on the servo only readings ahead.
     pub ranges: [AgedRange; 3],
 }
@@ -89,7 +90,7 @@ impl Estimate {
     /// to the robot. Once, before a mode looks: the outputs do not wait for it.
     pub fn face_reading(&mut self) {
         let robot = self.transform();
-        if let Some(Reading { view, .. }) = &mut self.reading {
+        if let Some(SonarReading { view, .. }) = &mut self.reading {
             (view.x_m, view.y_m) = robot.to_local(view.x_m, view.y_m);
             view.axis_rad = wrap_angle(view.axis_rad);
         }
@@ -107,7 +108,7 @@ impl Estimator {
         &mut self,
         params: &Params,
         inputs: &Inputs,
-        directions: Wheels<Direction>,
+        directions: Wheels<WheelDirection>,
         estimate: &mut Estimate,
     ) {
         let geometry = params.geometry();
@@ -164,7 +165,7 @@ impl Estimator {
     }
 
     /// The echo of this tick, with the view from which it was pinged: in the world, but for the axis.
-    fn reading(&mut self, params: &Params, inputs: &Inputs) -> Option<Reading> {
+    fn reading(&mut self, params: &Params, inputs: &Inputs) -> Option<SonarReading> {
         let (sonar, echo) = inputs.echo?;
         let ping = self.pings.get_mut(sonar as usize)?.take()?;
         let mount = params.view(sonar, ping.servo_rad)?;
@@ -174,10 +175,10 @@ impl Estimator {
         if sonar == SonarId::Front {
             self.aside = AgedRange::fresh(range);
         }
-        Some(Reading {
+        Some(SonarReading {
             sonar,
             range,
-            view: View {
+            view: SonarView {
                 x_m,
                 y_m,
                 axis_rad: mount.axis_rad - turned_rad,
@@ -256,7 +257,7 @@ mod tests {
         estimator: &mut Estimator,
         params: &Params,
         inputs: &Inputs,
-        directions: Wheels<Direction>,
+        directions: Wheels<WheelDirection>,
     ) -> Estimate {
         let mut estimate = Estimate::default();
         estimator.step(params, inputs, directions, &mut estimate);
@@ -267,7 +268,7 @@ mod tests {
     fn backward_edges_count_backward() {
         let (mut estimator, params) = (Estimator::default(), Params::default());
         let mut inputs = Inputs::default();
-        let backward = Wheels::both(Direction::Backward);
+        let backward = Wheels::both(WheelDirection::Backward);
         step(&mut estimator, &params, &inputs, backward);
         for tick in 1..=96u16 {
             let now = Micros(u32::from(tick) * 10_000);

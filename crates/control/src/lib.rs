@@ -13,6 +13,7 @@ pub mod ahead;
 pub mod beside;
 pub mod drive;
 pub mod estimate;
+mod fault;
 #[cfg(test)]
 mod fixtures;
 pub mod math;

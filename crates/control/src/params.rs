@@ -19,7 +19,7 @@ use crate::types::{Side, TICK_S, Wheels};
 
 /// Smallest and largest allowed value, and the one without any override.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct ParamLimits {
     /// Smallest allowed value.
     pub min: f32,
     /// Largest allowed value.
@@ -80,7 +80,7 @@ macro_rules! table {
         }
 
         /// Smallest and largest value and default of each.
-        static LIMITS: [Limits; COUNT] = [ $( Limits { min: $min, max: $max, default: $default }, )+ ];
+        static LIMITS: [ParamLimits; COUNT] = [ $( ParamLimits { min: $min, max: $max, default: $default }, )+ ];
 
         /// How many parameters there are.
         pub const COUNT: usize = { let names = [ $( $name, )+ ]; names.len() };
@@ -282,7 +282,7 @@ table! {
 
 impl ParamId {
     /// Its limits and default.
-    pub fn limits(self) -> Limits {
+    pub fn limits(self) -> ParamLimits {
         LIMITS[self as usize]
     }
 
@@ -291,7 +291,7 @@ impl ParamId {
     /// # Errors
     /// The value is not finite or outside the limits.
     pub fn check(self, value: f32) -> Result<(), ParamError> {
-        let Limits { min, max, .. } = self.limits();
+        let ParamLimits { min, max, .. } = self.limits();
         if !is_finite(value) {
             Err(ParamError::NotFinite)
         } else if value < min || value > max {

@@ -134,13 +134,13 @@ pub enum NetworkError {
 
 /// How many inputs, layers and neurons a network has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shape {
+pub struct NetworkShape {
     inputs: u8,
     layers: u8,
     neurons: [u8; MOST_LAYERS],
 }
 
-impl Shape {
+impl NetworkShape {
     /// A shape that can be evaluated.
     ///
     /// # Errors
@@ -210,7 +210,7 @@ impl Shape {
 }
 
 #[cfg(feature = "names")]
-impl core::fmt::Display for Shape {
+impl core::fmt::Display for NetworkShape {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         write!(f, "{} inputs", self.inputs)?;
         for neurons in self.neurons.iter().take(usize::from(self.layers)) {
@@ -237,7 +237,11 @@ pub struct Decision {
 
 impl Decision {
     /// Begins with an observation.
-    pub fn begin(shape: &Shape, read: impl Fn(u16) -> u8, observation: &Observation) -> Self {
+    pub fn begin(
+        shape: &NetworkShape,
+        read: impl Fn(u16) -> u8,
+        observation: &Observation,
+    ) -> Self {
         let mut decision = Self {
             at: shape.first_neuron(),
             count: shape.inputs,
@@ -257,7 +261,7 @@ impl Decision {
     }
 
     /// Works on it, for [`PRODUCTS`] at most.
-    pub fn work(&mut self, shape: &Shape, read: impl Fn(u16) -> u8) {
+    pub fn work(&mut self, shape: &NetworkShape, read: impl Fn(u16) -> u8) {
         let mut left = PRODUCTS;
         while let Some(neurons) = self.neurons(shape) {
             let products = u16::from(self.count);
@@ -276,7 +280,7 @@ impl Decision {
     }
 
     /// The outputs; `None` while there is work to do.
-    pub fn outputs(&self, shape: &Shape) -> Option<[i8; OUTPUTS]> {
+    pub fn outputs(&self, shape: &NetworkShape) -> Option<[i8; OUTPUTS]> {
         let [left, right, servo, ..] = self.values;
         self.neurons(shape)
             .is_none()
@@ -284,7 +288,7 @@ impl Decision {
     }
 
     /// Neurons of the layer that is worked on; `None` at the end.
-    fn neurons(&self, shape: &Shape) -> Option<u8> {
+    fn neurons(&self, shape: &NetworkShape) -> Option<u8> {
         let layer = self.layer;
         (layer < shape.layers)
             .then(|| shape.neurons.get(usize::from(layer)).copied())
@@ -311,7 +315,11 @@ impl Decision {
 }
 
 /// What a network makes of an observation, at once.
-pub fn decide(shape: &Shape, read: impl Fn(u16) -> u8, observation: &Observation) -> [i8; OUTPUTS] {
+pub fn decide(
+    shape: &NetworkShape,
+    read: impl Fn(u16) -> u8,
+    observation: &Observation,
+) -> [i8; OUTPUTS] {
     let mut decision = Decision::begin(shape, &read, observation);
     for _ in 1..DECISION_TICKS {
         decision.work(shape, &read);

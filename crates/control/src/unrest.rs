@@ -5,7 +5,7 @@
 
 use crate::estimate::Estimate;
 use crate::math::abs;
-use crate::types::{Fault, Range, Reading};
+use crate::types::{Fault, Range, SonarReading};
 
 /// A reading farther than this plus [`WILD_SHARE`] of the range from the filtered range is an outlier [m]: a weak echo
 /// errs by less.
@@ -34,7 +34,7 @@ impl Unrest {
     ///
     /// # Errors
     /// The sonar has so many outliers that it is faulty.
-    pub fn update(&mut self, estimate: &Estimate, reading: &Reading) -> Result<(), Fault> {
+    pub fn update(&mut self, estimate: &Estimate, reading: &SonarReading) -> Result<(), Fault> {
         let unrest = &mut self.0[reading.sonar as usize];
         let wild = match (estimate.range(reading.sonar).range, reading.range) {
             (_, Range::Faulty) => IMPOSSIBLE,
@@ -77,17 +77,17 @@ impl Unrest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::types::{SonarId, View};
+    use crate::types::{SonarId, SonarView};
 
     fn unrest_after(readings: impl IntoIterator<Item = Range>) -> (Unrest, Result<(), Fault>) {
         let mut unrest = Unrest::default();
         let mut estimate = Estimate::default();
         estimate.ranges[SonarId::Left as usize].range = Range::Valid(0.5);
         for range in readings {
-            let reading = Reading {
+            let reading = SonarReading {
                 sonar: SonarId::Left,
                 range,
-                view: View::default(),
+                view: SonarView::default(),
                 servo_rad: 0.0,
             };
             if let Err(fault) = unrest.update(&estimate, &reading) {

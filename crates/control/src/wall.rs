@@ -15,7 +15,7 @@
 //! docs/theory/wall.md.
 
 use crate::math::{abs, atan2, clamp, is_finite, max, min, rotate, sin_cos, sqrt, wrap_angle};
-use crate::types::View;
+use crate::types::SonarView;
 
 /// Largest angle between a beam's edge and the wall's normal [rad]; beyond, there is no echo.
 const LARGEST_INCIDENCE_RAD: f32 = 0.7;
@@ -40,7 +40,7 @@ const TURN_NOISE: f32 = 0.03;
 
 /// Where the wall is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wall {
+pub struct WallEstimate {
     /// From the middle of the wheels' axis, along the wall's normal [m].
     pub distance_m: f32,
     /// Direction to the nearest point of the wall, counter-clockwise from ahead [rad].
@@ -51,7 +51,7 @@ pub struct Wall {
     pub bearing_variance: f32,
 }
 
-impl Wall {
+impl WallEstimate {
     /// Standard deviation of the bearing [rad].
     pub fn bearing_sd_rad(&self) -> f32 {
         sqrt(max(self.bearing_variance, 0.0))
@@ -73,9 +73,9 @@ pub struct WallFilter {
 
 impl WallFilter {
     /// The wall, once there has been a reading.
-    pub fn wall(&self) -> Option<Wall> {
+    pub fn wall(&self) -> Option<WallEstimate> {
         let (_, _, bearing_variance) = self.p;
-        self.known.then_some(Wall {
+        self.known.then_some(WallEstimate {
             distance_m: self.distance_m,
             bearing_rad: self.bearing_rad,
             facing: self.facing,
@@ -89,7 +89,7 @@ impl WallFilter {
     }
 
     /// Starts from a first reading of a wall expected at `bearing_rad`, give or take `bearing_sd_rad`.
-    pub fn start(&mut self, view: &View, range_m: f32, bearing_rad: f32, bearing_sd_rad: f32) {
+    pub fn start(&mut self, view: &SonarView, range_m: f32, bearing_rad: f32, bearing_sd_rad: f32) {
         let (sin, cos) = sin_cos(bearing_rad);
         // The distance depends on the bearing by the sonar's lever, and on its square where the beam misses the normal.
         let slope_m = view.y_m * cos - view.x_m * sin;
@@ -150,7 +150,7 @@ impl WallFilter {
 
     /// The range that a sonar with this view and a beam of half angle `beam_rad` should read, and its slopes over
     /// distance and bearing; `None` where the wall gives no echo.
-    fn expect(&self, view: &View, beam_rad: f32) -> Option<(f32, f32, f32)> {
+    fn expect(&self, view: &SonarView, beam_rad: f32) -> Option<(f32, f32, f32)> {
         let (sin, cos) = self.facing;
         let normal_m = self.distance_m - (view.x_m * cos + view.y_m * sin);
         let slope_m = view.x_m * sin - view.y_m * cos;
@@ -172,7 +172,7 @@ impl WallFilter {
     }
 
     /// Updates with a reading; returns whether it was accepted.
-    pub fn update(&mut self, view: &View, beam_rad: f32, range_m: f32) -> bool {
+    pub fn update(&mut self, view: &SonarView, beam_rad: f32, range_m: f32) -> bool {
         if !self.known || !is_finite(range_m) {
             return false;
         }
@@ -247,7 +247,7 @@ mod tests {
     const BEAM: f32 = 0.31;
 
     /// The exact range to a wall at `distance_m` and `bearing_rad`.
-    fn range(view: &View, distance_m: f32, bearing_rad: f32) -> f32 {
+    fn range(view: &SonarView, distance_m: f32, bearing_rad: f32) -> f32 {
         let filter = WallFilter {
             distance_m,
             bearing_rad,
@@ -258,8 +258,8 @@ mod tests {
         filter.expect(view, BEAM).unwrap().0
     }
 
-    fn side(x_m: f32) -> View {
-        View {
+    fn side(x_m: f32) -> SonarView {
+        SonarView {
             x_m,
             y_m: 0.075,
             axis_rad: FRAC_PI_2,
@@ -292,7 +292,7 @@ mod tests {
 
     #[test]
     fn a_pair_in_front_starts_it_exactly_also_with_equal_readings_and_beyond_the_beam() {
-        let [left, right] = [0.06, -0.06].map(|y_m| View {
+        let [left, right] = [0.06, -0.06].map(|y_m| SonarView {
             x_m: 0.13,
             y_m,
             axis_rad: 0.0,
@@ -337,7 +337,7 @@ mod tests {
     fn a_sonar_that_looks_to_both_sides_measures_them_too() {
         let (distance_m, bearing_rad) = (0.5, 0.2);
         let mut filter = WallFilter::default();
-        let look = |axis_rad| View {
+        let look = |axis_rad| SonarView {
             x_m: 0.13,
             y_m: 0.0,
             axis_rad,
@@ -357,7 +357,7 @@ mod tests {
     #[test]
     fn turning_on_the_spot_moves_the_bearing_and_not_the_distance() {
         let mut filter = WallFilter::default();
-        let ahead = View::default();
+        let ahead = SonarView::default();
         filter.start(&ahead, 0.5, 0.0, 0.1);
         for _ in 0..50 {
             filter.predict(0.0, 0.01);

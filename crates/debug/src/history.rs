@@ -7,7 +7,7 @@
 
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
-use rumbo_emulator::gdb::World;
+use rumbo_emulator::gdb::DebuggedWorld;
 use rumbo_emulator::observe::Watchpoint;
 use rumbo_emulator::observe::trace::What;
 use std::collections::{BTreeMap, BTreeSet};
@@ -35,7 +35,7 @@ struct Snapshot<W> {
     is_changed: bool,
 }
 
-impl<W: World> Snapshot<W> {
+impl<W: DebuggedWorld> Snapshot<W> {
     fn cycle(&self) -> u64 {
         self.world.chip().cycle()
     }
@@ -59,7 +59,7 @@ pub(crate) struct History<W> {
     output: Vec<(u8, Vec<u8>)>,
 }
 
-impl<W: World> History<W> {
+impl<W: DebuggedWorld> History<W> {
     pub(crate) fn new(world: W) -> Self {
         let base = Snapshot {
             world: world.clone(),
@@ -322,7 +322,7 @@ fn count(said: &mut Said, output: &[(u8, Vec<u8>)]) {
 }
 
 /// The beginning of the last interval before a cycle in which a world stops.
-fn last_interval<W: World>(
+fn last_interval<W: DebuggedWorld>(
     from: &W,
     limit: u64,
     stops: &BTreeSet<u32>,
@@ -354,7 +354,7 @@ fn last_interval<W: World>(
 }
 
 /// The last accepted stop of an interval before a cycle, looked for from its end.
-fn last_within<W: World>(
+fn last_within<W: DebuggedWorld>(
     interval: &W,
     limit: u64,
     stops: &BTreeSet<u32>,
@@ -379,7 +379,7 @@ fn last_within<W: World>(
 }
 
 /// The last accepted stop of a world before a cycle.
-fn last_in<W: World>(
+fn last_in<W: DebuggedWorld>(
     world: &mut W,
     limit: u64,
     stops: &BTreeSet<u32>,
@@ -414,7 +414,7 @@ fn last_in<W: World>(
     }
 }
 
-fn arm<W: World>(world: &mut W, stops: &BTreeSet<u32>, watches: &[Watchpoint]) {
+fn arm<W: DebuggedWorld>(world: &mut W, stops: &BTreeSet<u32>, watches: &[Watchpoint]) {
     stops
         .iter()
         .for_each(|word| world.chip_mut().cpu_mut().set_breakpoint(*word));
@@ -423,7 +423,7 @@ fn arm<W: World>(world: &mut W, stops: &BTreeSet<u32>, watches: &[Watchpoint]) {
         .for_each(|watch| world.chip_mut().observers_mut().watch(watch.clone()));
 }
 
-fn disarm<W: World>(world: &mut W, stops: &BTreeSet<u32>, watches: &[Watchpoint]) {
+fn disarm<W: DebuggedWorld>(world: &mut W, stops: &BTreeSet<u32>, watches: &[Watchpoint]) {
     stops
         .iter()
         .for_each(|word| world.chip_mut().cpu_mut().clear_breakpoint(*word));

@@ -2,7 +2,7 @@
 
 use crate::expression::{Item, Names, member, register};
 use crate::location::Context;
-use crate::symbols::{Kind, Scope, Symbols, Variable};
+use crate::symbols::{Scope, ScopeKind, Symbols, Variable};
 use crate::unwind::Frame;
 use crate::value::{Memory, Value};
 use rumbo_emulator::chip::Chip;
@@ -82,12 +82,12 @@ pub(crate) fn stack(memory: Memory<'_>) -> Vec<CallFrame<'_>> {
         for scope in function.chain(at).into_iter().rev() {
             whole.scopes.push(scope);
             match scope.kind {
-                Kind::Block => {}
-                Kind::Function => stack.push(CallFrame {
+                ScopeKind::Block => {}
+                ScopeKind::Function => stack.push(CallFrame {
                     name: scope.name.clone(),
                     ..whole.clone()
                 }),
-                Kind::Inlined { file, line } => {
+                ScopeKind::Inlined { file, line } => {
                     stack.push(CallFrame {
                         name: scope.name.clone(),
                         ..whole.clone()

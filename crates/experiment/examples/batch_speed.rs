@@ -8,13 +8,14 @@
 
 use rumbo_control::mode::ModeId;
 use rumbo_control::{ServoAngle, Wheels};
-use rumbo_experiment::batch::{Batch, Driver};
+use rumbo_experiment::batch::{Batch, DrivenBy};
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup, fleet_around};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Event, Mount, Mounts, Plant, State};
 use rumbo_plant::sonar::SonarId;
+use rumbo_plant::world::World;
 use rumbo_wire::Command;
 use std::error::Error;
 use std::fmt::Write;
@@ -131,8 +132,7 @@ struct Eyes {
     range_m: [f64; 3],
 }
 
-/// Steps a second of the plant, each robot with one ping a tick and wheels that turn it away from what is near.
-fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
+fn robots(world: &World) -> Vec<(Plant, State, Eyes)> {
     let mount = |angle_rad| {
         Some(Mount {
             x_m: 0.1,
@@ -146,10 +146,9 @@ fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
         right: mount(-0.785),
         front: mount(0.0),
     };
-    let world = arena.world.world()?;
-    let mut robots: Vec<(Plant, State, Eyes)> = (0..ROBOTS as u64)
+    (0..ROBOTS as u64)
         .map(|seed| {
-            let plant = Plant::new(rumbo_plant::plant::Setup {
+            let plant = Plant::new(rumbo_plant::plant::PlantSetup {
                 params: Params::default().draw(seed, 0),
                 rig,
                 world: world.clone(),
@@ -168,7 +167,12 @@ fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
             };
             (plant, state, eyes)
         })
-        .collect();
+        .collect()
+}
+
+/// Steps a second of the plant, each robot with one ping a tick and wheels that turn it away from what is near.
+fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
+    let mut robots = robots(&arena.world.world()?);
     let ticks = seconds * 100;
     let start = Start::now();
     for (plant, state, eyes) in &mut robots {
@@ -199,7 +203,7 @@ fn plant_alone(arena: &Setup, seconds: u64) -> Result<Speed, Box<dyn Error>> {
 fn commanded(arena: &Setup, seconds: u64) -> Result<Speed, FileError> {
     let mut arena = arena.clone();
     arena.scenario.mode = ModeId::WheelSpeed;
-    let mut batch = Batch::new(&arena, Driver::Caller, &seeds(ROBOTS))?;
+    let mut batch = Batch::new(&arena, DrivenBy::Caller, &seeds(ROBOTS))?;
     batch.for_each(|_, group| {
         // A robot at its start obeys.
         let _ = group.robots_mut()[0].command(&Command::Arm);
@@ -225,7 +229,7 @@ fn commanded(arena: &Setup, seconds: u64) -> Result<Speed, FileError> {
 
 /// The same of mode 8 by the scenario's commands over the link.
 fn by_scenario(arena: &Setup, seconds: u64) -> Result<Speed, FileError> {
-    let mut batch = Batch::new(arena, Driver::Scenario, &seeds(ROBOTS))?;
+    let mut batch = Batch::new(arena, DrivenBy::Scenario, &seeds(ROBOTS))?;
     let start = Start::now();
     batch.advance(seconds as u32 * 100);
     Ok(start.speed(seconds * 100))
@@ -243,7 +247,7 @@ fn together(arena: &Setup, robots: usize, seconds: u64) -> Result<Speed, FileErr
         );
     let setup = library.setup("bench", &Overrides::default())?;
     let rounds = ROBOTS / robots;
-    let mut batch = Batch::new(&setup, Driver::Scenario, &seeds(rounds))?;
+    let mut batch = Batch::new(&setup, DrivenBy::Scenario, &seeds(rounds))?;
     let start = Start::now();
     batch.advance(seconds as u32 * 100);
     Ok(start.speed_of(rounds * robots, seconds * 100))
@@ -259,7 +263,7 @@ fn memory(arena: &Setup) -> Result<f64, Box<dyn Error>> {
     };
     let count = 8_192;
     let before_kib = resident_kib()?;
-    let batch = Batch::new(arena, Driver::Caller, &seeds(count))?;
+    let batch = Batch::new(arena, DrivenBy::Caller, &seeds(count))?;
     let each = (resident_kib()? - before_kib) * 1024.0 / count as f64;
     drop(batch);
     Ok(each)

@@ -5,7 +5,7 @@ use crate::operator::Operator;
 use crate::run::of_seed;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
-use rumbo_emulator::gdb::{Machine, World};
+use rumbo_emulator::gdb::{DebuggedWorld, Machine};
 use rumbo_sim::emulated::Emulated;
 use rumbo_sim::mega::USB;
 use rumbo_sim::trace::SAMPLE_US;
@@ -75,12 +75,9 @@ impl Machine for Debugged {
     }
 }
 
-impl World for Debugged {
-    fn go_to(&mut self, cycle: u64) -> Stopped {
-        self.world.mega_mut().halt_at(Some(cycle));
-        let stopped = self.go();
-        self.world.mega_mut().halt_at(None);
-        stopped
+impl DebuggedWorld for Debugged {
+    fn halt_at(&mut self, cycle: Option<u64>) {
+        self.world.mega_mut().halt_at(cycle);
     }
 
     fn now_us(&self) -> u64 {

@@ -26,7 +26,7 @@ pub struct Wanted {
 
 /// The observations.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Seen {
+pub struct Observations {
     /// The profile in tables.
     pub profile: Option<String>,
     /// The profile in the format of flame-graph tools.
@@ -39,7 +39,7 @@ pub struct Seen {
 ///
 /// # Errors
 /// There is no image in the robot, the file cannot be written, or the line to the debugger broke.
-pub fn go_on(run: &mut Run<'_>, wanted: Wanted) -> Result<Seen, FileError> {
+pub fn go_on(run: &mut Run<'_>, wanted: Wanted) -> Result<Observations, FileError> {
     let Some(mega) = run.sim().mega_mut() else {
         let what = "nothing of the program can be seen without --firmware";
         return Err(FileError::Setting(what.into()));
@@ -57,9 +57,9 @@ pub fn go_on(run: &mut Run<'_>, wanted: Wanted) -> Result<Seen, FileError> {
         let waves = Waves::new(BufWriter::new(file), &signals);
         run.draw(waves.map_err(|error| unwritten(&error))?);
     }
-    let mut seen = Seen::default();
+    let mut seen = Observations::default();
     if let Some(connection) = wanted.debugger {
-        let farewell = gdb::serve(&mut Debugged(run), connection);
+        let farewell = gdb::serve(&mut DebuggedRun(run), connection);
         let farewell = farewell.map_err(|error| FileError::Setting(error.to_string()))?;
         seen.ended = farewell == Farewell::Ended && !run.is_over();
     }
@@ -86,9 +86,9 @@ fn unwritten(error: &io::Error) -> FileError {
 }
 
 /// A run with an emulated Mega in it, in the hands of a debugger.
-struct Debugged<'r, 'a>(&'r mut Run<'a>);
+struct DebuggedRun<'r, 'a>(&'r mut Run<'a>);
 
-impl Debugged<'_, '_> {
+impl DebuggedRun<'_, '_> {
     fn mega(&mut self) -> &mut Mega {
         match self.0.sim().mega_mut() {
             Some(mega) => mega,
@@ -108,7 +108,7 @@ impl Debugged<'_, '_> {
     }
 }
 
-impl Machine for Debugged<'_, '_> {
+impl Machine for DebuggedRun<'_, '_> {
     fn chip(&self) -> &Chip {
         match self.0.mega() {
             Some(mega) => mega.chip(),

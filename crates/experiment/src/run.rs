@@ -25,7 +25,7 @@ use rumbo_emulator::observe::waveform::Waveform;
 use rumbo_sim::Sim;
 use rumbo_sim::fleet::Fleet;
 use rumbo_sim::mega::Mega;
-use rumbo_sim::trace::{SAMPLE_US, Sample, Trace};
+use rumbo_sim::trace::{SAMPLE_US, Trace, TruthSample};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::fs::File;
@@ -84,16 +84,10 @@ struct Member<S> {
 
 /// A run in progress: of one robot, or of all in a world.
 pub struct Run<'a> {
-    /// The whole.
-    setup: &'a Setup,
-    seed: u64,
+    player: Player<&'a Setup>,
     fleet: Fleet,
     /// Its robots, in order.
     sims: Vec<Sim>,
-    members: Vec<Member<&'a Setup>>,
-    end_us: u64,
-    /// End of the current sample [us].
-    sample_us: u64,
     /// Destination of the pins' waveforms, if they are recorded.
     waves: Option<Waves>,
     undrawn: io::Result<()>,
@@ -106,24 +100,14 @@ impl<'a> Run<'a> {
         robots: impl IntoIterator<Item = &'a Setup>,
         seed: u64,
     ) -> Result<Self, FileError> {
-        let end_us = (setup.scenario.duration_s * 1e6) as u64;
-        let (mut sims, mut members) = (Vec::new(), Vec::new());
-        for robot in robots {
-            let (sim, member) = Member::new(robot, seed)?;
-            sims.push(sim);
-            members.push(member);
-        }
+        let (mut sims, player) = Player::of(setup, robots, seed)?;
         let fleet = Fleet::new(&mut sims).map_err(|error| {
             FileError::Setting(format!("scenario {}: {error}", setup.scenario.name))
         })?;
         Ok(Self {
-            setup,
-            seed,
-            sample_us: sims[0].now_us(),
+            player,
             fleet,
             sims,
-            members,
-            end_us,
             waves: None,
             undrawn: Ok(()),
         })
@@ -141,49 +125,27 @@ impl<'a> Run<'a> {
     /// The messages received from the robot so far.
     #[cfg(feature = "host")]
     pub(crate) fn received(&self) -> &[rumbo_sim::trace::TimedMessage] {
-        &self.members[0].operator.received
+        &self.player.members[0].operator.received
     }
 
     /// Ground truth so far.
     #[cfg(feature = "host")]
     pub(crate) fn trace(&self) -> &Trace {
-        &self.members[0].trace
+        &self.player.members[0].trace
     }
 
     /// The time is over, or a program has ended.
     pub fn is_over(&self) -> bool {
-        self.sims[0].now_us() >= self.end_us || self.has_ended()
-    }
-
-    fn has_ended(&self) -> bool {
-        self.sims.iter().any(|robot| robot.verdict().is_some())
+        self.player.is_over(&self.sims)
     }
 
     /// Advances to the end of a sample, or to where a debugger halts the program.
     pub fn advance(&mut self) {
-        self.operate();
-        self.fleet.advance(&mut self.sims, self.sample_us);
+        self.player.operate(&mut self.sims);
+        self.fleet.advance(&mut self.sims, self.player.sample_us);
         self.draw_levels();
-        self.sample();
-    }
-
-    /// Before a sample: what the operators send.
-    fn operate(&mut self) {
-        if self.sims[0].now_us() >= self.sample_us {
-            for (sim, member) in std::iter::zip(&mut self.sims, &mut self.members) {
-                member.operator.step(sim);
-            }
-            self.sample_us = (self.sims[0].now_us() + SAMPLE_US).min(self.end_us);
-        }
-    }
-
-    /// At its end, or that of a program.
-    fn sample(&mut self) {
-        if self.sims[0].now_us() >= self.sample_us || self.has_ended() {
-            for (sim, member) in std::iter::zip(&mut self.sims, &mut self.members) {
-                member.trace.sample(sim);
-                member.trace.listen(sim);
-            }
+        if self.player.sample(&self.sims) {
+            self.player.listen(&mut self.sims);
         }
     }
 
@@ -216,16 +178,13 @@ impl<'a> Run<'a> {
     }
 
     fn judge(mut self) -> RunResult {
-        let members = std::mem::take(&mut self.members);
-        let robots = std::iter::zip(&mut self.sims, members);
-        let mut robots: Vec<RunResult> = robots
-            .map(|(sim, member)| member.result(sim, self.seed))
-            .collect();
+        let setup = self.player.setup;
+        let mut robots = self.player.results(&mut self.sims);
         let whole = match &mut robots[..] {
             [only] => std::mem::take(only),
             _ => together(&self.fleet, &self.sims, robots),
         };
-        judged(self.setup, whole)
+        judged(setup, whole)
     }
 }
 
@@ -283,7 +242,7 @@ impl<S: Deref<Target = Setup> + Clone> Member<S> {
 }
 
 /// That the motors were driven in vain, if so.
-fn never_turned(samples: &[Sample]) -> Option<Note> {
+fn never_turned(samples: &[TruthSample]) -> Option<Note> {
     let pwm = samples.iter().flat_map(|sample| sample.duty);
     let pwm = pwm.map(i16::unsigned_abs).max()?;
     let stood = samples.iter().all(|sample| sample.wheel_rad_s == [0.0; 2]);
@@ -295,15 +254,8 @@ fn never_turned(samples: &[Sample]) -> Option<Note> {
 /// # Errors
 /// The setup's values do not fit together.
 pub fn parameters(setup: &Setup) -> Result<Option<Params>, FileError> {
-    if !setup.takes_parameters() {
-        return Ok(None);
-    }
-    let mut parameters = Params::default();
-    for (id, value) in setup.control_parameters()? {
-        // Checked when it was read.
-        let _ = parameters.set(id, value);
-    }
-    Ok(Some(parameters))
+    let takes_parameters = setup.takes_parameters();
+    takes_parameters.then(|| setup.params()).transpose()
 }
 
 /// Runs a scenario once.
@@ -348,34 +300,26 @@ pub fn run_by<E: From<FileError>>(
     seed: u64,
     go_on: impl FnOnce(&mut Run<'_>) -> Result<(), E>,
 ) -> Result<RunResult, E> {
-    let robots = prepare_all(setup, seed)?;
+    let robots = setup.robots().iter().map(|robot| prepare(robot, seed));
+    let robots: Vec<_> = robots.collect::<Result<_, _>>()?;
     let mut run = Run::new(setup, robots.iter().map(|robot| &**robot), seed)?;
     go_on(&mut run)?;
     Ok(run.judge())
 }
 
-/// The robots of a setup, each prepared for the seed.
-fn prepare_all(setup: &Setup, seed: u64) -> Result<Vec<Cow<'_, Setup>>, FileError> {
-    let robots = setup.robots().iter().map(|robot| {
-        Ok(match robot.of_seed(seed)? {
-            Cow::Borrowed(robot) => prepare(robot, seed)?,
-            Cow::Owned(robot) => Cow::Owned(prepare(&robot, seed)?.into_owned()),
-        })
-    });
-    robots.collect()
-}
-
-/// The setup to run: if its scenario requests it, with the parameters from a calibration of this seed's robot. The
-/// scenario's own parameters win over them; the report's program has none.
+/// The setup to run with a seed: with boxes and goal of its world, and, if its scenario requests it, with the
+/// parameters from a calibration of this seed's robot. The scenario's own parameters win over them; the report's
+/// program has none.
 ///
 /// # Errors
-/// The calibration failed.
+/// A random world that finds no room, or the calibration failed.
 pub fn prepare(setup: &Setup, seed: u64) -> Result<Cow<'_, Setup>, FileError> {
-    if !setup.scenario.calibrated || !setup.takes_parameters() {
-        return Ok(Cow::Borrowed(setup));
+    let drawn = setup.of_seed(seed)?;
+    if !drawn.scenario.calibrated || !drawn.takes_parameters() {
+        return Ok(drawn);
     }
-    let mut parameters = calibration(setup, seed)?;
-    let mut setup = setup.clone();
+    let mut parameters = calibration(&drawn, seed)?;
+    let mut setup = drawn.into_owned();
     parameters.append(&mut setup.scenario.parameters);
     setup.scenario.parameters = parameters;
     Ok(Cow::Owned(setup))

@@ -16,7 +16,7 @@ mod message;
 mod programmer;
 
 pub use error::{FlashError, IntoBootSection, Phase};
-pub use programmer::{Action, Programmer};
+pub use programmer::{PortAction, Programmer};
 
 /// Baud rate of the Mega's boot loader.
 pub const BAUD: u32 = 115_200;

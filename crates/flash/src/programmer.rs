@@ -36,7 +36,7 @@ const OK: u8 = 0x00;
 
 /// What is to be done with the port.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Action {
+pub enum PortAction {
     /// Pull the lines DTR and RTS (assert them), or release them.
     Lines(bool),
     /// Send these bytes.
@@ -155,20 +155,20 @@ impl Programmer {
     }
 
     /// What to do now, at this time of any clock that never goes back \[us\]; to be called again at once, except after
-    /// [`Action::Wait`] and [`Action::Done`].
+    /// [`PortAction::Wait`] and [`PortAction::Done`].
     ///
     /// # Errors
     /// Why it has ended.
-    pub fn poll(&mut self, now_us: u64) -> Result<Action, FlashError> {
+    pub fn poll(&mut self, now_us: u64) -> Result<PortAction, FlashError> {
         while let Some((phase, step)) = self.steps.front().copied() {
             match self.progress {
                 Progress::New if step == Step::Begin => {
                     self.progress = Progress::Released(now_us);
-                    return Ok(Action::Lines(false));
+                    return Ok(PortAction::Lines(false));
                 }
                 Progress::Released(since_us) if now_us >= since_us + PULSE_US => {
                     self.progress = Progress::Pulled(now_us);
-                    return Ok(Action::Lines(true));
+                    return Ok(PortAction::Lines(true));
                 }
                 Progress::Pulled(since_us) if now_us >= since_us + PULSE_US => {
                     // What the program sent before the reset.
@@ -176,7 +176,7 @@ impl Programmer {
                     self.sign_ons = 1;
                     return Ok(self.send(step, now_us));
                 }
-                Progress::Released(_) | Progress::Pulled(_) => return Ok(Action::Wait),
+                Progress::Released(_) | Progress::Pulled(_) => return Ok(PortAction::Wait),
                 Progress::New => return Ok(self.send(step, now_us)),
                 Progress::Sent(sent_us) => match self.inbox.next(self.number) {
                     Some(answer) => self.take(phase, step, &answer)?,
@@ -184,10 +184,10 @@ impl Programmer {
                 },
             }
         }
-        Ok(Action::Done)
+        Ok(PortAction::Done)
     }
 
-    fn send(&mut self, step: Step, now_us: u64) -> Action {
+    fn send(&mut self, step: Step, now_us: u64) -> PortAction {
         self.progress = Progress::Sent(now_us);
         // After a reset some boot loaders take no other number than 1.
         self.number = match step {
@@ -195,7 +195,7 @@ impl Programmer {
             _ => self.number.wrapping_add(1),
         };
         self.begun |= matches!(step, Step::Write(_) | Step::WriteHalt);
-        Action::Send(encode(self.number, &self.body(step)))
+        PortAction::Send(encode(self.number, &self.body(step)))
     }
 
     fn body(&self, step: Step) -> Vec<u8> {
@@ -238,15 +238,15 @@ impl Programmer {
         step: Step,
         sent_us: u64,
         now_us: u64,
-    ) -> Result<Action, FlashError> {
+    ) -> Result<PortAction, FlashError> {
         if step != Step::Begin {
             return match now_us < sent_us + PATIENCE_US {
-                true => Ok(Action::Wait),
+                true => Ok(PortAction::Wait),
                 false => Err(FlashError::Silent(phase)),
             };
         }
         if now_us < sent_us + SIGN_ON_US {
-            return Ok(Action::Wait);
+            return Ok(PortAction::Wait);
         }
         if self.sign_ons < SIGN_ONS {
             self.sign_ons += 1;

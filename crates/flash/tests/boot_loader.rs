@@ -5,7 +5,7 @@ use rumbo_emulator::chip::Chip;
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
 use rumbo_emulator::model::ATMEGA2560;
-use rumbo_flash::{Action, BAUD, FlashError, IntoBootSection, Phase, Programmer};
+use rumbo_flash::{BAUD, FlashError, IntoBootSection, Phase, PortAction, Programmer};
 use std::path::Path;
 
 /// As Debian's `arduino-core-avr` has it.
@@ -111,13 +111,13 @@ impl Board {
                 phases.push(phase);
             }
             match programmer.poll(now_us) {
-                Ok(Action::Lines(pulled)) => self.lines(pulled),
-                Ok(Action::Send(bytes)) => self.receive(&bytes),
-                Ok(Action::Wait) => {
+                Ok(PortAction::Lines(pulled)) => self.lines(pulled),
+                Ok(PortAction::Send(bytes)) => self.receive(&bytes),
+                Ok(PortAction::Wait) => {
                     now_us += STEP_US;
                     programmer.receive(&self.pass(STEP_US));
                 }
-                Ok(Action::Done) => return (phases, Ok(())),
+                Ok(PortAction::Done) => return (phases, Ok(())),
                 Err(error) => return (phases, Err(error)),
             }
         }
@@ -303,19 +303,19 @@ fn damaged(boot_loader: &Image, at: [usize; 2]) -> Option<FlashError> {
     let (mut now_us, mut pages) = (0, 0);
     let error = loop {
         match programmer.poll(now_us) {
-            Ok(Action::Lines(pulled)) => board.lines(pulled),
-            Ok(Action::Send(mut bytes)) => {
+            Ok(PortAction::Lines(pulled)) => board.lines(pulled),
+            Ok(PortAction::Send(mut bytes)) => {
                 pages += u32::from(bytes[5] == 0x13);
                 if bytes[5] == 0x13 && pages == 3 {
                     at.iter().for_each(|at| bytes[15 + at] ^= 0x10);
                 }
                 board.receive(&bytes);
             }
-            Ok(Action::Wait) => {
+            Ok(PortAction::Wait) => {
                 now_us += STEP_US;
                 programmer.receive(&board.pass(STEP_US));
             }
-            Ok(Action::Done) => return None,
+            Ok(PortAction::Done) => return None,
             Err(error) => break error,
         }
     };
@@ -345,8 +345,8 @@ fn another_chip_is_not_written() {
     let (mut now_us, mut written) = (0, Vec::new());
     let error = loop {
         match programmer.poll(now_us) {
-            Ok(Action::Lines(_)) => {}
-            Ok(Action::Send(message)) => {
+            Ok(PortAction::Lines(_)) => {}
+            Ok(PortAction::Send(message)) => {
                 let [_, number, _, _, _, body @ .., _] = &message[..] else {
                     panic!("{message:?}");
                 };
@@ -363,8 +363,8 @@ fn another_chip_is_not_written() {
                 framed.push(framed.iter().fold(0, |sum, byte| sum ^ byte));
                 programmer.receive(&framed);
             }
-            Ok(Action::Wait) => now_us += STEP_US,
-            Ok(Action::Done) => panic!("it is written"),
+            Ok(PortAction::Wait) => now_us += STEP_US,
+            Ok(PortAction::Done) => panic!("it is written"),
             Err(error) => break error,
         }
     };

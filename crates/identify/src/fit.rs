@@ -12,9 +12,9 @@ use crate::descent::descend;
 use crate::error::IdentifyError;
 use crate::log::{DriveLog, Seen};
 use crate::problem::{NUISANCES, Problem, UNKNOWNS, dead_zone_pwm};
-use crate::progress::Progress;
+use crate::progress::FitProgress;
 use crate::replay::Nuisance;
-use crate::row::Row;
+use crate::row::LogRow;
 use crate::score::{RunScore, score};
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector};
@@ -118,7 +118,7 @@ pub fn identify(
     logs: &[DriveLog],
     start: &Params,
     generations: usize,
-    progress: &Progress<'_>,
+    progress: &FitProgress<'_>,
 ) -> Result<Identification, IdentifyError> {
     let logs = useful(logs)?;
     let problem = Problem::new(&UNKNOWNS, &logs, start).until(Some(progress.stop));
@@ -196,7 +196,7 @@ pub fn check(logs: &[DriveLog], params: &Params) -> Result<Check, IdentifyError>
 pub fn leave_one_out(
     logs: &[DriveLog],
     start: &Params,
-    progress: &Progress<'_>,
+    progress: &FitProgress<'_>,
 ) -> Result<Vec<RunScore>, IdentifyError> {
     let logs = useful(logs)?;
     let mut scores = Vec::new();
@@ -208,7 +208,7 @@ pub fn leave_one_out(
         if others.is_empty() {
             return Err(IdentifyError::NothingLeft);
         }
-        let quietly = Progress {
+        let quietly = FitProgress {
             report: &|_| {},
             ..*progress
         };
@@ -223,7 +223,10 @@ fn check_source(logs: &[DriveLog], params: &Params) -> Result<Vec<RunScore>, Ide
     let problem = Problem::new(&[], logs, params);
     // A coarse grid first: a battery too low, or a floor too hard to turn on, is a robot that never moves, and no slope leads
     // away from that.
-    let scrubs: &[f64] = match logs.iter().any(|log| log.rows.iter().any(Row::is_turning)) {
+    let scrubs: &[f64] = match logs
+        .iter()
+        .any(|log| log.rows.iter().any(LogRow::is_turning))
+    {
         true => &[-1.0, 0.0, 1.0],
         false => &[0.0],
     };

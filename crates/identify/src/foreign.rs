@@ -4,8 +4,8 @@
 //! time since the row before, and over 50 ms at least.
 
 use crate::error::IdentifyError;
-use crate::log::{DriveLog, LONGEST_MS, Program, Seen, WINDOW_MS};
-use crate::row::{Row, Window};
+use crate::log::{DriveLog, LONGEST_MS, RobotProgram, Seen, WINDOW_MS};
+use crate::row::{LogRow, Window};
 use rumbo_log::Log;
 use std::path::Path;
 
@@ -84,7 +84,7 @@ pub(crate) fn foreign(path: &Path, log: &Log) -> Result<DriveLog, IdentifyError>
         let gap_ms = before_ms.map_or(WINDOW_MS, |before_ms| at_ms - before_ms);
         before_ms = Some(at_ms);
         let duty = pwm.map(|pwm| (pwm / 255.0).clamp(-1.0, 1.0));
-        rows.push(Row {
+        rows.push(LogRow {
             at_ms,
             duty,
             reference_rad_s: pair(REFERENCES).unwrap_or(duty),
@@ -108,7 +108,7 @@ pub(crate) fn foreign(path: &Path, log: &Log) -> Result<DriveLog, IdentifyError>
     Ok(DriveLog {
         name,
         source: path.into(),
-        program: Program::Another,
+        program: RobotProgram::Another,
         on_floor: true,
         battery_v: None,
         seen,

@@ -49,11 +49,11 @@ pub use fit::{
     AgainstTruth, Check, GENERATIONS, Identification, Identified, check, identify, leave_one_out,
 };
 pub use foreign::lacks;
-pub use log::{DriveLog, Program};
-pub use pair::{Correlation, Pair};
+pub use log::{DriveLog, RobotProgram};
+pub use pair::{Correlation, SonarPair};
 pub use plot::plot;
-pub use progress::Progress;
-pub use recordings::{Outcome, Recordings};
+pub use progress::FitProgress;
+pub use recordings::{Recordings, RecordingsOutcome};
 pub use replay::Nuisance;
 pub use rewrite::rewrite;
 pub use score::{RunScore, WheelError};

@@ -5,8 +5,8 @@
 //! reference is zero (modes 5 to 7), the bridge was released whatever the PWM column says.
 
 use crate::error::IdentifyError;
-use crate::pair::Pair;
-use crate::row::{Row, Window};
+use crate::pair::SonarPair;
+use crate::row::{LogRow, Window};
 use std::path::{Path, PathBuf};
 
 /// Length of the windows in which the original counts encoder edges, ms.
@@ -30,7 +30,7 @@ pub enum Seen {
 
 /// The program that the robot ran.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Program {
+pub enum RobotProgram {
     /// The report's: a row each pass, speeds counted in windows of 50 ms.
     Original,
     /// Ours: a row each 40 ms, speeds from the times of edges.
@@ -47,7 +47,7 @@ pub struct DriveLog {
     /// The file that it is from, or is a stretch of: one robot, battery and floor.
     pub source: PathBuf,
     /// The program that was recorded.
-    pub program: Program,
+    pub program: RobotProgram,
     /// Whether the wheels were on the floor; else they were in the air.
     pub on_floor: bool,
     /// Voltage of the idle battery and its standard deviation, V, where it was measured.
@@ -55,11 +55,11 @@ pub struct DriveLog {
     /// What it measured.
     pub seen: Seen,
     /// Rows in the order of time.
-    pub rows: Vec<Row>,
+    pub rows: Vec<LogRow>,
     /// When counting windows end, modulo their length, if the log shows it.
     pub window_phase_ms: Option<usize>,
     /// What the run says about its two sonars, if it has two.
-    pub pair: Option<Pair>,
+    pub pair: Option<SonarPair>,
     /// Rows that were left out, and why.
     pub damaged: Vec<IdentifyError>,
 }
@@ -120,11 +120,11 @@ impl DriveLog {
         }
         // Mode 1 has one sonar and writes its reading twice.
         let is_pair = rows.iter().any(|row| row.range_m[0] != row.range_m[1]);
-        let pair = is_pair.then(|| Pair::of(&rows, seen == Seen::SidePair));
+        let pair = is_pair.then(|| SonarPair::of(&rows, seen == Seen::SidePair));
         Ok(Self {
             name,
             source: path.into(),
-            program: Program::Original,
+            program: RobotProgram::Original,
             on_floor: true,
             battery_v: None,
             seen,
@@ -153,9 +153,9 @@ fn window_end_ms(at_ms: usize, window_phase_ms: Option<usize>) -> usize {
 
 /// The phase of the counting windows: rows within one window must show the same speeds. `None` if the rows are too
 /// far apart to tell.
-fn window_phase_ms(rows: &[Row]) -> Option<usize> {
+fn window_phase_ms(rows: &[LogRow]) -> Option<usize> {
     let contradictions = |phase_ms: usize| {
-        let window = |row: &Row| (row.at_ms + WINDOW_MS - phase_ms) / WINDOW_MS;
+        let window = |row: &LogRow| (row.at_ms + WINDOW_MS - phase_ms) / WINDOW_MS;
         rows.windows(2)
             .filter(|pair| {
                 window(&pair[0]) == window(&pair[1]) && pair[0].speed_rad_s != pair[1].speed_rad_s
@@ -234,7 +234,7 @@ impl Columns {
         header: &[String],
         reader: &mut csv::Reader<impl std::io::Read>,
         damaged: &mut Vec<IdentifyError>,
-    ) -> Result<(Vec<Row>, bool), IdentifyError> {
+    ) -> Result<(Vec<LogRow>, bool), IdentifyError> {
         let bad = |cause: String| IdentifyError::Read {
             path: path.into(),
             cause,
@@ -289,12 +289,12 @@ impl Columns {
         Ok(mode == 1.0 || mode == 2.0)
     }
 
-    fn row(&self, fields: &Fields<'_>, at_ms: usize) -> Result<Row, IdentifyError> {
+    fn row(&self, fields: &Fields<'_>, at_ms: usize) -> Result<LogRow, IdentifyError> {
         let pair =
             |columns: [usize; 2]| Ok([fields.number(columns[0])?, fields.number(columns[1])?]);
         let pwm = pair(self.pwm)?;
         let is_front = self.is_front(fields)?;
-        let mut row = Row {
+        let mut row = LogRow {
             at_ms,
             duty: pwm.map(|pwm| (pwm / 255.0).clamp(-1.0, 1.0)),
             reference_rad_s: [0.0; 2],

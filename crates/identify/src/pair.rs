@@ -5,7 +5,7 @@
 //! the left, the front reading then falls against the rear one if the wall is on the left. Ahead of a wall, the left
 //! reading grows.
 
-use crate::row::Row;
+use crate::row::LogRow;
 use std::fmt;
 
 /// Rows over which a difference of PWM acts, and after which it shows.
@@ -60,7 +60,7 @@ impl Correlation {
 
 /// What a run says about its pair of sonars; the first is the column `left_cm`.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct Pair {
+pub struct SonarPair {
     /// Both look to one side.
     pub beside: bool,
     /// Change of first - second against PWM of the right wheel - left wheel.
@@ -69,12 +69,12 @@ pub struct Pair {
     pub following: Correlation,
 }
 
-impl Pair {
+impl SonarPair {
     /// Reads it off the rows of a run with two sonars.
-    pub(crate) fn of(rows: &[Row], beside: bool) -> Self {
-        let apart = |row: &Row| row.range_m[0] - row.range_m[1];
-        let turn = |row: &Row| row.duty[1] - row.duty[0];
-        let mean = |rows: &[Row], value: &dyn Fn(&Row) -> f64| {
+    pub(crate) fn of(rows: &[LogRow], beside: bool) -> Self {
+        let apart = |row: &LogRow| row.range_m[0] - row.range_m[1];
+        let turn = |row: &LogRow| row.duty[1] - row.duty[0];
+        let mean = |rows: &[LogRow], value: &dyn Fn(&LogRow) -> f64| {
             rows.iter().map(value).sum::<f64>() / rows.len() as f64
         };
         let turning: Vec<_> = rows
@@ -107,7 +107,7 @@ impl Pair {
     }
 }
 
-impl fmt::Display for Pair {
+impl fmt::Display for SonarPair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names = ["left_cm", "right_cm"];
         if let Some((front, side)) = self.beside_wall() {

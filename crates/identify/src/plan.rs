@@ -16,7 +16,7 @@ use rumbo_control::mode::Movement;
 
 /// One movement, or a stop, for a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+pub struct PlanStep {
     /// What.
     pub movement: Movement,
     /// At this PWM, of 255.
@@ -27,7 +27,7 @@ pub struct Step {
 
 /// Movements without a pause for the person.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct PlanPart {
     /// Its name.
     pub name: &'static str,
     /// What the person does before.
@@ -35,10 +35,10 @@ pub struct Part {
     /// Whether the wheels are on the floor.
     pub on_floor: bool,
     /// The movements.
-    pub steps: Vec<Step>,
+    pub steps: Vec<PlanStep>,
 }
 
-impl Part {
+impl PlanPart {
     /// How long it takes, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
@@ -46,35 +46,35 @@ impl Part {
     }
 }
 
-const fn step(movement: Movement, pwm: u8, seconds: f64) -> Step {
-    Step {
+const fn step(movement: Movement, pwm: u8, seconds: f64) -> PlanStep {
+    PlanStep {
         movement,
         pwm,
         seconds,
     }
 }
 
-const fn rest(seconds: f64) -> Step {
+const fn rest(seconds: f64) -> PlanStep {
     step(Movement::Stop, 0, seconds)
 }
 
 /// The parts, in their order; less than two minutes of driving.
 #[must_use]
-pub fn plan() -> [Part; 3] {
+pub fn plan() -> [PlanPart; 3] {
     [
-        Part {
+        PlanPart {
             name: "wheels in the air",
             instruction: "put the robot on a box so that both wheels turn freely",
             on_floor: false,
             steps: in_the_air(),
         },
-        Part {
+        PlanPart {
             name: "straight on",
             instruction: "put the robot on the floor with 1 m free ahead of it and 1 m behind it",
             on_floor: true,
             steps: straight_on(),
         },
-        Part {
+        PlanPart {
             name: "turns on the spot",
             instruction: "leave the robot on the floor with half a metre free around it",
             on_floor: true,
@@ -83,7 +83,7 @@ pub fn plan() -> [Part; 3] {
     ]
 }
 
-fn in_the_air() -> Vec<Step> {
+fn in_the_air() -> Vec<PlanStep> {
     let direction = |movement| {
         let ramp = (30..=50).step_by(4).map(|pwm| step(movement, pwm, 0.41));
         // Coasting shows friction over inertia, whatever the motors do.
@@ -96,13 +96,14 @@ fn in_the_air() -> Vec<Step> {
             rest(0.81),
         ];
         let starts = [100, 0, 160, 0].map(|pwm| step(movement, pwm, 0.7));
-        let parts: [Vec<Step>; 4] = [ramp.collect(), levels.concat(), after.into(), starts.into()];
+        let parts: [Vec<PlanStep>; 4] =
+            [ramp.collect(), levels.concat(), after.into(), starts.into()];
         parts.concat()
     };
     [direction(Movement::Forward), direction(Movement::Backward)].concat()
 }
 
-fn straight_on() -> Vec<Step> {
+fn straight_on() -> Vec<PlanStep> {
     let mut steps = Vec::new();
     for (pwm, seconds) in [
         (80, 1.6),
@@ -131,7 +132,7 @@ fn straight_on() -> Vec<Step> {
     steps
 }
 
-fn turns() -> Vec<Step> {
+fn turns() -> Vec<PlanStep> {
     let mut steps = Vec::new();
     for (pwm, seconds) in [
         (100, 1.4),
@@ -166,7 +167,7 @@ mod tests {
 
     #[test]
     fn the_drive_lasts_at_most_two_minutes() {
-        let seconds: f64 = plan().iter().map(Part::seconds).sum();
+        let seconds: f64 = plan().iter().map(PlanPart::seconds).sum();
         assert!(seconds <= 120.0, "{seconds}");
     }
 

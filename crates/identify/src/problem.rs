@@ -8,7 +8,7 @@
 //! friction. Two facts of the report are such residuals too: wheels start to turn at a PWM of about 35 in the air and
 //! 65 on the floor.
 
-use crate::log::{DriveLog, Program};
+use crate::log::{DriveLog, RobotProgram};
 use crate::replay::{Nuisance, Replay};
 use crate::residuals::{Residuals, run_residuals};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
@@ -152,7 +152,7 @@ impl<'a> Problem<'a> {
     /// logs of our program the unknowns are believed to be near `start`: it is a robot of that kind.
     #[must_use]
     pub fn new(unknowns: &'a [Unknown], logs: &'a [DriveLog], start: &Params) -> Self {
-        let is_the_reports = logs.iter().all(|log| log.program == Program::Original);
+        let is_the_reports = logs.iter().all(|log| log.program == RobotProgram::Original);
         let all = Params::limits();
         let limits = unknowns.iter().filter_map(|unknown| {
             let key = unknown.keys[0];

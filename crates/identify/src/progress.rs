@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 /// What a fit reports to while it runs, and asks.
 #[derive(Clone, Copy)]
-pub struct Progress<'a> {
+pub struct FitProgress<'a> {
     /// Takes the share of the work that is done, 0 to 1.
     pub report: &'a dyn Fn(f64),
     /// Set when the fit is to end, within about a second: with [`Interrupted`](crate::IdentifyError::Interrupted).
@@ -15,7 +15,7 @@ pub struct Progress<'a> {
 /// Of what nobody stops.
 static GOES_ON: AtomicBool = AtomicBool::new(false);
 
-impl<'a> Progress<'a> {
+impl<'a> FitProgress<'a> {
     /// Reports to this function, until the end.
     pub fn to(report: &'a dyn Fn(f64)) -> Self {
         Self {
@@ -31,7 +31,7 @@ impl<'a> Progress<'a> {
     }
 }
 
-impl fmt::Debug for Progress<'_> {
+impl fmt::Debug for FitProgress<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Progress")
             .field("stop", &self.stop)

@@ -4,8 +4,8 @@ use crate::dialect;
 use crate::error::IdentifyError;
 use crate::fit::{GENERATIONS, Identification, check, identify, leave_one_out};
 use crate::foreign::foreign;
-use crate::log::{DriveLog, Program};
-use crate::progress::Progress;
+use crate::log::{DriveLog, RobotProgram};
+use crate::progress::FitProgress;
 use crate::score::RunScore;
 use crate::sonar_stats::{self, Comparison, SonarLog};
 use crate::stretches::stretches;
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 /// What comes of recordings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Outcome {
+pub enum RecordingsOutcome {
     /// Parameters fitted.
     Identified(Box<Identification>),
     /// Repeated with the robot's own parameters.
@@ -30,7 +30,7 @@ pub enum Outcome {
     },
 }
 
-impl Outcome {
+impl RecordingsOutcome {
     /// How well each run is repeated.
     #[must_use]
     pub fn runs(&self) -> &[RunScore] {
@@ -94,28 +94,28 @@ impl Recordings {
     pub fn identify(
         &self,
         start: &Params,
-        progress: &Progress<'_>,
-    ) -> Result<Outcome, IdentifyError> {
-        let is_ours = |log: &DriveLog| log.program == Program::Rumbo;
+        progress: &FitProgress<'_>,
+    ) -> Result<RecordingsOutcome, IdentifyError> {
+        let is_ours = |log: &DriveLog| log.program == RobotProgram::Rumbo;
         let generations = match self.drive.iter().all(is_ours) {
             true => 0,
             false => GENERATIONS,
         };
         let found = identify(&self.drive, start, generations, progress)?;
-        Ok(Outcome::Identified(Box::new(found)))
+        Ok(RecordingsOutcome::Identified(Box::new(found)))
     }
 
     /// Repeats each run on this plant ([`check`]). Runs along a wall show nothing of the drive, but all of the sonars.
     ///
     /// # Errors
     /// As [`check`]; not where the sonars are all that is shown.
-    pub fn check(&self, params: &Params) -> Result<Outcome, IdentifyError> {
+    pub fn check(&self, params: &Params) -> Result<RecordingsOutcome, IdentifyError> {
         let runs = match check(&self.drive, params) {
             Ok(check) => check.runs,
             Err(IdentifyError::NothingToFit) if !self.sonars.is_empty() => Vec::new(),
             Err(error) => return Err(error),
         };
-        Ok(Outcome::Checked { runs })
+        Ok(RecordingsOutcome::Checked { runs })
     }
 
     /// Repeats each run on what the others give ([`leave_one_out`]).
@@ -125,10 +125,10 @@ impl Recordings {
     pub fn leave_one_out(
         &self,
         start: &Params,
-        progress: &Progress<'_>,
-    ) -> Result<Outcome, IdentifyError> {
+        progress: &FitProgress<'_>,
+    ) -> Result<RecordingsOutcome, IdentifyError> {
         let runs = leave_one_out(&self.drive, start, progress)?;
-        Ok(Outcome::Checked { runs })
+        Ok(RecordingsOutcome::Checked { runs })
     }
 
     /// The recorded figures of each sonar beside those of a simulated one.

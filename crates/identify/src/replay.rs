@@ -8,8 +8,8 @@
 //! wheel is. Battery and friction memory are those of the plant that runs along. No row after the start is used, but
 //! for the duty, which is the prediction's input.
 
-use crate::log::{DriveLog, Program};
-use crate::row::{Row, Window};
+use crate::log::{DriveLog, RobotProgram};
+use crate::row::{LogRow, Window};
 use crate::shown::Angles;
 use rumbo_plant::drivetrain::{Bridge, Drivetrain, Side, State};
 use rumbo_plant::noise::Noise;
@@ -131,7 +131,7 @@ impl<'a> Replay<'a> {
     /// Speeds that the rows of the log would have shown in this trace, rad/s.
     #[must_use]
     pub(crate) fn speeds(&self, trace: &Trace) -> Vec<[f64; 2]> {
-        let speed = |row: &Row| self.shown(&row.window, &trace.angle_rad, 0);
+        let speed = |row: &LogRow| self.shown(&row.window, &trace.angle_rad, 0);
         self.log.rows.iter().map(speed).collect()
     }
 
@@ -139,7 +139,7 @@ impl<'a> Replay<'a> {
     fn start(&self) -> State {
         let mut state = self.drivetrain.start();
         let first = &self.log.rows[0];
-        if self.log.program == Program::Rumbo {
+        if self.log.program == RobotProgram::Rumbo {
             // A stretch may begin in motion.
             for (wheel, speed_rad_s) in state.wheels.iter_mut().zip(first.speed_rad_s) {
                 wheel.speed_rad_s = speed_rad_s;
@@ -196,7 +196,7 @@ impl<'a> Replay<'a> {
     /// are left out.
     pub(crate) fn span(&self, index: usize, observed: &Observed, last: usize) -> Vec<Predicted> {
         let (angle_rad, from_ms) = self.run_on(index, observed, last);
-        let within = |row: &Row| {
+        let within = |row: &LogRow| {
             // The simulated wheel's may be somewhat longer.
             let begins = |window: &Window| {
                 window.end_ms >= from_ms + window.length_ms + window.length_ms / 4 + SHIFT_MS
@@ -281,7 +281,7 @@ impl<'a> Replay<'a> {
         })
     }
 
-    fn apply(&self, state: &mut State, row: &Row) {
+    fn apply(&self, state: &mut State, row: &LogRow) {
         for side in [Side::Left, Side::Right] {
             let duty = row.duty[side.index()];
             let bridge = if duty > 0.0 {
@@ -298,7 +298,7 @@ impl<'a> Replay<'a> {
 
 impl Observed {
     /// Takes in a measured window, given the speeds expected in it, rad/s.
-    fn correct(&mut self, what: Correct, row: &Row, expected_rad_s: [f64; 2]) {
+    fn correct(&mut self, what: Correct, row: &LogRow, expected_rad_s: [f64; 2]) {
         for (i, expected_rad_s) in expected_rad_s.into_iter().enumerate() {
             let measured_rad_s = row.speed_rad_s[i];
             let error_rad_s = measured_rad_s - expected_rad_s;

@@ -1,8 +1,8 @@
 //! What is left between a recorded run and its simulation, in standard deviations.
 
-use crate::log::{DriveLog, Program, Seen};
+use crate::log::{DriveLog, RobotProgram, Seen};
 use crate::replay::{Correct, Predicted, Replay};
-use crate::row::Row;
+use crate::row::LogRow;
 use crate::wall;
 
 /// Wheel speed error that counts as one standard deviation, rad/s: 10 rpm over the whole run, 1.7 rpm half a second ahead:
@@ -63,7 +63,7 @@ impl Residuals {
             .map_or(0, |last| last + 1);
     }
 
-    fn push(&mut self, row: &Row, residual: f64) {
+    fn push(&mut self, row: &LogRow, residual: f64) {
         self.values.push(residual);
         self.blocks.push(Some(self.first + row.at_ms / BLOCK_MS));
     }
@@ -83,14 +83,14 @@ pub(crate) fn run_residuals(log: &DriveLog, replay: &Replay<'_>, residuals: &mut
                 residuals.push(row, weight * robust(error_m / RANGE_SD_M));
             }
         }
-        (Seen::Speeds, Program::Rumbo) => timed_residuals(log, replay, weight, residuals),
+        (Seen::Speeds, RobotProgram::Rumbo) => timed_residuals(log, replay, weight, residuals),
         (Seen::Speeds, _) => counted_residuals(log, replay, weight, residuals),
     }
 }
 
 /// Speeds as the original counts them: over the whole run, and half a second ahead.
 fn counted_residuals(log: &DriveLog, replay: &Replay<'_>, weight: f64, residuals: &mut Residuals) {
-    let of_row = |row: &Row| match row.is_turning() {
+    let of_row = |row: &LogRow| match row.is_turning() {
         true => weight / TURNING,
         false => weight,
     };
@@ -162,7 +162,7 @@ fn settled(log: &DriveLog, from: Option<usize>) -> Option<usize> {
 
 /// A speed's error, rad/s, and its slope, rad/s2; none where there are too few edges for a speed. A wheel counts as
 /// standing that turns so slowly that no edge comes for long.
-fn error(predicted: &Predicted, row: &Row, wheel: usize) -> Option<(f64, f64)> {
+fn error(predicted: &Predicted, row: &LogRow, wheel: usize) -> Option<(f64, f64)> {
     let (predicted_rad_s, measured_rad_s) = (predicted.speed_rad_s[wheel], row.speed_rad_s[wheel]);
     if row.edgeless[wheel] {
         None

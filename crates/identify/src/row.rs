@@ -2,7 +2,7 @@
 
 /// One row of a log.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct LogRow {
     /// Time since the log's start, ms.
     pub at_ms: usize,
     /// Applied duty of the left and right wheel, -1 to 1; 0 is released.
@@ -28,7 +28,7 @@ pub struct Window {
     pub length_ms: usize,
 }
 
-impl Row {
+impl LogRow {
     /// When the measurement of its speeds was complete, ms.
     #[must_use]
     pub fn measured_ms(&self) -> usize {

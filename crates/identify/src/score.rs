@@ -3,7 +3,7 @@
 use crate::log::{DriveLog, Seen};
 use crate::replay::{Correct, Nuisance, Replay};
 use crate::residuals::RANGE_SD_M;
-use crate::row::Row;
+use crate::row::LogRow;
 use crate::wall;
 use rumbo_plant::params::Params;
 use serde::Serialize;
@@ -77,19 +77,19 @@ pub(crate) fn score(log: &DriveLog, params: &Params, nuisance: Nuisance) -> RunS
                 .collect();
             score.whole = errors(&whole, |_| true);
             score.whole_straight = errors(&whole, |row| !row.is_turning());
-            score.whole_turning = errors(&whole, Row::is_turning);
+            score.whole_turning = errors(&whole, LogRow::is_turning);
             score.ahead = errors(&ahead, |_| true);
             score.ahead_straight = errors(&ahead, |row| !row.is_turning());
-            score.ahead_turning = errors(&ahead, Row::is_turning);
+            score.ahead_turning = errors(&ahead, LogRow::is_turning);
         }
     }
     score
 }
 
 /// A measured row with the speeds simulated for it, rad/s.
-type Pair<'a> = (&'a Row, [f64; 2]);
+type Pair<'a> = (&'a LogRow, [f64; 2]);
 
-fn errors(pairs: &[Pair<'_>], choose: impl Fn(&Row) -> bool) -> Option<[WheelError; 2]> {
+fn errors(pairs: &[Pair<'_>], choose: impl Fn(&LogRow) -> bool) -> Option<[WheelError; 2]> {
     let chosen: Vec<&Pair<'_>> = pairs.iter().filter(|(row, _)| choose(row)).collect();
     let wheel = |i: usize| {
         let n = chosen.len() as f64;

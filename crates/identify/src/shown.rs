@@ -4,7 +4,7 @@
 //! newest edges ([`rumbo_control::speed`]), which leads while the wheel speeds up and lags while it slows down. Where the
 //! edges were no log tells, so both means are read from the angle.
 
-use crate::log::Program;
+use crate::log::RobotProgram;
 use crate::row::Window;
 use rumbo_control::speed::{self, fuse};
 
@@ -29,10 +29,10 @@ pub(crate) struct Angles<'a> {
 
 impl Angles<'_> {
     /// The speed shown with this window, rad/s. What is before the first angle or after the last one stands still.
-    pub(crate) fn shown(&self, program: Program, window: Window) -> f64 {
+    pub(crate) fn shown(&self, program: RobotProgram, window: Window) -> f64 {
         match program {
-            Program::Rumbo => self.fused(window),
-            Program::Original | Program::Another => self.mean(window),
+            RobotProgram::Rumbo => self.fused(window),
+            RobotProgram::Original | RobotProgram::Another => self.mean(window),
         }
     }
 
@@ -131,7 +131,7 @@ mod tests {
             end_ms: (1e3 - 0.5 * edge_ms).round() as usize,
             length_ms: (8.0 * edge_ms).round() as usize,
         };
-        (mean, angles.shown(Program::Rumbo, window))
+        (mean, angles.shown(RobotProgram::Rumbo, window))
     }
 
     #[test]
@@ -170,6 +170,6 @@ mod tests {
             end_ms: 190,
             length_ms: 40,
         };
-        assert_eq!(angles.shown(Program::Rumbo, window), 0.0);
+        assert_eq!(angles.shown(RobotProgram::Rumbo, window), 0.0);
     }
 }

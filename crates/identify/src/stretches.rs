@@ -10,8 +10,8 @@
 //! simulated robots have too, is not looked at.
 
 use crate::error::IdentifyError;
-use crate::log::{DriveLog, Program, Seen};
-use crate::row::{Row, Window};
+use crate::log::{DriveLog, RobotProgram, Seen};
+use crate::row::{LogRow, Window};
 use crate::shown::{EDGE_RAD, MOTOR_TURN_RAD};
 use rumbo_log::Log;
 use std::path::Path;
@@ -131,7 +131,7 @@ impl Stretches {
             return;
         };
         let from_ms = first.t_ms - LEAD_MS;
-        let mut rows: Vec<Row> = frames.iter().map(|frame| frame.row(from_ms)).collect();
+        let mut rows: Vec<LogRow> = frames.iter().map(|frame| frame.row(from_ms)).collect();
         mark_edgeless(&mut rows);
         let on_floor = surface(first.t_ms);
         let name = path
@@ -144,7 +144,7 @@ impl Stretches {
                 if on_floor { "" } else { ", in the air" }
             ),
             source: path.into(),
-            program: Program::Rumbo,
+            program: RobotProgram::Rumbo,
             on_floor,
             battery_v: battery_v(log),
             seen: Seen::Speeds,
@@ -161,9 +161,9 @@ impl Stretches {
 }
 
 impl Frame {
-    fn row(&self, from_ms: i64) -> Row {
+    fn row(&self, from_ms: i64) -> LogRow {
         let at_ms = self.t_ms - from_ms;
-        Row {
+        LogRow {
             at_ms: usize::try_from(at_ms - SHOWN_AFTER_MS).unwrap_or(0),
             duty: self.duty,
             reference_rad_s: self.reference_rad_s,
@@ -187,7 +187,7 @@ impl Frame {
 
 /// Marks where a wheel has too few edges for a speed: it has not turned far enough since it stood, it is about to stand, or
 /// has just come to.
-fn mark_edgeless(rows: &mut [Row]) {
+fn mark_edgeless(rows: &mut [LogRow]) {
     for wheel in [0, 1] {
         let stands: Vec<bool> = rows
             .iter()

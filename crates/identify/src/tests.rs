@@ -206,7 +206,7 @@ fn a_plant_with_other_parameters_is_found_from_its_run() {
     other.motor.inertia_kg_m2 *= 1.4;
     let run = [log(&recorded(&other, exercise, 9.0))];
     let before = check(&run, &Params::default()).unwrap();
-    let found = identify(&run, &Params::default(), 0, &Progress::none()).unwrap();
+    let found = identify(&run, &Params::default(), 0, &FitProgress::none()).unwrap();
     let (before, after) = (before.runs[0].whole.unwrap(), found.runs[0].whole.unwrap());
     for i in 0..2 {
         assert!(
@@ -436,7 +436,7 @@ fn a_run_along_a_wall_identifies_the_yaw_damping() {
         let mut params = Params::default();
         params.floor.yaw_damping_n_m_s = true_n_m_s;
         let run = [log(&along_a_wall(&params, true))];
-        let found = identify(&run, &Params::default(), 0, &Progress::none()).unwrap();
+        let found = identify(&run, &Params::default(), 0, &FitProgress::none()).unwrap();
         let key = "floor.yaw_damping_n_m_s".to_owned();
         let found = found
             .parameters

@@ -13,7 +13,7 @@
 
 use crate::log::{DriveLog, Seen};
 use crate::replay::Trace;
-use crate::row::Row;
+use crate::row::LogRow;
 use nalgebra::{DMatrix, DVector};
 
 /// Length of a stretch.
@@ -47,7 +47,7 @@ pub(crate) fn errors_m(log: &DriveLog, trace: &Trace, sd_m: f64) -> Vec<f64> {
 }
 
 /// Reading `index` of a row as [`errors_m`] counts them: the mean ahead, or front and rear sonar, m.
-pub(crate) fn reading_m(log: &DriveLog, row: &Row, index: usize) -> f64 {
+pub(crate) fn reading_m(log: &DriveLog, row: &LogRow, index: usize) -> f64 {
     match log.pair.and_then(|pair| pair.beside_wall()) {
         Some((front, _)) => row.range_m[if index == 0 { front } else { 1 - front }],
         None => row.mean_m(),
@@ -55,7 +55,7 @@ pub(crate) fn reading_m(log: &DriveLog, row: &Row, index: usize) -> f64 {
 }
 
 /// Rows of unknowns and what is known: the reading and the simulated way.
-fn ahead(rows: &[Row], trace: &Trace) -> (DMatrix<f64>, DVector<f64>) {
+fn ahead(rows: &[LogRow], trace: &Trace) -> (DMatrix<f64>, DVector<f64>) {
     let start_m = trace.way_m[rows[0].at_ms];
     let offsets = rows
         .iter()
@@ -66,7 +66,7 @@ fn ahead(rows: &[Row], trace: &Trace) -> (DMatrix<f64>, DVector<f64>) {
     )
 }
 
-fn beside(rows: &[Row], trace: &Trace, front: usize, side: f64) -> (DMatrix<f64>, DVector<f64>) {
+fn beside(rows: &[LogRow], trace: &Trace, front: usize, side: f64) -> (DMatrix<f64>, DVector<f64>) {
     let start_ms = rows[0].at_ms;
     let turn = |ms: usize| side * (trace.heading_rad[ms] - trace.heading_rad[start_ms]);
     let (mut design, mut offsets) = (Vec::new(), Vec::new());

@@ -3,7 +3,7 @@
 //! Its lines take the way of text typed to a USART: over the page, into logs, and again from there, so that a rerun
 //! repeats them.
 
-use rumbo_log::{MapPose, Other, Source};
+use rumbo_log::{MapPose, Other, ReadingSource};
 use rumbo_session::Shown;
 use rumbo_sim::Sim;
 
@@ -20,5 +20,5 @@ pub(crate) fn moved(sim: &Sim) -> Option<Shown> {
         Other::signals(&format!("thing{thing}"), at)
     });
     let signals: Vec<_> = signals.collect();
-    (!signals.is_empty()).then_some((Source::Others, signals))
+    (!signals.is_empty()).then_some((ReadingSource::Others, signals))
 }

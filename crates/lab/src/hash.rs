@@ -4,7 +4,7 @@ use crate::program::Held;
 use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{self, RunResult};
 use rumbo_log::{Entry, Row};
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_sim::trace::{Trace, TruthSample};
 
 const CRC: crc::Crc<u64> = crc::Crc::<u64>::new(&crc::CRC_64_XZ);
 
@@ -80,8 +80,8 @@ fn of(result: &RunResult) -> u64 {
     digest.finalize()
 }
 
-fn values_of(trace: &Trace, sample: &Sample) -> impl Iterator<Item = f64> {
-    let Sample {
+fn values_of(trace: &Trace, sample: &TruthSample) -> impl Iterator<Item = f64> {
+    let TruthSample {
         t_s,
         x_m,
         y_m,

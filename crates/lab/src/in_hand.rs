@@ -5,7 +5,7 @@
 
 use crate::live::{LINK, Live};
 use crate::sight;
-use rumbo_emulator::gdb::World;
+use rumbo_emulator::gdb::DebuggedWorld;
 use rumbo_log::{HeldState, Truth};
 use rumbo_session::{Shown, TargetError};
 use rumbo_sim::Sim;

@@ -3,7 +3,7 @@
 use crate::sight;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
-use rumbo_emulator::gdb::{Machine, World};
+use rumbo_emulator::gdb::{DebuggedWorld, Machine};
 use rumbo_session::{SLICE_US, Shown};
 use rumbo_sim::Sim;
 use rumbo_sim::emulated::Emulated;
@@ -73,12 +73,9 @@ impl Machine for Live {
     }
 }
 
-impl World for Live {
-    fn go_to(&mut self, cycle: u64) -> Stopped {
-        self.world.mega_mut().halt_at(Some(cycle));
-        let stopped = self.go();
-        self.world.mega_mut().halt_at(None);
-        stopped
+impl DebuggedWorld for Live {
+    fn halt_at(&mut self, cycle: Option<u64>) {
+        self.world.mega_mut().halt_at(cycle);
     }
 
     fn now_us(&self) -> u64 {

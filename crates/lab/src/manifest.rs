@@ -2,7 +2,7 @@
 
 use rumbo_experiment::MODEL;
 use rumbo_experiment::files::firmware;
-use rumbo_experiment::files::{NativeProgram, Overrides, Port, Setup, TimedText};
+use rumbo_experiment::files::{NativeProgram, Overrides, Setup, TimedText, TypedPort};
 use rumbo_log::{LogKind, Manifest};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -56,15 +56,15 @@ pub fn of(kind: LogKind, setup: &Setup, overrides: &Overrides, seed: u64) -> Man
         image: overrides.firmware.as_deref().and_then(hash),
         seed: Some(seed),
         parameters: overrides.parameters.clone(),
-        texts: lines(&overrides.texts, Port::Link),
-        usb_texts: lines(&overrides.texts, Port::Usb),
-        part_texts: lines(&overrides.texts, Port::Parts),
-        hand_texts: lines(&overrides.texts, Port::Hand),
+        texts: lines(&overrides.texts, TypedPort::Link),
+        usb_texts: lines(&overrides.texts, TypedPort::Usb),
+        part_texts: lines(&overrides.texts, TypedPort::Parts),
+        hand_texts: lines(&overrides.texts, TypedPort::Hand),
         // One for all of a command.
         line_ending: overrides
             .texts
             .iter()
-            .find(|timed| matches!(timed.port, Port::Link | Port::Usb))
+            .find(|timed| matches!(timed.port, TypedPort::Link | TypedPort::Usb))
             .map(|timed| timed.ending.name().to_owned()),
         files,
         ..Manifest::default()
@@ -73,7 +73,7 @@ pub fn of(kind: LogKind, setup: &Setup, overrides: &Overrides, seed: u64) -> Man
 
 /// The lines for a port: time \[s\] and text of each.
 #[must_use]
-pub fn lines(texts: &[TimedText], port: Port) -> Vec<(f64, String)> {
+pub fn lines(texts: &[TimedText], port: TypedPort) -> Vec<(f64, String)> {
     let of_it = texts.iter().filter(|timed| timed.port == port);
     of_it
         .map(|timed| (timed.at_s, timed.text.clone()))

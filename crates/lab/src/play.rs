@@ -7,12 +7,13 @@ use rumbo_experiment::run::{Player, RunResult, parameters};
 use rumbo_log::{Burst, ExperimentPhase, ExperimentState, LimitState};
 use rumbo_sim::Sim;
 use rumbo_sim::trace::SAMPLE_US;
+use std::sync::Arc;
 
 /// An experiment of the lab.
 #[derive(Default)]
 pub(crate) struct Experiment {
     /// While it goes on.
-    player: Option<Player>,
+    player: Option<Player<Arc<Setup>>>,
     pub(crate) state: ExperimentState,
     /// The robot's parameters at its start.
     pub(crate) parameters: Option<Params>,
@@ -25,7 +26,10 @@ pub(crate) struct Experiment {
 
 impl Experiment {
     /// One that begins; these parameters are not its scenario's.
-    pub(crate) fn new(player: Player, changed: Vec<(String, f64)>) -> Result<Self, FileError> {
+    pub(crate) fn new(
+        player: Player<Arc<Setup>>,
+        changed: Vec<(String, f64)>,
+    ) -> Result<Self, FileError> {
         Ok(Self {
             state: ExperimentState {
                 duration_s: player.setup().scenario.duration_s,
@@ -61,7 +65,7 @@ impl Experiment {
                 false => self.received.extend(burst.bytes),
             }
         }
-        if player.is_over(sim)
+        if player.is_over(std::slice::from_ref(sim))
             && let Some(player) = self.player.take()
         {
             self.state = verdict(&self.state, &player.judge(sim));

@@ -19,6 +19,13 @@ pub(crate) struct Prepared {
     pub(crate) manifest: Manifest,
 }
 
+impl Prepared {
+    /// What a scenario of several calls it.
+    pub(crate) fn name(&self) -> &str {
+        self.manifest.member.as_deref().unwrap_or_default()
+    }
+}
+
 /// The overrides with the world and the rig of a choice.
 pub(crate) fn chosen(overrides: &Overrides, choice: &Choice) -> Overrides {
     Overrides {
@@ -75,16 +82,15 @@ fn ready(
     memory: &[u8],
     manifest: Manifest,
 ) -> Result<Prepared, FileError> {
-    let setup = setup.of_seed(choice.seed)?;
-    let ready = run::prepare(&setup, choice.seed)?;
+    let setup = run::prepare(setup, choice.seed)?;
     Ok(Prepared {
         sim: Sim::new(Config {
             memory: memory.to_vec(),
-            ..ready.config(choice.seed)?
+            ..setup.config(choice.seed)?
         })?,
         mode: setup.scenario.mode,
         scene: scene(library, &setup, choice)?,
-        first_commands: first_words(&ready)?,
+        first_commands: first_words(&setup)?,
         manifest,
     })
 }

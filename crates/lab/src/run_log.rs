@@ -7,11 +7,11 @@ use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
 use rumbo_experiment::note::Note;
 use rumbo_experiment::run::RunResult;
 use rumbo_log::{
-    Burst, Choice, LogKind, Manifest, MapPose, Other, Outcome, Said, Scene, Source, Truth,
+    Burst, Choice, LogKind, Manifest, MapPose, Other, Outcome, ReadingSource, Said, Scene, Truth,
 };
 use rumbo_session::Shown;
-use rumbo_session::headless::Run;
-use rumbo_sim::trace::{SAMPLE_US, Sample, Trace};
+use rumbo_session::headless::RunRecords;
+use rumbo_sim::trace::{SAMPLE_US, Trace, TruthSample};
 use rumbo_sim::{READING_US, loop_signals};
 use rumbo_wire::FromRobot;
 
@@ -34,7 +34,7 @@ impl RunSource<'_> {
         &self,
         setup: &Setup,
         result: &RunResult,
-        mut write: impl FnMut(&Manifest, Run<'_>) -> Result<(), E>,
+        mut write: impl FnMut(&Manifest, RunRecords<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
         let manifest = self.manifest(setup, result.seed);
         if result.robots.is_empty() {
@@ -68,7 +68,7 @@ impl RunSource<'_> {
         &self,
         setup: &Setup,
         robot: &Robot,
-        write: impl FnOnce(&Manifest, Run<'_>) -> T,
+        write: impl FnOnce(&Manifest, RunRecords<'_>) -> T,
     ) -> Result<Option<T>, FileError> {
         let Some(trace) = robot.trace().filter(|trace| !trace.samples.is_empty()) else {
             return Ok(None);
@@ -99,7 +99,7 @@ impl RunSource<'_> {
         setup: &Setup,
         records: &Records<'_>,
         around: Around<'_>,
-        write: impl FnOnce(Run<'_>) -> T,
+        write: impl FnOnce(RunRecords<'_>) -> T,
     ) -> Result<T, FileError> {
         let Records {
             seed,
@@ -121,7 +121,7 @@ impl RunSource<'_> {
             others: around.others,
             ..scene(self.library, of_seed, choice)?
         };
-        Ok(write(Run {
+        Ok(write(RunRecords {
             scene: Some(scene),
             parameters: trace.parameters,
             goal_m: *goal_m,
@@ -196,7 +196,7 @@ fn places(robots: &[RunResult], number: usize) -> Vec<(u64, Shown)> {
             let at = pose(robot.trace.samples.get(index)?);
             Some(Other::signals(&robot.scenario, at))
         });
-        (t_us, (Source::Others, poses.flatten().collect()))
+        (t_us, (ReadingSource::Others, poses.flatten().collect()))
     };
     (0..samples).step_by(every).map(at).collect()
 }
@@ -219,7 +219,7 @@ fn micros(t_s: f64) -> u64 {
 
 /// Bytes that crossed the link, as a log has them.
 #[must_use]
-pub fn burst(burst: &rumbo_sim::Burst) -> Burst {
+pub fn burst(burst: &rumbo_sim::LinkBurst) -> Burst {
     Burst {
         t_us: burst.t_us,
         to_robot: burst.to_robot,
@@ -229,7 +229,7 @@ pub fn burst(burst: &rumbo_sim::Burst) -> Burst {
 
 /// What a USART of an emulated Mega has sent, as a log has it.
 #[must_use]
-pub fn said(said: &rumbo_sim::trace::Said) -> Said {
+pub fn said(said: &rumbo_sim::trace::UsartOutput) -> Said {
     Said {
         t_us: said.t_us,
         usart: said.usart,
@@ -241,13 +241,14 @@ pub fn said(said: &rumbo_sim::trace::Said) -> Said {
 /// Of a program there are either instruments or control loops.
 fn shown(trace: &Trace) -> Vec<(u64, Shown)> {
     let instruments = trace.readings.iter();
-    let instruments = instruments.map(|each| (each.t_us, (Source::Truth, each.signals.clone())));
+    let instruments =
+        instruments.map(|each| (each.t_us, (ReadingSource::Truth, each.signals.clone())));
     let loops = trace.loops.iter();
-    let loops = loops.map(|(t_us, loops)| (*t_us, (Source::Loops, loop_signals(loops))));
+    let loops = loops.map(|(t_us, loops)| (*t_us, (ReadingSource::Loops, loop_signals(loops))));
     instruments.chain(loops).collect()
 }
 
-fn pose(sample: &Sample) -> MapPose {
+fn pose(sample: &TruthSample) -> MapPose {
     MapPose {
         x_m: sample.x_m,
         y_m: sample.y_m,
@@ -255,7 +256,7 @@ fn pose(sample: &Sample) -> MapPose {
     }
 }
 
-fn truth(trace: &Trace, sample: &Sample) -> (u64, Truth) {
+fn truth(trace: &Trace, sample: &TruthSample) -> (u64, Truth) {
     let [left, right] = sample.wheel_rad_s;
     let truth = Truth {
         pose: pose(sample),

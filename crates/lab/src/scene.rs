@@ -4,8 +4,8 @@ use rumbo_control::SonarId;
 use rumbo_experiment::files::TimedCommand;
 use rumbo_experiment::files::{FileError, Kind, Library, ScenarioFile, Setup, goal_seen_from};
 use rumbo_log::{
-    Choice, Experiment, FloorLine, MapPose, Mover, Obstacle, Other, Repeat, RoutePlan, Scene,
-    SonarMount, TimedPose,
+    Choice, FloorLine, MapPose, Other, Repeat, RoutePlan, ScenarioOffer, Scene, SceneMover,
+    SceneObstacle, SonarMount, TimedPose,
 };
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::moving;
@@ -21,37 +21,13 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
     let Setup {
         scenario,
         robot,
-        rig,
         world,
         ..
     } = setup;
     let plant = &robot.plant;
-    let obstacles = world
+    let standing = world
         .world()
         .map_err(|error| FileError::Setting(format!("world {}: {error}", world.name)))?;
-    let obstacles = obstacles.obstacles().iter().map(|obstacle| {
-        let corners_m: Vec<[f64; 2]> = obstacle.corners().collect();
-        Obstacle {
-            closed: corners_m.len() > 2,
-            corners_m,
-        }
-    });
-    let sonar = |id: SonarId, mount: Mount| SonarMount {
-        id: id as u8,
-        at: MapPose {
-            x_m: mount.x_m,
-            y_m: mount.y_m,
-            heading_rad: mount.angle_rad,
-        },
-        half_angle_rad: plant.sonar.beam_half_angle_rad,
-        reach_m: plant.sonar.reach_m,
-        on_servo: mount.on_servo,
-    };
-    let mounts = [
-        (SonarId::Left, rig.left),
-        (SonarId::Right, rig.right),
-        (SonarId::Front, rig.front),
-    ];
     let footprint = Footprint::new(&plant.body, &plant.wheels);
     Ok(Scene {
         experiments: experiments(library, scenario, &choice),
@@ -67,17 +43,18 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
             y_m: scenario.start.y_m,
             heading_rad: scenario.start.heading_rad,
         },
-        obstacles: obstacles.collect(),
+        obstacles: standing
+            .obstacles()
+            .iter()
+            .map(|it| obstacle(it.corners()))
+            .collect(),
         lines: world.lines.iter().map(floor_line).collect(),
         movers: world.movers.iter().map(mover).collect(),
         others: Vec::new(),
         footprint_m: footprint.corners(&Pose::default()).to_vec(),
         base_m: plant.body.base_m,
         wheel_radius_m: (plant.wheels.left.radius_m + plant.wheels.right.radius_m) / 2.0,
-        sonars: mounts
-            .into_iter()
-            .filter_map(|(id, mount)| Some(sonar(id, mount?)))
-            .collect(),
+        sonars: sonars(setup),
         of_ghost: false,
         choice,
     })
@@ -101,7 +78,39 @@ pub fn others(fleet: &[Setup], number: usize) -> Vec<Other> {
         .collect()
 }
 
-fn floor_line(line: &rumbo_sim::floor::Line) -> FloorLine {
+fn sonars(setup: &Setup) -> Vec<SonarMount> {
+    let (rig, sonar) = (&setup.rig, &setup.robot.plant.sonar);
+    let mounts = [
+        (SonarId::Left, rig.left),
+        (SonarId::Right, rig.right),
+        (SonarId::Front, rig.front),
+    ];
+    let mount = |(id, mount): (SonarId, Option<Mount>)| {
+        let mount = mount?;
+        Some(SonarMount {
+            id: id as u8,
+            at: MapPose {
+                x_m: mount.x_m,
+                y_m: mount.y_m,
+                heading_rad: mount.angle_rad,
+            },
+            half_angle_rad: sonar.beam_half_angle_rad,
+            reach_m: sonar.reach_m,
+            on_servo: mount.on_servo,
+        })
+    };
+    mounts.into_iter().filter_map(mount).collect()
+}
+
+fn obstacle(corners: impl Iterator<Item = [f64; 2]>) -> SceneObstacle {
+    let corners_m: Vec<[f64; 2]> = corners.collect();
+    SceneObstacle {
+        closed: corners_m.len() > 2,
+        corners_m,
+    }
+}
+
+fn floor_line(line: &rumbo_sim::floor::DarkLine) -> FloorLine {
     FloorLine {
         points_m: line.points_m.clone(),
         width_m: line.width_m,
@@ -109,10 +118,10 @@ fn floor_line(line: &rumbo_sim::floor::Line) -> FloorLine {
 }
 
 /// Something that moves, as the map needs it.
-fn mover(mover: &rumbo_experiment::files::Mover) -> Mover {
+fn mover(mover: &rumbo_experiment::files::Mover) -> SceneMover {
     let seconds = |us: u64| us as f64 * 1e-6;
     let waypoints = mover.route.waypoints().iter();
-    Mover {
+    SceneMover {
         corners_m: mover.corners_m.clone(),
         waypoints: waypoints
             .map(|waypoint| TimedPose {
@@ -125,9 +134,9 @@ fn mover(mover: &rumbo_experiment::files::Mover) -> Mover {
             })
             .collect(),
         repeat: match mover.route.repeat() {
-            moving::Repeat::Once => Repeat::Once,
-            moving::Repeat::Loop => Repeat::Loop,
-            moving::Repeat::BackAndForth => Repeat::BackAndForth,
+            moving::MoverRepeat::Once => Repeat::Once,
+            moving::MoverRepeat::Loop => Repeat::Loop,
+            moving::MoverRepeat::BackAndForth => Repeat::BackAndForth,
         },
         start_s: seconds(mover.route.start_us()),
     }
@@ -145,8 +154,8 @@ fn world_titles(library: &Library, chosen: Option<&str>) -> BTreeMap<String, Str
 }
 
 /// The scenarios to choose from: the one of a file first, then the built-in ones by group.
-fn experiments(library: &Library, scenario: &ScenarioFile, choice: &Choice) -> Vec<Experiment> {
-    let of = |name: &str, file: &ScenarioFile| Experiment {
+fn experiments(library: &Library, scenario: &ScenarioFile, choice: &Choice) -> Vec<ScenarioOffer> {
+    let of = |name: &str, file: &ScenarioFile| ScenarioOffer {
         name: name.into(),
         title: file.title.clone(),
         group: file.group.clone(),

@@ -2,9 +2,9 @@
 
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
-use rumbo_log::{MapPose, Source, Truth};
+use rumbo_log::{MapPose, ReadingSource, Truth};
 use rumbo_session::{Abilities, PARTS_CONSOLE, Shown};
-use rumbo_sim::mega::firmware::Language;
+use rumbo_sim::mega::firmware::LinkLanguage;
 use rumbo_sim::mega::{CONSOLES, PARTS};
 use rumbo_sim::{READING_US, Sim, loop_signals};
 
@@ -13,7 +13,7 @@ const _: () = assert!(PARTS == PARTS_CONSOLE);
 /// What can be done with the only robot of a world, in this mode at first.
 pub(crate) fn abilities(sim: &Sim, mode: ModeId) -> Abilities {
     let firmware = sim.mega().map(|mega| mega.firmware());
-    let text = firmware.is_some_and(|firmware| firmware.language() == Language::Text);
+    let text = firmware.is_some_and(|firmware| firmware.language() == LinkLanguage::Text);
     Abilities {
         pace: true,
         reset: true,
@@ -58,8 +58,8 @@ pub(crate) fn reading_due(sim: &Sim, due_us: &mut u64) -> bool {
 /// What instruments at an emulated chip show, or the terms of our program's control loops.
 pub(crate) fn shown(sim: &mut Sim) -> Option<Shown> {
     match sim.loops() {
-        Some(loops) => Some((Source::Loops, loop_signals(&loops))),
-        None if sim.mega().is_some() => Some((Source::Truth, sim.read_instruments())),
+        Some(loops) => Some((ReadingSource::Loops, loop_signals(&loops))),
+        None if sim.mega().is_some() => Some((ReadingSource::Truth, sim.read_instruments())),
         None => None,
     }
 }

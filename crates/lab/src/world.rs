@@ -2,6 +2,7 @@
 //!
 //! What the page does not know of a file passes through it unchanged.
 
+use crate::prepare::Prepared;
 use crate::program::OwnProgram;
 use crate::robot::SimulatedRobot;
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup};
@@ -29,16 +30,20 @@ impl SimulatedRobot {
     /// The world in which it drives, or the one given, to edit.
     pub(crate) fn to_edit(&self, given: Option<&str>) -> EditedWorld {
         match given {
+            _ if !self.is_alone() => answer(
+                Err(FileError::Setting(TargetError::NoReset.to_string())),
+                None,
+            ),
             None => self.shown(),
             Some(text) => self.checked(text),
         }
     }
 
     fn shown(&self) -> EditedWorld {
-        let world = self.scene.choice.world.clone();
+        let Choice { world, seed, .. } = self.choice();
         let editable = self
             .set_up(&self.library, world)
-            .and_then(|setup| editable(&setup, self.scene.choice.seed));
+            .and_then(|setup| editable(&setup, seed));
         answer(editable, None)
     }
 
@@ -56,15 +61,15 @@ impl SimulatedRobot {
         let library = holding(self.library.clone(), &text);
         let editable = self
             .set_up(&library, Some(EDITED.into()))
-            .and_then(|setup| editable(&setup, self.scene.choice.seed));
+            .and_then(|setup| editable(&setup, self.choice().seed));
         answer(editable, text.parse().ok())
     }
 
     fn set_up(&self, library: &Library, world: Option<String>) -> Result<Setup, FileError> {
-        let choice = &self.scene.choice;
+        let choice = self.choice();
         let overrides = Overrides {
             world,
-            rig: choice.rig.clone(),
+            rig: choice.rig,
             // An image takes its time, and no part in it.
             firmware: None,
             ..self.overrides.clone()
@@ -77,7 +82,7 @@ impl SimulatedRobot {
         if self.program.as_ref().is_some_and(OwnProgram::is_rejected) {
             return Err(TargetError::NotCompiled);
         }
-        let world = self.checked(given);
+        let world = self.to_edit(Some(given));
         if let Some(problem) = world.problem {
             return Err(TargetError::Setup(problem));
         }
@@ -85,18 +90,20 @@ impl SimulatedRobot {
         let before = std::mem::replace(&mut self.library, held);
         let choice = Choice {
             world: Some(EDITED.into()),
-            ..self.scene.choice.clone()
+            ..self.choice()
         };
-        if let Err(error) = self.start_again(choice.clone()) {
+        if let Err(error) = self.start_again(&choice) {
             self.library = before;
             return Err(TargetError::Setup(error.to_string()));
         }
-        if !self.scene.worlds.iter().any(|name| name == EDITED) {
-            self.scene.worlds.push(EDITED.into());
-        }
         let title = world.model.get("title").and_then(|title| title.as_str());
         let title = title.unwrap_or_default().to_owned();
-        self.scene.world_titles.insert(EDITED.into(), title);
+        self.prepared(|Prepared { scene, .. }| {
+            if !scene.worlds.iter().any(|name| name == EDITED) {
+                scene.worlds.push(EDITED.into());
+            }
+            scene.world_titles.insert(EDITED.into(), title);
+        });
         Ok(choice)
     }
 }

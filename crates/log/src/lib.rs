@@ -57,17 +57,17 @@ pub use manifest::{ANOTHER, LogKind, Manifest, Outcome};
 pub use mcap::MAGIC;
 pub use mend::mend;
 pub use parameters::{Parameter, ParameterState, parameter, parameters};
-pub use reading::{Names, Reading, Source};
+pub use reading::{Names, Reading, ReadingSource};
 pub use recorded::{CSV, recorded_csv};
 pub use scene::{
-    Choice, Experiment, FloorLine, MapPose, Mover, Obstacle, Other, Place, Repeat, RoutePlan,
-    Scene, SonarMount, TimedPose, Truth, compose,
+    Choice, FloorLine, MapPose, Other, Repeat, RoutePlace, RoutePlan, ScenarioOffer, Scene,
+    SceneMover, SceneObstacle, SonarMount, TimedPose, Truth, compose,
 };
-pub use signals::{Cell, EARLIER_MS, Row, SIGNALS, Sample, Signal, Spread};
+pub use signals::{EARLIER_MS, Row, RowValue, SIGNALS, Sample, Signal, Spread};
 pub use state::{
     CalibrationPhase, CalibrationState, Complaint, End, ExperimentPhase, ExperimentState, Finding,
     Findings, FunctionShare, HeldState, InterruptShare, LimitState, LinkState, PartState,
-    ProgramPhase, ProgramProfile, ProgramState, ReplayState, RobotState, State, Task,
+    ProgramPhase, ProgramProfile, ProgramState, ReplayState, RobotState, State, TaskState,
 };
 pub use summary::Summary;
 pub use writer::LogWriter;

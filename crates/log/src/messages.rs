@@ -3,7 +3,7 @@
 use crate::entry::{Entry, Said};
 use crate::event::{Level, LoggedEvent};
 use crate::parameters::ParameterState;
-use crate::reading::{Reading, Source};
+use crate::reading::{Reading, ReadingSource};
 use crate::scene::{MapPose, Scene, SonarMount, compose};
 use crate::schema::Topic;
 use crate::signals::Row;
@@ -146,10 +146,10 @@ pub(crate) trait Messages: Sink {
     /// Signals beside the telemetry.
     fn reading(&mut self, reading: &Reading) -> Result<(), Self::Error> {
         let topic = match reading.source {
-            Source::Truth => Topic::Truth,
-            Source::Loops => Topic::Loops,
-            Source::Others => Topic::Others,
-            Source::Usart(_) => Topic::Printed,
+            ReadingSource::Truth => Topic::Truth,
+            ReadingSource::Loops => Topic::Loops,
+            ReadingSource::Others => Topic::Others,
+            ReadingSource::Usart(_) => Topic::Printed,
         };
         let (t_us, message) = (to_us(reading.t_ms), reading.json());
         match topic {

@@ -1,6 +1,6 @@
 //! The table of parameters, as pages and logs have it.
 
-use rumbo_control::params::{Limits, ParamId};
+use rumbo_control::params::{ParamId, ParamLimits};
 use serde::Serialize;
 
 /// A parameter of the table, with its value as far as it is known.
@@ -55,7 +55,7 @@ pub fn parameter(id: u8) -> Option<Parameter> {
 }
 
 fn describe(id: ParamId) -> Parameter {
-    let Limits { min, max, default } = id.limits();
+    let ParamLimits { min, max, default } = id.limits();
     Parameter {
         id: id as u8,
         name: id.name(),

@@ -15,7 +15,7 @@ use crate::log::Log;
 use intake::{Intake, Stop};
 use mcap::MAGIC;
 use pieces::Pieces;
-use rumbo_wire::{Decoder, FromRobot, Hello, Message, Received};
+use rumbo_wire::{Decoder, FrameMessage, FromRobot, Hello, Received};
 use std::io::{BufReader, Read, Seek, SeekFrom};
 
 /// Longest line of text from a robot that is put together.

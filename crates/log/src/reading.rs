@@ -1,7 +1,7 @@
 //! Readings: signals beside the robot's telemetry, each with its name. Ground truth and pins of an emulated robot, which
 //! there are whatever its program is; the terms of our simulated robot's control loops; the numbers that a program prints.
 
-use crate::signals::{Cell, tidy};
+use crate::signals::{RowValue, tidy};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// Where a reading comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Source {
+pub enum ReadingSource {
     /// The simulation: ground truth and pins.
     Truth,
     /// The control loops of our simulated robot: their terms.
@@ -26,7 +26,7 @@ pub struct Reading {
     /// Session time \[ms\].
     pub t_ms: i64,
     /// Where it comes from.
-    pub source: Source,
+    pub source: ReadingSource,
     /// The signals, shared by readings that have the same ones.
     pub names: Arc<[String]>,
     /// Their values, in the same order: not a number where unknown, infinite where a range is clear.
@@ -47,7 +47,12 @@ impl Names {
     }
 
     /// A reading of these signals.
-    pub fn reading(&mut self, t_ms: i64, source: Source, signals: Vec<(String, f64)>) -> Reading {
+    pub fn reading(
+        &mut self,
+        t_ms: i64,
+        source: ReadingSource,
+        signals: Vec<(String, f64)>,
+    ) -> Reading {
         let (names, values): (Vec<_>, Vec<_>) = signals.into_iter().unzip();
         Reading {
             t_ms,
@@ -69,17 +74,17 @@ impl Reading {
 
     /// The values as the page gets them.
     #[must_use]
-    pub fn cells(&self) -> Vec<Cell> {
+    pub fn cells(&self) -> Vec<RowValue> {
         let values = self.values.iter().map(|value| self.value(*value));
-        values.map(Cell::of).collect()
+        values.map(RowValue::of).collect()
     }
 
     /// What a program printed keeps all its digits.
     fn value(&self, value: f32) -> f64 {
         match self.source {
-            Source::Truth | Source::Loops | Source::Others => tidy(value),
+            ReadingSource::Truth | ReadingSource::Loops | ReadingSource::Others => tidy(value),
             // The shortest digits that give the same `f32`.
-            Source::Usart(_) => value.to_string().parse().unwrap_or(f64::NAN),
+            ReadingSource::Usart(_) => value.to_string().parse().unwrap_or(f64::NAN),
         }
     }
 
@@ -94,8 +99,10 @@ impl Reading {
             }
         }
         match self.source {
-            Source::Truth | Source::Loops | Source::Others => Value::Object(message),
-            Source::Usart(usart) => json!({ "usart": usart, "values": message }),
+            ReadingSource::Truth | ReadingSource::Loops | ReadingSource::Others => {
+                Value::Object(message)
+            }
+            ReadingSource::Usart(usart) => json!({ "usart": usart, "values": message }),
         }
     }
 }

@@ -52,7 +52,7 @@ pub struct Scene {
     pub choice: Choice,
     /// The scenarios to choose from.
     #[serde(default)]
-    pub experiments: Vec<Experiment>,
+    pub experiments: Vec<ScenarioOffer>,
     /// Names of the worlds to choose from.
     pub worlds: Vec<String>,
     /// Their titles, by name: one line each for people.
@@ -71,13 +71,13 @@ pub struct Scene {
     /// Pose of the odometry's origin in the world: the estimated pose is drawn from here.
     pub start: MapPose,
     /// Walls and boxes.
-    pub obstacles: Vec<Obstacle>,
+    pub obstacles: Vec<SceneObstacle>,
     /// Dark lines on the floor.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lines: Vec<FloorLine>,
     /// What moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub movers: Vec<Mover>,
+    pub movers: Vec<SceneMover>,
     /// The other robots in the world, if there are several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub others: Vec<Other>,
@@ -106,7 +106,7 @@ pub struct FloorLine {
 /// A scenario to choose.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Experiment {
+pub struct ScenarioOffer {
     /// Name of the scenario.
     pub name: String,
     /// One line for people.
@@ -127,12 +127,12 @@ pub struct RoutePlan {
     /// As seen from where the robot starts, not from the origin.
     pub relative: bool,
     /// The places.
-    pub waypoints: Vec<Place>,
+    pub waypoints: Vec<RoutePlace>,
 }
 
 /// A place of a route.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Place {
+pub struct RoutePlace {
     /// Forward of the origin \[m\].
     pub x_m: f32,
     /// Left of the origin \[m\].
@@ -141,7 +141,7 @@ pub struct Place {
     pub heading_rad: Option<f32>,
 }
 
-impl From<Waypoint> for Place {
+impl From<Waypoint> for RoutePlace {
     fn from(waypoint: Waypoint) -> Self {
         let Waypoint {
             x_m,
@@ -158,7 +158,7 @@ impl From<Waypoint> for Place {
 
 /// A wall or a box, seen from above.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Obstacle {
+pub struct SceneObstacle {
     /// Corners in the world frame \[m\].
     pub corners_m: Vec<[f64; 2]>,
     /// The last corner joins the first: a box. Otherwise a wall along the corners.
@@ -167,7 +167,7 @@ pub struct Obstacle {
 
 /// An outline that moves, whatever the robot does.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Mover {
+pub struct SceneMover {
     /// Corners in its own frame \[m\], closed by itself.
     pub corners_m: Vec<[f64; 2]>,
     /// Poses and when they are reached, from its start, with even motion between them.
@@ -178,7 +178,7 @@ pub struct Mover {
     pub start_s: f64,
 }
 
-/// Another robot in the world. Where it is, readings of [`crate::Source::Others`] tell.
+/// Another robot in the world. Where it is, readings of [`crate::ReadingSource::Others`] tell.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Other {
     /// Its name.

@@ -3,7 +3,7 @@
 mod row;
 
 pub(crate) use row::tidy;
-pub use row::{Cell, Row};
+pub use row::{Row, RowValue};
 
 use crate::scene::{MapPose, Truth};
 use rumbo_control::mode::{ModeId, Reference};

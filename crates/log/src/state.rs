@@ -278,7 +278,7 @@ pub struct RobotState {
     /// Name of the rig set in the robot; `None` until it is reported.
     pub rig: Option<Cow<'static, str>>,
     /// Its task.
-    pub task: Task,
+    pub task: TaskState,
     /// The robot has another parameter table, or another protocol: its parameters are neither shown nor written.
     pub foreign: bool,
     /// The robot speaks the original's text.
@@ -300,7 +300,7 @@ pub enum End {
 
 /// The robot's task: goal, lane or route, and its outcome. Positions are relative to the robot's origin.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Task {
+pub struct TaskState {
     /// The goal of mode 8 \[m\]; `None` once it is reached, since the origin may have moved there.
     pub goal: Option<[f32; 2]>,
     /// Mode 8 follows a lane.

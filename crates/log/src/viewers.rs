@@ -116,7 +116,7 @@ pub(crate) fn body(t_us: u64, scene: &Scene) -> Value {
 #[cfg(test)]
 mod tests {
     use crate::frames::Frames;
-    use crate::scene::{MapPose, Obstacle, Scene, SonarMount};
+    use crate::scene::{MapPose, Scene, SceneObstacle, SonarMount};
     use crate::{Entry, LogWriter, Manifest, Row};
     use mcap::parse_record;
     use mcap::records::Record;
@@ -141,7 +141,7 @@ mod tests {
             ..SonarMount::default()
         };
         let scene = Scene {
-            obstacles: vec![Obstacle::default()],
+            obstacles: vec![SceneObstacle::default()],
             footprint_m: vec![[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1]],
             base_m: 0.15,
             wheel_radius_m: 0.03,

@@ -1,7 +1,9 @@
 //! What was recorded is read again: whole, cut anywhere, damaged anywhere.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use rumbo_log::{Burst, Entry, Log, LogWriter, Manifest, Names, ReadError, Said, Sent, Source};
+use rumbo_log::{
+    Burst, Entry, Log, LogWriter, Manifest, Names, ReadError, ReadingSource, Said, Sent,
+};
 use std::io::{self, Cursor, Write};
 
 type Writer = LogWriter<Cursor<Vec<u8>>>;
@@ -167,9 +169,9 @@ fn readings_are_read_as_they_were_recorded_ranges_without_an_echo_and_unknown_on
     };
     let (mut truth, mut printed) = (Names::default(), Names::default());
     let readings = vec![
-        truth.reading(30, Source::Truth, signals(0.1234)),
-        printed.reading(31, Source::Usart(0), vec![("kp".into(), 1e-7)]),
-        truth.reading(60, Source::Truth, signals(0.2)),
+        truth.reading(30, ReadingSource::Truth, signals(0.1234)),
+        printed.reading(31, ReadingSource::Usart(0), vec![("kp".into(), 1e-7)]),
+        truth.reading(60, ReadingSource::Truth, signals(0.2)),
     ];
     let mut writer = self::writer(&Manifest::default());
     writer.record(&Entry::Readings(readings)).unwrap();
@@ -180,7 +182,7 @@ fn readings_are_read_as_they_were_recorded_ranges_without_an_echo_and_unknown_on
     assert_eq!(first.signal("true_x_m"), Some(0.1234));
     assert_eq!(first.signal("pinged_front_m"), Some(f64::INFINITY));
     assert_eq!(first.signal("servo_pulse_us"), None);
-    assert_eq!((second.source, second.t_ms), (Source::Usart(0), 31));
+    assert_eq!((second.source, second.t_ms), (ReadingSource::Usart(0), 31));
     assert_eq!(second.signal("kp"), Some(1e-7));
     assert_eq!(third.t_ms, 60);
     assert!(std::sync::Arc::ptr_eq(&first.names, &third.names));
@@ -209,7 +211,7 @@ fn record_an_hour(log: &mut LogWriter<Nowhere>, from_us: u64) {
         let t_ms = (t_us / 1_000) as i64;
         log.record(&burst(t_us)).unwrap();
         let signals = vec![("true_x_m".into(), 0.1)];
-        let reading = names.reading(t_ms, Source::Truth, signals);
+        let reading = names.reading(t_ms, ReadingSource::Truth, signals);
         log.record(&Entry::Readings(vec![reading])).unwrap();
         if t_us % 200_000 == 0 {
             log.record(&Entry::State(Box::default())).unwrap();

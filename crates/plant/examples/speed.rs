@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
-use rumbo_plant::plant::{Mount, Mounts, Plant, Setup};
+use rumbo_plant::plant::{Mount, Mounts, Plant, PlantSetup};
 use rumbo_plant::sonar::SonarId;
 use rumbo_plant::world::{Block, ShapeError, Wall, World};
 
@@ -48,11 +48,11 @@ fn main() -> Result<(), ShapeError> {
         .collect();
     let world = World::new(&walls, &blocks)?;
     let plants: [Plant; ROBOTS] = std::array::from_fn(|seed| {
-        Plant::new(Setup {
+        Plant::new(PlantSetup {
             rig,
             world: world.clone(),
             seed: seed as u64,
-            ..Setup::default()
+            ..PlantSetup::default()
         })
     });
     for ping in [false, true] {

@@ -95,7 +95,7 @@ impl State {
 
 /// A step to settle.
 #[derive(Clone, Copy, Debug)]
-pub struct Step<'a> {
+pub struct ContactStep<'a> {
     /// Where.
     pub world: &'a World,
     /// Its end.
@@ -172,7 +172,7 @@ impl Footprint {
     /// Settles a step from `before` to `pose`; returns the impact if a touch begins.
     pub fn settle(
         &self,
-        step: &Step<'_>,
+        step: &ContactStep<'_>,
         state: &mut State,
         before: &Pose,
         pose: &mut Pose,
@@ -190,12 +190,12 @@ impl Footprint {
     #[cold]
     pub(crate) fn settle_near(
         &self,
-        step: &Step<'_>,
+        step: &ContactStep<'_>,
         state: &mut State,
         before: &Pose,
         pose: &mut Pose,
     ) -> Option<Impact> {
-        let &Step {
+        let &ContactStep {
             world, until_us, ..
         } = step;
         let wanted = *pose;

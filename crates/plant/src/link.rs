@@ -40,7 +40,7 @@ impl Default for LinkParams {
 
 /// Which way the bytes go; each way has its own faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
+pub enum LinkDirection {
     /// From the station to the robot.
     ToRobot,
     /// From the robot to the station.
@@ -62,12 +62,12 @@ pub struct Link {
 impl Link {
     /// An idle link; its faults follow from the noise.
     #[must_use]
-    pub fn new(params: LinkParams, noise: Noise, direction: Direction) -> Self {
+    pub fn new(params: LinkParams, noise: Noise, direction: LinkDirection) -> Self {
         let byte_ns = 10_000_000_000 / u64::from(params.baud.max(1));
         let source = source::LINK
             + match direction {
-                Direction::ToRobot => 0,
-                Direction::ToStation => 10,
+                LinkDirection::ToRobot => 0,
+                LinkDirection::ToStation => 10,
             };
         Self {
             params,
@@ -166,7 +166,7 @@ mod tests {
     use super::*;
 
     fn link(params: LinkParams) -> Link {
-        Link::new(params, Noise::new(1, 0), Direction::ToStation)
+        Link::new(params, Noise::new(1, 0), LinkDirection::ToStation)
     }
 
     fn received(link: &mut Link, now_us: u64) -> Vec<u8> {
@@ -264,6 +264,9 @@ mod tests {
             link.send(0, &(0..64).collect::<Vec<u8>>());
             received(&mut link, u64::MAX)
         };
-        assert_ne!(arrived(Direction::ToRobot), arrived(Direction::ToStation));
+        assert_ne!(
+            arrived(LinkDirection::ToRobot),
+            arrived(LinkDirection::ToStation)
+        );
     }
 }

@@ -13,7 +13,7 @@ pub const MOST_BODIES: usize = 63;
 
 /// How fast a body moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Velocity {
+pub struct BodyVelocity {
     /// Along the world's x and y.
     pub m_s: Point,
     /// Turn rate, counter-clockwise.
@@ -26,7 +26,7 @@ pub struct BodyMotion {
     /// Where.
     pub pose: Pose,
     /// How fast.
-    pub velocity: Velocity,
+    pub velocity: BodyVelocity,
 }
 
 impl BodyMotion {
@@ -34,14 +34,14 @@ impl BodyMotion {
     #[must_use]
     pub fn surface_m_s(&self, at: Point) -> Point {
         let arm = sub(at, [self.pose.x_m, self.pose.y_m]);
-        let Velocity { m_s, yaw_rad_s } = self.velocity;
+        let BodyVelocity { m_s, yaw_rad_s } = self.velocity;
         [m_s[0] - yaw_rad_s * arm[1], m_s[1] + yaw_rad_s * arm[0]]
     }
 }
 
 /// A pose and when it is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Waypoint {
+pub struct TimedWaypoint {
     /// Time since the start of the route.
     pub at_us: u64,
     /// The pose; the heading is not wrapped.
@@ -50,7 +50,7 @@ pub struct Waypoint {
 
 /// What follows the last waypoint.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Repeat {
+pub enum MoverRepeat {
     /// The body stays there.
     #[default]
     Once,
@@ -62,9 +62,9 @@ pub enum Repeat {
 
 /// Waypoints with straight, even motion between them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Route {
-    waypoints: Vec<Waypoint>,
-    repeat: Repeat,
+pub struct MoverRoute {
+    waypoints: Vec<TimedWaypoint>,
+    repeat: MoverRepeat,
     start_us: u64,
 }
 
@@ -72,7 +72,7 @@ pub struct Route {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Course {
     /// A route, at its first waypoint until it starts.
-    Route(Route),
+    Route(MoverRoute),
     /// Straight on from a pose, with the velocity it had there.
     Straight {
         /// Time of `from`.
@@ -93,14 +93,14 @@ pub struct Body {
     fastest_m_s: f64,
 }
 
-impl Route {
+impl MoverRoute {
     /// A route that starts at `start_us`.
     ///
     /// # Errors
     /// Fewer than two waypoints, times that do not grow from 0, a loop that is not closed, a pose that is not finite.
     pub fn new(
-        waypoints: Vec<Waypoint>,
-        repeat: Repeat,
+        waypoints: Vec<TimedWaypoint>,
+        repeat: MoverRepeat,
         start_us: u64,
     ) -> Result<Self, ShapeError> {
         let poses = || waypoints.iter().map(|waypoint| waypoint.pose);
@@ -112,7 +112,7 @@ impl Route {
         }
         let grows = waypoints.windows(2).all(|two| two[0].at_us < two[1].at_us);
         let begins = waypoints.first().is_some_and(|first| first.at_us == 0);
-        let closed = repeat != Repeat::Loop || poses().next() == poses().next_back();
+        let closed = repeat != MoverRepeat::Loop || poses().next() == poses().next_back();
         if waypoints.len() < 2 || !grows || !begins || !closed {
             return Err(ShapeError::NoRoute);
         }
@@ -125,13 +125,13 @@ impl Route {
 
     /// The waypoints.
     #[must_use]
-    pub fn waypoints(&self) -> &[Waypoint] {
+    pub fn waypoints(&self) -> &[TimedWaypoint] {
         &self.waypoints
     }
 
     /// What follows the last one.
     #[must_use]
-    pub const fn repeat(&self) -> Repeat {
+    pub const fn repeat(&self) -> MoverRepeat {
         self.repeat
     }
 
@@ -151,9 +151,9 @@ impl Route {
         let since_us = now_us.saturating_sub(self.start_us);
         let last_us = self.waypoints[self.waypoints.len() - 1].at_us;
         let (along_us, direction) = match self.repeat {
-            Repeat::Once => (since_us.min(last_us), 1.0),
-            Repeat::Loop => (since_us % last_us, 1.0),
-            Repeat::BackAndForth => match since_us % (2 * last_us) {
+            MoverRepeat::Once => (since_us.min(last_us), 1.0),
+            MoverRepeat::Loop => (since_us % last_us, 1.0),
+            MoverRepeat::BackAndForth => match since_us % (2 * last_us) {
                 forth if forth < last_us => (forth, 1.0),
                 back => (2 * last_us - back, -1.0),
             },
@@ -162,7 +162,8 @@ impl Route {
             .waypoints
             .partition_point(|waypoint| waypoint.at_us <= along_us)
             .min(self.waypoints.len() - 1);
-        let moves = now_us >= self.start_us && (self.repeat != Repeat::Once || since_us < last_us);
+        let moves =
+            now_us >= self.start_us && (self.repeat != MoverRepeat::Once || since_us < last_us);
         leg(
             &self.waypoints[next - 1],
             &self.waypoints[next],
@@ -181,7 +182,7 @@ impl Route {
 }
 
 /// Between two waypoints; `direction` -1 backwards, 0 at rest.
-fn leg(from: &Waypoint, to: &Waypoint, along_us: u64, direction: f64) -> BodyMotion {
+fn leg(from: &TimedWaypoint, to: &TimedWaypoint, along_us: u64, direction: f64) -> BodyMotion {
     let whole_us = (to.at_us - from.at_us) as f64;
     let share = (along_us - from.at_us) as f64 / whole_us;
     let (a, b) = (from.pose, to.pose);
@@ -193,7 +194,7 @@ fn leg(from: &Waypoint, to: &Waypoint, along_us: u64, direction: f64) -> BodyMot
             y_m: a.y_m + share * way[1],
             heading_rad: a.heading_rad + share * way[2],
         },
-        velocity: Velocity {
+        velocity: BodyVelocity {
             m_s: [way[0] * per_s, way[1] * per_s],
             yaw_rad_s: way[2] * per_s,
         },
@@ -284,7 +285,7 @@ impl Body {
     /// True if it stands here for good, on its course as it is.
     #[must_use]
     pub fn stands_as(&self, motion: &BodyMotion) -> bool {
-        let stands = motion.velocity == Velocity::default();
+        let stands = motion.velocity == BodyVelocity::default();
         stands && matches!(&self.course, Course::Straight { from, .. } if from == motion)
     }
 
@@ -340,6 +341,6 @@ pub fn way_m(was: &Pose, is: &Pose, radius_m: f64) -> f64 {
     (is.x_m - was.x_m).abs() + (is.y_m - was.y_m).abs() + turn_rad * radius_m
 }
 
-fn fastest_m_s(velocity: &Velocity, radius_m: f64) -> f64 {
+fn fastest_m_s(velocity: &BodyVelocity, radius_m: f64) -> f64 {
     sqrt(dot(velocity.m_s, velocity.m_s)) + velocity.yaw_rad_s.abs() * radius_m
 }

@@ -30,7 +30,7 @@ pub struct Limit {
 
 /// A parameter that cannot be used.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ParamError {
+pub enum PlantParamError {
     /// No parameter has this key.
     UnknownKey {
         /// The key asked for.
@@ -47,7 +47,7 @@ pub enum ParamError {
     },
 }
 
-impl fmt::Display for ParamError {
+impl fmt::Display for PlantParamError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::UnknownKey { key, nearest } => {
@@ -67,7 +67,7 @@ impl fmt::Display for ParamError {
     }
 }
 
-impl std::error::Error for ParamError {}
+impl std::error::Error for PlantParamError {}
 
 /// A section of parameters: calls back for each number with its limit and its place.
 trait Section {
@@ -414,7 +414,7 @@ impl Params {
     ///
     /// # Errors
     /// An unknown key or a value out of range; the parameters are then as before.
-    pub fn set(&mut self, key: &str, new: f64) -> Result<(), ParamError> {
+    pub fn set(&mut self, key: &str, new: f64) -> Result<(), PlantParamError> {
         let mut outcome = None;
         self.visit("", &mut |limit, value| {
             if limit.key == key {
@@ -422,7 +422,7 @@ impl Params {
             }
         });
         outcome.unwrap_or_else(|| {
-            Err(ParamError::UnknownKey {
+            Err(PlantParamError::UnknownKey {
                 key: key.into(),
                 nearest: nearest_key(key),
             })
@@ -433,7 +433,7 @@ impl Params {
     ///
     /// # Errors
     /// The first value out of range.
-    pub fn check(&self) -> Result<(), ParamError> {
+    pub fn check(&self) -> Result<(), PlantParamError> {
         let (mut copy, mut outcome) = (*self, Ok(()));
         copy.visit("", &mut |limit, value| {
             if outcome.is_ok() {
@@ -444,12 +444,12 @@ impl Params {
     }
 }
 
-fn admit(limit: Limit, value: f64) -> Result<(), ParamError> {
+fn admit(limit: Limit, value: f64) -> Result<(), PlantParamError> {
     let whole = limit.unit != "count" || libm::floor(value) == value;
     if (limit.min..=limit.max).contains(&value) && whole {
         Ok(())
     } else {
-        Err(ParamError::OutOfRange { value, limit })
+        Err(PlantParamError::OutOfRange { value, limit })
     }
 }
 
@@ -475,45 +475,4 @@ fn nearest_key(asked: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_nominal_values_are_within_their_limits() {
-        assert_eq!(Params::default().check(), Ok(()));
-    }
-
-    #[test]
-    fn a_key_reaches_the_number_it_names() {
-        let mut params = Params::default();
-        params.set("wheels.left.viscous_n_m_s", 0.01).unwrap();
-        assert_eq!(params.wheels.left.viscous_n_m_s, 0.01);
-        assert_eq!(params.get("wheels.left.viscous_n_m_s"), Some(0.01));
-        assert_eq!(params.wheels.right, Wheel::default());
-        assert_eq!(params.get("wheels.viscous"), None);
-    }
-
-    #[test]
-    fn a_value_out_of_range_is_refused_with_the_range_and_changes_nothing() {
-        let mut params = Params::default();
-        let error = params.set("battery.open_circuit_v", 14.0).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "`battery.open_circuit_v` = 14: allowed 5 to 13 V"
-        );
-        assert!(params.set("encoder.edges_per_motor_turn", 7.5).is_err());
-        assert!(params.set("body.mass_kg", f64::NAN).is_err());
-        assert_eq!(params, Params::default());
-    }
-
-    #[test]
-    fn a_misspelt_key_names_its_neighbour() {
-        let error = Params::default()
-            .set("battery.open_circut_v", 7.0)
-            .unwrap_err();
-        assert!(
-            error.to_string().contains("`battery.open_circuit_v`"),
-            "{error}"
-        );
-    }
-}
+mod tests;

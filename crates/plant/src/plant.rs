@@ -14,7 +14,7 @@ use crate::contact::{self, Footprint, Pose};
 use crate::drivetrain::{self, Bridge, Drivetrain, Modulation, Motion, Side};
 use crate::encoder::{self, Channel, Encoder};
 use crate::event::Queue;
-use crate::moving::{Body, BodyMotion, Velocity};
+use crate::moving::{Body, BodyMotion, BodyVelocity};
 use crate::noise::Noise;
 use crate::params::{self, Params};
 use crate::servo;
@@ -33,7 +33,7 @@ const fn is_in_air(one: &InAir, now_us: u64) -> bool {
 
 /// The parts of a plant.
 #[derive(Clone, Debug, Default)]
-pub struct Setup {
+pub struct PlantSetup {
     /// Physical numbers, already drawn for the seed if they are to be.
     pub params: Params,
     /// Sonars.
@@ -80,7 +80,7 @@ pub struct State {
 
 /// Ground truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Truth {
+pub struct GroundTruth {
     /// Time since the start.
     pub now_us: u64,
     /// Pose of the middle of the wheels' axis.
@@ -111,8 +111,8 @@ pub struct Truth {
 impl Plant {
     /// Puts the parts together.
     #[must_use]
-    pub fn new(setup: Setup) -> Self {
-        let Setup {
+    pub fn new(setup: PlantSetup) -> Self {
+        let PlantSetup {
             params,
             rig,
             world,
@@ -220,13 +220,13 @@ impl Plant {
         if state.speed == [0.0; 2] {
             return BodyMotion {
                 pose: state.pose,
-                velocity: Velocity::default(),
+                velocity: BodyVelocity::default(),
             };
         }
         let (s, c) = sincos(state.pose.heading_rad);
         BodyMotion {
             pose: state.pose,
-            velocity: Velocity {
+            velocity: BodyVelocity {
                 m_s: [forward_m_s * c, forward_m_s * s],
                 yaw_rad_s,
             },
@@ -438,7 +438,7 @@ impl Plant {
             y_m: before.y_m + motion.forward_m * across,
             heading_rad: before.heading_rad + motion.yaw_rad,
         };
-        let step = contact::Step {
+        let step = contact::ContactStep {
             world: &self.world,
             until_us: state.now_us,
             dt_s,
@@ -494,11 +494,11 @@ impl Plant {
 
     /// The present time, pose and speeds. Costs one exact cone query per sonar.
     #[must_use]
-    pub fn truth(&self, state: &State) -> Truth {
+    pub fn truth(&self, state: &State) -> GroundTruth {
         let range_m = SonarId::ALL
             .map(|sonar| self.range_m(sonar, state.now_us, &state.pose, state.servo.angle_rad));
         let [left, right] = &state.drivetrain.wheels;
-        Truth {
+        GroundTruth {
             now_us: state.now_us,
             pose: state.pose,
             wheel_rad_s: [left.speed_rad_s, right.speed_rad_s],

@@ -49,7 +49,7 @@ mod tests {
     use crate::drivetrain::{Bridge, Side};
     use crate::event::Queue;
     use crate::params::Params;
-    use crate::plant::{Mount, Mounts, Setup};
+    use crate::plant::{Mount, Mounts, PlantSetup};
     use crate::sonar::SonarId;
     use crate::world::{Wall, World};
 
@@ -80,7 +80,7 @@ mod tests {
             thickness_m: 0.02,
         };
         for (wheels_in_air, off) in [(false, Bridge::Released), (true, Bridge::Brake(0.7))] {
-            let plant = Plant::new(Setup {
+            let plant = Plant::new(PlantSetup {
                 params: Params::default(),
                 rig: Mounts {
                     left: mount(1.57, false),
@@ -89,7 +89,7 @@ mod tests {
                 },
                 world: World::new(&[wall], &[]).unwrap(),
                 wheels_in_air,
-                ..Setup::default()
+                ..PlantSetup::default()
             });
             let start = plant.start(Pose::default());
             let (mut one, mut other) = (start, start);

@@ -98,7 +98,7 @@ struct Burst {
 
 /// An edge of the echo line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Edge {
+pub struct EchoEdge {
     /// When.
     pub at_us: u64,
     /// Level after the edge.
@@ -216,11 +216,11 @@ impl Sonar {
     }
 
     /// Passes time up to `until_us` and reports the edges of one line.
-    pub fn advance(state: &mut State, until_us: u64, mut each: impl FnMut(Edge)) {
+    pub fn advance(state: &mut State, until_us: u64, mut each: impl FnMut(EchoEdge)) {
         if let Line::Rising { rise_us, fall_us } = state.line
             && rise_us <= until_us
         {
-            each(Edge {
+            each(EchoEdge {
                 at_us: rise_us,
                 level: true,
             });
@@ -229,7 +229,7 @@ impl Sonar {
         if let Line::High { fall_us } = state.line
             && fall_us <= until_us
         {
-            each(Edge {
+            each(EchoEdge {
                 at_us: fall_us,
                 level: false,
             });

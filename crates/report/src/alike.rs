@@ -11,14 +11,14 @@ const PROVES_NOTHING: Text = word("similar-proves-nothing");
 
 /// Two hand-ins that are alike.
 #[derive(Clone, Debug)]
-pub struct Alike<'a> {
+pub struct AlikeHandIns<'a> {
     /// Name, text, and the lines that the other has too, from 0, of each.
     pub of: [(&'a str, &'a str, &'a BTreeSet<usize>); 2],
     /// The share of the shorter text that the other has too, 0 to 1.
     pub share: f64,
 }
 
-impl Alike<'_> {
+impl AlikeHandIns<'_> {
     /// Who and how much, in a line.
     #[must_use]
     pub fn in_words(&self, language: Language) -> String {
@@ -37,7 +37,7 @@ impl Alike<'_> {
 
 /// The page of two hand-ins that are alike: both texts side by side, what they have in common marked.
 #[must_use]
-pub fn pair(assignment: &Assignment, alike: &Alike<'_>, language: Language) -> String {
+pub fn pair(assignment: &Assignment, alike: &AlikeHandIns<'_>, language: Language) -> String {
     let share = alike.percent(language);
     let said = PROVES_NOTHING.with(language, &[("share", &share)]);
     let mut body = format!(

@@ -40,18 +40,9 @@ pub fn page(
         ),
     ];
     let mut body = format!("<p>{}</p>\n", escape(&FACTS.with(language, &values)));
-    let rows: Vec<Vec<Cell>> = variants
+    let rows: Vec<_> = variants
         .iter()
-        .map(|variant| {
-            let pass = variant.passes.iter().filter(|pass| **pass).count();
-            let tone = if pass == seeds.len() {
-                Tone::Good
-            } else {
-                Tone::Bad
-            };
-            let count = format!("{pass} / {}", seeds.len());
-            vec![Cell::text(&variant.name), Cell::text(&count).tone(tone)]
-        })
+        .map(|one| passes(one, seeds.len()))
         .collect();
     body += &table(&[VARIANT.of(language), PASS.of(language)], &rows);
     put(
@@ -85,10 +76,8 @@ pub fn page(
         let (name, factor) = named(language, scenario, metric);
         let groups = variants.iter().map(|variant| {
             let values = variant.metrics.iter().filter_map(|run| run.get(metric));
-            (
-                variant.name.clone(),
-                values.map(|value| factor * value).collect(),
-            )
+            let values = values.map(|value| factor * value).collect();
+            (variant.name.clone(), values)
         });
         let boxes = Boxes {
             x: name.clone(),
@@ -97,6 +86,17 @@ pub fn page(
         body += &figure(&boxes.svg(language), &name);
     }
     shell(language, &scenario.title, &scenario.name, &body)
+}
+
+/// How many of these runs of a variant passed.
+fn passes(variant: &Variant, runs: usize) -> Vec<Cell> {
+    let pass = variant.passes.iter().filter(|pass| **pass).count();
+    let tone = match pass == runs {
+        true => Tone::Good,
+        false => Tone::Bad,
+    };
+    let count = Cell::text(&format!("{pass} / {runs}")).tone(tone);
+    vec![Cell::text(&variant.name), count]
 }
 
 /// The metric's name with its step and unit, and the factor to that unit.

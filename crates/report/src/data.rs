@@ -2,8 +2,8 @@
 
 use crate::content;
 use crate::places::Places;
-use crate::real::{Real, Recording};
-use crate::signals::Outcome;
+use crate::real::{Real, RealRun};
+use crate::signals::ReportedRun;
 use crate::text::{Language, Text};
 use std::collections::BTreeMap;
 
@@ -53,15 +53,15 @@ pub struct Data {
     /// File name and CRC-32 of the image that drove the robot; none: the native program.
     pub firmware: Option<[String; 2]>,
     /// By scenario.
-    pub outcomes: BTreeMap<String, Outcome>,
+    pub outcomes: BTreeMap<String, ReportedRun>,
     /// The same with the references of the recorded run at their times.
-    pub as_recorded: BTreeMap<String, Outcome>,
+    pub as_recorded: BTreeMap<String, ReportedRun>,
     /// Recorded runs, where there are any.
     pub real: Real,
 }
 
 impl Data {
-    pub(crate) fn outcome(&self, scenario: &str) -> Option<&Outcome> {
+    pub(crate) fn outcome(&self, scenario: &str) -> Option<&ReportedRun> {
         self.outcomes.get(scenario)
     }
 
@@ -72,7 +72,7 @@ impl Data {
     }
 
     /// Our run beside a recorded one, and that one.
-    pub(crate) fn beside(&self, scenario: &str) -> Option<(&Outcome, &Recording)> {
+    pub(crate) fn beside(&self, scenario: &str) -> Option<(&ReportedRun, &RealRun)> {
         let recording = self.real.runs.get(scenario)?;
         let ours = self
             .as_recorded
@@ -82,7 +82,7 @@ impl Data {
     }
 
     /// The runs of an experiment's scenarios.
-    pub(crate) fn of(&self, experiment: &Experiment) -> Vec<&Outcome> {
+    pub(crate) fn of(&self, experiment: &Experiment) -> Vec<&ReportedRun> {
         let names = experiment.scenarios.iter();
         names.filter_map(|name| self.outcome(name)).collect()
     }

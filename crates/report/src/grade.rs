@@ -8,12 +8,12 @@ mod figures;
 use crate::complaints::complaint;
 use crate::judge;
 use crate::metric_names::{Shown, shown};
-use crate::signals::Outcome;
+use crate::signals::ReportedRun;
 use crate::summary::{figure, heading, shell};
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, capital, escape, put, word};
 use pulldown_cmark::{Event, Options, Parser, html};
-use rumbo_experiment::grade::{Assignment, Line, Mark, Test, Words};
+use rumbo_experiment::grade::{Assignment, Bilingual, GradedTest, Mark, RubricLine};
 use rumbo_experiment::note::Note;
 use rumbo_plot::{Curve, Ink, Panel, Plot, Points};
 
@@ -48,7 +48,7 @@ const AT_LEAST: Text = word("at-least-value");
 
 /// A text of an assignment in a language, if it has it.
 #[must_use]
-pub fn of(language: Language, words: &Words) -> &str {
+pub fn of(language: Language, words: &Bilingual) -> &str {
     match (language, &words.spanish) {
         (Language::Spanish, Some(spanish)) => spanish,
         _ => &words.text,
@@ -64,7 +64,7 @@ pub fn noted(language: Language, note: &Note) -> String {
 /// With how many seeds a hand-in is driven, and how many of them nobody knows, in a language.
 #[must_use]
 pub fn seeds_in_words(assignment: &Assignment, language: Language) -> String {
-    let count = |seeds: fn(&Test) -> usize| -> String {
+    let count = |seeds: fn(&GradedTest) -> usize| -> String {
         let all: usize = assignment.tests.iter().map(seeds).sum();
         all.to_string()
     };
@@ -75,7 +75,7 @@ pub fn seeds_in_words(assignment: &Assignment, language: Language) -> String {
 
 /// Points and measurement of a line of the rubric, in a language.
 #[must_use]
-pub fn earned_in_words(assignment: &Assignment, line: &Line, language: Language) -> String {
+pub fn earned_in_words(assignment: &Assignment, line: &RubricLine, language: Language) -> String {
     let criterion = &assignment.criteria[line.criterion];
     let shown = metric(assignment, line, language);
     let in_words = |value| judge::value(language, &shown, value);
@@ -95,7 +95,7 @@ pub fn earned_in_words(assignment: &Assignment, line: &Line, language: Language)
 
 /// What was seen in the program where a line of the rubric lost points, in a language; empty where it lost none.
 #[must_use]
-pub fn place_in_words(line: &Line, language: Language) -> String {
+pub fn place_in_words(line: &RubricLine, language: Language) -> String {
     match &line.place {
         Some(place) if !line.is_full() => noted(language, place),
         _ => String::new(),
@@ -103,7 +103,7 @@ pub fn place_in_words(line: &Line, language: Language) -> String {
 }
 
 /// From where on a line has all points.
-fn full(language: Language, assignment: &Assignment, line: &Line) -> String {
+fn full(language: Language, assignment: &Assignment, line: &RubricLine) -> String {
     let criterion = &assignment.criteria[line.criterion];
     let bound = match criterion.full < criterion.none {
         true => AT_MOST,
@@ -165,37 +165,13 @@ pub fn class(
             .iter()
             .map(|one| of(language, &one.title)),
     );
-    let rows: Vec<Vec<Cell>> = marks
-        .iter()
-        .zip(links)
-        .map(|(mark, link)| {
-            let name = format!("<a href=\"{}\">{}</a>", escape(link), escape(&mark.name));
-            let tone = if mark.pass { Tone::Good } else { Tone::Bad };
-            let mut row = vec![
-                Cell::html(name),
-                Cell::text(&language.number(mark.points, 2)).tone(tone),
-            ];
-            for number in 0..assignment.criteria.len() {
-                let own = mark.lines.iter().filter(|line| line.criterion == number);
-                let points: f64 = own.map(|line| line.points).sum();
-                row.push(match mark.refused.is_empty() {
-                    true => Cell::text(&language.number(points, 2)),
-                    false => Cell::text("–"),
-                });
-            }
-            row
-        })
-        .collect();
-    body += &table(&header, &rows);
+    let rows = std::iter::zip(marks, links);
+    let rows = rows.map(|(mark, link)| row(assignment, mark, language, link));
+    body += &table(&header, &rows.collect::<Vec<_>>());
     if !alike.is_empty() {
         body += &heading(SIMILAR.of(language));
-        let items = alike.iter().map(|(words, link)| {
-            format!(
-                "<li><a href=\"{}\">{}</a></li>\n",
-                escape(link),
-                escape(words)
-            )
-        });
+        let items = alike.iter();
+        let items = items.map(|(words, link)| format!("<li>{}</li>\n", anchor(link, words)));
         body += &format!("<ul>\n{}</ul>\n", items.collect::<String>());
     }
     body += &heading(RUBRIC.of(language));
@@ -206,6 +182,27 @@ pub fn class(
         CLASS.of(language),
         &body,
     )
+}
+
+fn anchor(link: &str, words: &str) -> String {
+    format!("<a href=\"{}\">{}</a>", escape(link), escape(words))
+}
+
+/// A hand-in in the table of the class.
+fn row(assignment: &Assignment, mark: &Mark, language: Language, link: &str) -> Vec<Cell> {
+    let tone = if mark.pass { Tone::Good } else { Tone::Bad };
+    let points = |number: usize| {
+        let own = mark.lines.iter().filter(|line| line.criterion == number);
+        let points: f64 = own.map(|line| line.points).sum();
+        match mark.refused.is_empty() {
+            true => Cell::text(&language.number(points, 2)),
+            false => Cell::text("–"),
+        }
+    };
+    let name = Cell::html(anchor(link, &mark.name));
+    let sum = Cell::text(&language.number(mark.points, 2)).tone(tone);
+    let parts = (0..assignment.criteria.len()).map(points);
+    [name, sum].into_iter().chain(parts).collect()
 }
 
 fn list(language: Language, title: Text, notes: &[Note]) -> String {
@@ -235,7 +232,7 @@ fn verdict(mark: &Mark, language: Language) -> String {
 }
 
 /// A metric as displayed, for the plotted run or any other.
-fn metric(assignment: &Assignment, line: &Line, language: Language) -> Shown {
+fn metric(assignment: &Assignment, line: &RubricLine, language: Language) -> Shown {
     let criterion = &assignment.criteria[line.criterion];
     let scenario = &assignment.tests[line.test].setup.scenario;
     shown(language, scenario, &criterion.metric).unwrap_or(Shown {
@@ -313,7 +310,7 @@ fn advice(assignment: &Assignment, mark: &Mark, language: Language) -> String {
     let criteria = assignment.criteria.iter().enumerate();
     let lost = criteria.filter(|(number, one)| {
         let own = || mark.lines.iter().filter(|line| line.criterion == *number);
-        if of(language, &one.advice).is_empty() || own().all(Line::is_full) {
+        if of(language, &one.advice).is_empty() || own().all(RubricLine::is_full) {
             return false;
         }
         let tests: Vec<_> = own().map(|line| line.test).collect();
@@ -354,7 +351,7 @@ fn curves(assignment: &Assignment, mark: &Mark, language: Language) -> String {
         let Some(result) = result else {
             continue;
         };
-        let outcome = Outcome {
+        let outcome = ReportedRun {
             setup: test.setup.clone(),
             result: result.clone(),
         };

@@ -2,10 +2,10 @@
 
 use crate::complaints;
 use crate::metric_names::{Shown, shown};
-use crate::signals::Outcome;
+use crate::signals::ReportedRun;
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, escape, with, with_unit, word};
-use rumbo_experiment::files::Bounds;
+use rumbo_experiment::files::MetricBounds;
 use rumbo_experiment::note::Note;
 
 /// A value that is no metric, already in its unit.
@@ -43,7 +43,7 @@ pub(crate) fn value(language: Language, shown: &Shown, value: f64) -> String {
     with_unit(text, shown.unit)
 }
 
-pub(crate) fn bounds(language: Language, shown: &Shown, bounds: Bounds) -> String {
+pub(crate) fn bounds(language: Language, shown: &Shown, bounds: MetricBounds) -> String {
     // A limit in rad was a round number of degrees before it was converted and rounded.
     let number = |value: f64| {
         let value = value * shown.factor;
@@ -74,7 +74,7 @@ pub(crate) const MISSED: Text = word("missed");
 const MESSAGE: Text = word("message-of-the-program");
 
 /// The metrics of runs against their limits, a table for each run.
-pub(crate) fn limits(language: Language, outcomes: &[&Outcome]) -> String {
+pub(crate) fn limits(language: Language, outcomes: &[&ReportedRun]) -> String {
     let header = [METRIC, VALUE, LIMIT, RESULT].map(|text| text.of(language));
     let mut html = String::new();
     for outcome in outcomes {
@@ -97,7 +97,7 @@ pub(crate) fn name_of(name: &str) -> String {
 const SCENARIO: Text = word("scenario");
 
 /// The same of many runs in one table.
-pub(crate) fn limits_together(language: Language, outcomes: &[&Outcome]) -> String {
+pub(crate) fn limits_together(language: Language, outcomes: &[&ReportedRun]) -> String {
     let mut all = Vec::new();
     for outcome in outcomes {
         for (index, mut row) in rows(language, outcome).into_iter().enumerate() {
@@ -116,8 +116,8 @@ pub(crate) fn limits_together(language: Language, outcomes: &[&Outcome]) -> Stri
 }
 
 /// A run's metrics that have a limit.
-fn rows(language: Language, outcome: &Outcome) -> Vec<Vec<Cell>> {
-    let row = |(key, limit): (&String, &Bounds)| {
+fn rows(language: Language, outcome: &ReportedRun) -> Vec<Vec<Cell>> {
+    let row = |(key, limit): (&String, &MetricBounds)| {
         let shown = shown(language, &outcome.setup.scenario, key)?;
         let found = outcome.metric(key).unwrap_or(f64::NAN);
         let (verdict, tone) = if limit.admit(found) {
@@ -142,7 +142,7 @@ fn rows(language: Language, outcome: &Outcome) -> Vec<Vec<Cell>> {
 }
 
 /// Failures of the robot or the program besides missed limits.
-fn complaints(language: Language, outcome: &Outcome) -> String {
+fn complaints(language: Language, outcome: &ReportedRun) -> String {
     let complaint = |note: &Note| {
         let said = complaints::complaint(language, note).html();
         let name = name_of(&outcome.result.scenario);
@@ -177,7 +177,7 @@ mod tests {
                 setup.scenario.duration_s = 0.1;
                 let limits: Vec<String> = setup.scenario.limits.keys().cloned().collect();
                 let result = run(&setup, 1).unwrap();
-                let outcome = Outcome { setup, result };
+                let outcome = ReportedRun { setup, result };
                 for key in limits {
                     for language in [Language::English, Language::Spanish] {
                         assert!(
@@ -197,7 +197,7 @@ mod tests {
             ..plain("°")
         };
         assert_eq!(value(Language::Spanish, &shown, 0.0349), "2°");
-        let both = Bounds {
+        let both = MetricBounds {
             min: Some(-1.75),
             max: Some(-1.4),
         };

@@ -46,6 +46,6 @@ pub use chapters::EXPERIMENTS;
 pub use content::ContentError;
 pub use data::{Data, Experiment};
 pub use plan::{Plan, Request};
-pub use signals::Outcome;
-pub use stamp::Stamp;
+pub use signals::ReportedRun;
+pub use stamp::FileStamp;
 pub use summary::html;

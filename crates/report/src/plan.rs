@@ -3,9 +3,9 @@
 use crate::chapters::EXPERIMENTS;
 use crate::data::Data;
 use crate::data::Experiment;
-use crate::real::{Real, Recording};
-use crate::signals::Outcome;
-use crate::stamp::Stamp;
+use crate::real::{Real, RealRun};
+use crate::signals::ReportedRun;
+use crate::stamp::FileStamp;
 use crate::text::Language;
 #[cfg(feature = "host")]
 use rayon::prelude::*;
@@ -84,7 +84,7 @@ impl Plan {
 
     /// What the report in this language is known by.
     #[must_use]
-    pub fn stamp(&self, language: Language) -> Stamp {
+    pub fn stamp(&self, language: Language) -> FileStamp {
         let Request {
             only,
             seed,
@@ -98,7 +98,7 @@ impl Plan {
             overrides.robot.clone().unwrap_or_default(),
             image.map_or(String::new(), |path| path.display().to_string()),
         ];
-        Stamp::of("experiments", &[&about[..], only].concat())
+        FileStamp::of("experiments", &[&about[..], only].concat())
     }
 
     /// The scenarios that are run as they are, not with the references of a recorded run.
@@ -148,7 +148,7 @@ impl Plan {
             .map(|Job { setup, as_recorded }| {
                 let result = run(&setup, request.seed)?;
                 done(setup.scenario.duration_s);
-                Ok((as_recorded, Outcome { setup, result }))
+                Ok((as_recorded, ReportedRun { setup, result }))
             })
             .collect::<Result<_, FileError>>()?;
         for (as_recorded, outcome) in results {
@@ -187,7 +187,7 @@ fn chosen(only: &[String]) -> Result<Vec<&'static Experiment>, FileError> {
 }
 
 /// The setup with the references of a recorded run at its times; `None` where the experiment has none.
-fn as_recorded(setup: &Setup, recording: &Recording) -> Option<Setup> {
+fn as_recorded(setup: &Setup, recording: &RealRun) -> Option<Setup> {
     let mut own = setup.clone();
     let scenario = &mut own.scenario;
     let armed_s = scenario

@@ -7,17 +7,17 @@ mod folder;
 pub use folder::read;
 
 use crate::text::{Text, word};
-use rumbo_wire::text::Row;
+use rumbo_wire::text::TextRow;
 use std::collections::BTreeMap;
 use std::fmt;
 
 /// A recorded run.
 #[derive(Clone, Debug)]
-pub struct Recording {
+pub struct RealRun {
     /// File name without folder.
     pub file: String,
     /// Time since the first row [s], and the row.
-    pub rows: Vec<(f64, Row)>,
+    pub rows: Vec<(f64, TextRow)>,
     /// The robot ran our program, not the original one.
     pub ours: bool,
 }
@@ -44,7 +44,7 @@ pub struct Skipped {
 #[derive(Clone, Debug, Default)]
 pub struct Real {
     /// By the scenario that each is a run of.
-    pub runs: BTreeMap<&'static str, Recording>,
+    pub runs: BTreeMap<&'static str, RealRun>,
     /// CSVs that are none, or of which there is another one.
     pub skipped: Vec<Skipped>,
 }
@@ -96,9 +96,9 @@ impl NotShown {
     }
 }
 
-impl Recording {
+impl RealRun {
     /// A signal over time; a row that has none is left out.
-    pub(crate) fn signal(&self, of: impl Fn(&Row) -> Option<f64>) -> Vec<(f64, f64)> {
+    pub(crate) fn signal(&self, of: impl Fn(&TextRow) -> Option<f64>) -> Vec<(f64, f64)> {
         self.rows
             .iter()
             .filter_map(|(t_s, row)| Some((*t_s, of(row)?)))
@@ -112,9 +112,9 @@ impl Recording {
 
     /// When the reference changed, and to what (SI): that of the first row, and each one that differs from the one before.
     pub(crate) fn references(&self) -> Vec<(f64, f64)> {
-        let value = |row: &Row| match row {
-            Row::Distance(row) => Some(f64::from(row.reference_cm) / 100.0),
-            Row::Speed(row) => Some(f64::from(row.reference_rpm) * std::f64::consts::PI / 30.0),
+        let value = |row: &TextRow| match row {
+            TextRow::Distance(row) => Some(f64::from(row.reference_cm) / 100.0),
+            TextRow::Speed(row) => Some(f64::from(row.reference_rpm) * std::f64::consts::PI / 30.0),
             _ => None,
         };
         let mut references = self.signal(value);

@@ -7,8 +7,8 @@ use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::Setup;
 use rumbo_experiment::run::RunResult;
 use rumbo_plot::Points;
-use rumbo_sim::trace::{Sample, TimedMessage, Trace};
-use rumbo_wire::text::Row;
+use rumbo_sim::trace::{TimedMessage, Trace, TruthSample};
+use rumbo_wire::text::TextRow;
 use rumbo_wire::{Command, EventKind, FromRobot, Telemetry};
 use std::f64::consts::{PI, TAU};
 
@@ -18,14 +18,14 @@ pub(crate) const CM: f64 = 100.0;
 
 /// A run and its setup.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct ReportedRun {
     /// The scenario and all that it names.
     pub setup: Setup,
     /// Its trace, metrics and failures.
     pub result: RunResult,
 }
 
-impl Outcome {
+impl ReportedRun {
     pub(crate) fn trace(&self) -> &Trace {
         &self.result.trace
     }
@@ -43,7 +43,7 @@ impl Outcome {
     }
 
     /// A signal of ground truth.
-    pub(crate) fn truth(&self, signal: impl Fn(&Sample) -> f64) -> Points {
+    pub(crate) fn truth(&self, signal: impl Fn(&TruthSample) -> f64) -> Points {
         let armed_s = self.armed_s();
         let samples = self.trace().samples.iter();
         samples
@@ -79,8 +79,8 @@ impl Outcome {
     fn best(
         &self,
         frames: impl Fn(&Telemetry) -> f64,
-        text: impl Fn(&Row) -> Option<f64>,
-        truth: Option<&dyn Fn(&Sample) -> f64>,
+        text: impl Fn(&TextRow) -> Option<f64>,
+        truth: Option<&dyn Fn(&TruthSample) -> f64>,
     ) -> Points {
         let points = self.text(text);
         match truth {
@@ -92,7 +92,7 @@ impl Outcome {
     }
 
     /// A signal of the rows of the original text protocol.
-    fn text(&self, of: impl Fn(&Row) -> Option<f64>) -> Points {
+    fn text(&self, of: impl Fn(&TextRow) -> Option<f64>) -> Points {
         let armed_s = self.armed_s();
         let rows = text_rows::rows(&self.trace().link);
         rows.iter()
@@ -155,7 +155,7 @@ impl Outcome {
     pub(crate) fn pose(&self) -> [Points; 3] {
         let start = self.setup.scenario.start;
         let (sin, cos) = start.heading_rad.sin_cos();
-        let seen = |sample: &Sample| {
+        let seen = |sample: &TruthSample| {
             let (x, y) = (sample.x_m - start.x_m, sample.y_m - start.y_m);
             [
                 cos * x + sin * y,
@@ -226,7 +226,7 @@ impl Outcome {
 
     /// The number of the mode's state.
     pub(crate) fn states(&self) -> Points {
-        let text = |row: &Row| Some(f64::from(text_rows::mission(row)?.state));
+        let text = |row: &TextRow| Some(f64::from(text_rows::mission(row)?.state));
         let mut points = self.best(|frame| f64::from(frame.state), text, None);
         self.hold_last(&mut points);
         points

@@ -5,9 +5,9 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 
 /// The mark added to a file whose contents have none: the command, and a checksum of its arguments.
 #[derive(Clone, Debug)]
-pub struct Stamp(String);
+pub struct FileStamp(String);
 
-impl Stamp {
+impl FileStamp {
     /// What a command makes of these.
     #[must_use]
     pub fn of(command: &str, about: &[String]) -> Self {

@@ -9,7 +9,7 @@ use crate::metric_names::shown;
 use crate::page::Page;
 use crate::places::Places;
 use crate::real::Skipped;
-use crate::signals::Outcome;
+use crate::signals::ReportedRun;
 use crate::table::{Cell, Tone, table};
 use crate::text::{Language, Text, capital, escape, word};
 use rumbo_plot::STYLE as PLOTS;
@@ -99,7 +99,7 @@ fn front(data: &Data, language: Language, contents: String) -> Places {
     } else {
         places.nothing("foreign");
     }
-    if data.outcomes.values().all(Outcome::has_telemetry) {
+    if data.outcomes.values().all(ReportedRun::has_telemetry) {
         places.nothing("no-telemetry");
     } else {
         places.value("no-telemetry", HOW_SILENT.of(language));

@@ -9,7 +9,7 @@ use rumbo_control::params::ParamId;
 use rumbo_experiment::compare::median;
 use rumbo_experiment::files::ScenarioFile;
 use rumbo_experiment::metrics;
-use rumbo_experiment::sweep::{Axis, Design, Row, Spread, Sweep};
+use rumbo_experiment::sweep::{Axis, Design, MetricSpread, RunRow, SweepOutcome};
 use rumbo_plant::params::Params;
 use rumbo_plot::{Band, Curve, Heat, Ink, Panel, Parallel, Plot, Points};
 use std::collections::BTreeMap;
@@ -46,7 +46,7 @@ const MOST_LINES: usize = 600;
 #[derive(Clone, Copy, Debug)]
 pub struct Page<'a> {
     /// The sweep.
-    pub sweep: &'a Sweep,
+    pub sweep: &'a SweepOutcome,
     /// Its scenario.
     pub scenario: &'a ScenarioFile,
     /// The metric that ranks.
@@ -226,7 +226,7 @@ impl Page<'_> {
     }
 
     /// A run, linked to its log.
-    fn run(&self, row: &Row) -> Cell {
+    fn run(&self, row: &RunRow) -> Cell {
         match self.logs.get(&(row.point, row.seed)) {
             Some(log) => Cell::html(format!("<a href=\"{}\">{}</a>", escape(log), row.seed)),
             None => Cell::text(&row.seed.to_string()),
@@ -319,7 +319,7 @@ impl Page<'_> {
             let Some(spread) = self.sweep.spread_over(points, metric) else {
                 continue;
             };
-            let Spread {
+            let MetricSpread {
                 median: middle,
                 low,
                 high,

@@ -1,11 +1,11 @@
 //! Telemetry rows of the original text protocol, parsed from the raw bytes of the link.
 
 use crate::channel::Channel;
-use rumbo_sim::Burst;
-use rumbo_wire::text::{MissionRow, Row};
+use rumbo_sim::LinkBurst;
+use rumbo_wire::text::{MissionRow, TextRow};
 
 /// The rows that the robot sent, each with its time of arrival [s].
-pub(crate) fn rows(link: &[Burst]) -> Vec<(f64, Row)> {
+pub(crate) fn rows(link: &[LinkBurst]) -> Vec<(f64, TextRow)> {
     let (mut rows, mut line) = (Vec::new(), Vec::new());
     for burst in link.iter().filter(|burst| !burst.to_robot) {
         for byte in &burst.bytes {
@@ -14,7 +14,8 @@ pub(crate) fn rows(link: &[Burst]) -> Vec<(f64, Row)> {
                 continue;
             }
             let text = std::mem::take(&mut line);
-            if let Ok(Ok(row)) = std::str::from_utf8(&text).map(|text| Row::parse(text.trim())) {
+            if let Ok(Ok(row)) = std::str::from_utf8(&text).map(|text| TextRow::parse(text.trim()))
+            {
                 rows.push((burst.t_us as f64 * 1e-6, row));
             }
         }
@@ -23,53 +24,53 @@ pub(crate) fn rows(link: &[Burst]) -> Vec<(f64, Row)> {
 }
 
 /// A sonar's range [cm]. A robot with one sonar sends it twice.
-pub(crate) fn range_cm(row: &Row, sonar: Channel) -> Option<f64> {
+pub(crate) fn range_cm(row: &TextRow, sonar: Channel) -> Option<f64> {
     let range_cm = match (row, sonar) {
-        (Row::Distance(row), Channel::Left | Channel::Front) => row.left_cm,
-        (Row::Distance(row), Channel::Right) => row.right_cm,
-        (Row::Mission(row), Channel::Left) => row.left_cm,
-        (Row::Mission(row), Channel::Right) => row.right_cm,
-        (Row::Mission(row), Channel::Front) => row.front_cm,
+        (TextRow::Distance(row), Channel::Left | Channel::Front) => row.left_cm,
+        (TextRow::Distance(row), Channel::Right) => row.right_cm,
+        (TextRow::Mission(row), Channel::Left) => row.left_cm,
+        (TextRow::Mission(row), Channel::Right) => row.right_cm,
+        (TextRow::Mission(row), Channel::Front) => row.front_cm,
         _ => return None,
     };
     Some(f64::from(range_cm))
 }
 
 /// A wheel's speed [rpm].
-pub(crate) fn speed_rpm(row: &Row, wheel: Channel) -> Option<f64> {
+pub(crate) fn speed_rpm(row: &TextRow, wheel: Channel) -> Option<f64> {
     let wheels = match row {
-        Row::Speed(row) => row.wheel_rpm,
-        Row::Waypoints(row) => row.wheel_rpm,
-        Row::Distance(_) | Row::Mission(_) => return None,
+        TextRow::Speed(row) => row.wheel_rpm,
+        TextRow::Waypoints(row) => row.wheel_rpm,
+        TextRow::Distance(_) | TextRow::Mission(_) => return None,
     };
     Some(f64::from(wheel.of(wheels)))
 }
 
 /// A wheel's setpoint [rpm].
-pub(crate) fn reference_rpm(row: &Row, wheel: Channel) -> Option<f64> {
+pub(crate) fn reference_rpm(row: &TextRow, wheel: Channel) -> Option<f64> {
     let wheels = match row {
-        Row::Speed(row) => return Some(f64::from(row.reference_rpm)),
-        Row::Waypoints(row) => row.reference_rpm,
-        Row::Mission(row) => row.reference_rpm,
-        Row::Distance(_) => return None,
+        TextRow::Speed(row) => return Some(f64::from(row.reference_rpm)),
+        TextRow::Waypoints(row) => row.reference_rpm,
+        TextRow::Mission(row) => row.reference_rpm,
+        TextRow::Distance(_) => return None,
     };
     Some(f64::from(wheel.of(wheels)))
 }
 
 /// x [m], y [m] and heading [deg].
-pub(crate) fn pose(row: &Row) -> Option<[f64; 3]> {
+pub(crate) fn pose(row: &TextRow) -> Option<[f64; 3]> {
     let pose = match row {
-        Row::Waypoints(row) => [row.x_m, row.y_m, row.heading_deg],
-        Row::Mission(row) => [row.x_m, row.y_m, row.heading_deg],
-        Row::Distance(_) | Row::Speed(_) => return None,
+        TextRow::Waypoints(row) => [row.x_m, row.y_m, row.heading_deg],
+        TextRow::Mission(row) => [row.x_m, row.y_m, row.heading_deg],
+        TextRow::Distance(_) | TextRow::Speed(_) => return None,
     };
     Some(pose.map(f64::from))
 }
 
 /// A row of mode 8.
-pub(crate) fn mission(row: &Row) -> Option<&MissionRow> {
+pub(crate) fn mission(row: &TextRow) -> Option<&MissionRow> {
     match row {
-        Row::Mission(row) => Some(row),
+        TextRow::Mission(row) => Some(row),
         _ => None,
     }
 }
@@ -80,7 +81,7 @@ mod tests {
 
     #[test]
     fn rows_are_found_in_bytes_that_come_in_pieces() {
-        let burst = |t_us, to_robot, text: &str| Burst {
+        let burst = |t_us, to_robot, text: &str| LinkBurst {
             t_us,
             to_robot,
             bytes: text.as_bytes().to_vec(),

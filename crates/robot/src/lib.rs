@@ -29,5 +29,5 @@ mod text;
 #[cfg(not(target_arch = "avr"))]
 pub use loops::Loops;
 pub use policy::NETWORK_AT;
-pub use robot::{Config, Robot};
+pub use robot::{Robot, RobotConfig};
 pub use store::{Cell, START_AT};

@@ -7,9 +7,9 @@
 use rumbo_control::drive::DriveLayer;
 use rumbo_control::estimate::{Estimate, Estimator};
 use rumbo_control::math::round;
-use rumbo_control::mode::{Action, ActiveMode, Level, ModeId, Reference, SetpointError};
+use rumbo_control::mode::{Action, ActiveMode, ModeId, MovementLevel, Reference, SetpointError};
 use rumbo_control::params::{ParamError, ParamId, Params};
-use rumbo_control::policy::{Known, Shape, observe};
+use rumbo_control::policy::{Known, NetworkShape, observe};
 use rumbo_control::rig::Rig;
 use rumbo_control::{
     Drive, Duty, Fault, Inputs, Outputs, Range, ServoAngle, SonarId, Velocity, Wheels,
@@ -51,7 +51,7 @@ pub(crate) struct Pilot {
     low_battery_ticks: u8,
     refresh_in: u8,
     /// Of the network of mode 9, if there is one.
-    network: Option<Shape>,
+    network: Option<NetworkShape>,
 }
 
 /// An outcome of the mode.
@@ -159,7 +159,7 @@ impl Pilot {
     }
 
     /// Sets the network of mode 9.
-    pub(crate) fn learn(&mut self, network: Option<Shape>) {
+    pub(crate) fn learn(&mut self, network: Option<NetworkShape>) {
         self.network = network;
     }
 
@@ -308,7 +308,7 @@ impl Pilot {
         self.mode.id()
     }
 
-    /// The setpoint in force, as in [`rumbo_wire::Status`].
+    /// The setpoint in force, as in [`rumbo_wire::StatusReport`].
     pub(crate) fn reference(&self) -> Reference {
         self.mode.reference()
     }
@@ -375,7 +375,7 @@ impl Pilot {
         Ok(match *command {
             Command::Reference(_) | Command::WheelReference(_) => mode.reference().numbers()[0],
             Command::Move { level, .. } => {
-                let (Level::Duty(value) | Level::Speed(value)) = level;
+                let (MovementLevel::Duty(value) | MovementLevel::Speed(value)) = level;
                 value
             }
             _ => 0.0,

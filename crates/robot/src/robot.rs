@@ -14,8 +14,9 @@ use rumbo_control::params::{ParamId, SCHEMA};
 use rumbo_control::{Fault, Inputs, Outputs, ServoAngle};
 use rumbo_wire::text::TextCommand;
 use rumbo_wire::{
-    Ack, Body, COMMAND_LIFE_MS, Command, Decoder, EventKind, Hello, Message, PROTOCOL_VERSION,
-    Received, Refusal, ResetCause, RobotTime, Status, ToRobot, VELOCITY_LIFE_MS, codec,
+    Ack, COMMAND_LIFE_MS, Command, Decoder, EventKind, FrameBody, FrameMessage, Hello,
+    PROTOCOL_VERSION, Received, Refusal, ResetCause, RobotTime, StatusReport, ToRobot,
+    VELOCITY_LIFE_MS, codec,
 };
 
 use crate::clock::Clock;
@@ -35,7 +36,7 @@ const TICK_LOST_US: u32 = 100_000;
 
 /// What the robot needs to know about itself at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Config {
+pub struct RobotConfig {
     /// Hash of the program image; 0 for the native build.
     pub image: u32,
     /// Why the program started.
@@ -61,7 +62,7 @@ pub struct Robot {
 
 impl Robot {
     /// A robot at rest, disarmed whatever the cause of its start.
-    pub fn new(config: Config) -> Robot {
+    pub fn new(config: RobotConfig) -> Robot {
         let hello = Hello {
             protocol: PROTOCOL_VERSION,
             schema: SCHEMA,
@@ -295,7 +296,7 @@ impl Robot {
     }
 
     /// Takes a frame, and judges the age of a command in it if that is wanted.
-    fn take_frame(&mut self, body: &Body, judge_age: bool) {
+    fn take_frame(&mut self, body: &FrameBody, judge_age: bool) {
         let Ok(message) = ToRobot::from_body(body) else {
             if let Some((session, number)) = codec::command_number(body) {
                 self.reporter.addressed_in(Language::Binary);
@@ -397,24 +398,19 @@ impl Robot {
         }
         match *command {
             Command::Stop | Command::Disarm => {
-                if let Some(event) = self.supervisor.disarm() {
-                    self.event(event);
-                }
-                Ok(0.0)
+                let event = self.supervisor.disarm();
+                Ok(self.happened(event))
             }
             Command::Arm => {
                 let event = self.supervisor.arm(self.pilot.ready())?;
-                if let Some(event) = event {
+                if event.is_some() {
                     self.pilot.start();
-                    self.event(event);
                 }
-                Ok(0.0)
+                Ok(self.happened(event))
             }
             Command::ClearFault => {
-                if let Some(event) = self.supervisor.clear() {
-                    self.event(event);
-                }
-                Ok(0.0)
+                let event = self.supervisor.clear();
+                Ok(self.happened(event))
             }
             // A jump of gains, of the heading that a mode keeps, or of the sonars, is not for a moving robot.
             Command::Mode(_) | Command::ResetParams | Command::ResetPose
@@ -456,6 +452,14 @@ impl Robot {
         }
     }
 
+    /// Reports an event, if there is one; no value is in force.
+    fn happened(&mut self, event: Option<EventKind>) -> f32 {
+        if let Some(event) = event {
+            self.event(event);
+        }
+        0.0
+    }
+
     fn fail(&mut self, fault: Fault) {
         if let Some(event) = self.supervisor.fail(fault) {
             self.released_by(event);
@@ -471,9 +475,9 @@ impl Robot {
         self.reporter.event(self.clock.t_ms(), kind);
     }
 
-    fn status(&self) -> Status {
+    fn status(&self) -> StatusReport {
         let low = |counter: u16| (counter & 0xFF) as u8;
-        Status {
+        StatusReport {
             mode: self.pilot.mode(),
             armed: self.supervisor.is_armed(),
             fault: self.supervisor.fault(),

@@ -1,7 +1,7 @@
 //! A bag of ROS 2: a folder with an MCAP file and `metadata.yaml`, as rosbag2 writes it (its version 5: Humble and
 //! newer read it).
 
-use crate::convert::Sent;
+use crate::convert::TopicMessage;
 use crate::topics::{Quality, Topic};
 use rumbo_log::Container;
 use serde_json::json;
@@ -31,7 +31,7 @@ fn quality(quality: Quality) -> String {
 ///
 /// # Errors
 /// What `into` does not take.
-pub fn write<W: Write>(into: W, messages: &[Sent], library: &str) -> io::Result<W> {
+pub fn write<W: Write>(into: W, messages: &[TopicMessage], library: &str) -> io::Result<W> {
     let mut bag = Container::new(into, "ros2", library)?;
     let mut channels = BTreeMap::new();
     for topic in topics(messages).into_keys() {
@@ -56,7 +56,7 @@ pub fn write<W: Write>(into: W, messages: &[Sent], library: &str) -> io::Result<
 
 /// The text of `metadata.yaml`, for an MCAP file of this name. It is JSON, which is YAML too.
 #[must_use]
-pub fn metadata(messages: &[Sent], file: &str) -> String {
+pub fn metadata(messages: &[TopicMessage], file: &str) -> String {
     let (first, last) = (
         messages.first().map_or(0, |message| message.t_ns),
         messages.last().map_or(0, |message| message.t_ns),
@@ -98,7 +98,7 @@ pub fn metadata(messages: &[Sent], file: &str) -> String {
 }
 
 /// The topics that have messages, and how many.
-fn topics(messages: &[Sent]) -> BTreeMap<Topic, usize> {
+fn topics(messages: &[TopicMessage]) -> BTreeMap<Topic, usize> {
     let mut topics = BTreeMap::new();
     for message in messages {
         *topics.entry(message.topic).or_default() += 1;

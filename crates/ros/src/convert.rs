@@ -1,7 +1,8 @@
 //! What is known of a robot as messages of ROS 2, by topic: of a log, or as it happens.
 
 use crate::geometry::{
-    BASE, Geometry, LEAST_M, MAP, ODOM, Origin, SONARS, WHEELS, pose, seen_from, stamped, transform,
+    BASE, BodyGeometry, LEAST_M, MAP, ODOM, Origin, SONARS, WHEELS, pose, seen_from, stamped,
+    transform,
 };
 use crate::messages::{
     BatteryState, Clock, DiagnosticStatus, Diagnostics, Event, Header, JointState, KeyValue,
@@ -11,7 +12,7 @@ use crate::surroundings::{self, Way};
 use crate::topics::Topic;
 use crate::types::{Byte, Covariance, Message, encode};
 use rumbo_log::{
-    Level, Log, LoggedEvent, MapPose, Obstacle, Row, SonarMount, State, Task, compose,
+    Level, Log, LoggedEvent, MapPose, Row, SceneObstacle, SonarMount, State, TaskState, compose,
 };
 use std::fmt;
 use std::time::UNIX_EPOCH;
@@ -23,7 +24,7 @@ pub const SPEAKER: &str = "rumbo";
 
 /// A message on its topic.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sent {
+pub struct TopicMessage {
     /// The topic.
     pub topic: Topic,
     /// Its time [ns]: since 1970, or since the start of a run that has no date.
@@ -63,12 +64,12 @@ impl std::error::Error for ConvertError {}
 ///
 /// # Errors
 /// [`ConvertError`].
-pub fn messages(log: &Log, with_scan: bool) -> Result<Vec<Sent>, ConvertError> {
+pub fn messages(log: &Log, with_scan: bool) -> Result<Vec<TopicMessage>, ConvertError> {
     if log.rows.is_empty() {
         return Err(ConvertError::NoTelemetry);
     }
     let parameters = log.parameters();
-    let geometry = Geometry::new(log.scene(), |name| parameters.get(name).copied());
+    let geometry = BodyGeometry::new(log.scene(), |name| parameters.get(name).copied());
     let started_ns = log.manifest.as_ref().and_then(|manifest| {
         let started = humantime::parse_rfc3339(manifest.started.as_ref()?).ok()?;
         let since = started.duration_since(UNIX_EPOCH).ok()?;
@@ -105,11 +106,11 @@ pub fn messages(log: &Log, with_scan: bool) -> Result<Vec<Sent>, ConvertError> {
 ///
 /// # Errors
 /// [`ConvertError::Encoding`].
-pub fn clock(t_ns: u64) -> Result<Sent, ConvertError> {
+pub fn clock(t_ns: u64) -> Result<TopicMessage, ConvertError> {
     let clock = stamp(t_ns);
     let data = encode(&Clock { clock }).map_err(ConvertError::Encoding)?;
     let topic = Topic::Clock;
-    Ok(Sent { topic, t_ns, data })
+    Ok(TopicMessage { topic, t_ns, data })
 }
 
 /// What is known of a robot, in order of time, as messages.
@@ -121,9 +122,9 @@ pub struct Converter {
     robot: String,
     started_ns: u64,
     /// Once it is known.
-    geometry: Option<Geometry>,
+    geometry: Option<BodyGeometry>,
     /// Walls and boxes in the world.
-    obstacles: Vec<Obstacle>,
+    obstacles: Vec<SceneObstacle>,
     /// Description, fixed frames and world are still to be sent.
     is_new: bool,
     way: Way,
@@ -135,7 +136,7 @@ pub struct Converter {
     /// How far the wheels have turned: the sum of the measured speeds.
     wheel_rad: [f64; 2],
     last_ms: Option<i64>,
-    sent: Vec<Sent>,
+    sent: Vec<TopicMessage>,
 }
 
 impl Converter {
@@ -161,13 +162,13 @@ impl Converter {
 
     /// Takes the robot's body; without it no row becomes messages. Description and fixed frames follow with the next
     /// row if it is another one.
-    pub fn know(&mut self, geometry: Geometry) {
+    pub fn know(&mut self, geometry: BodyGeometry) {
         self.is_new |= self.geometry.as_ref() != Some(&geometry);
         self.geometry = Some(geometry);
     }
 
     /// Takes what stands in the world of a simulated robot; map and markers of it follow with the next row.
-    pub fn surround(&mut self, obstacles: &[Obstacle]) {
+    pub fn surround(&mut self, obstacles: &[SceneObstacle]) {
         if self.obstacles != obstacles {
             self.is_new = true;
             self.obstacles = obstacles.to_vec();
@@ -214,7 +215,7 @@ impl Converter {
     }
 
     /// The messages since the last call.
-    pub fn take(&mut self) -> Vec<Sent> {
+    pub fn take(&mut self) -> Vec<TopicMessage> {
         std::mem::take(&mut self.sent)
     }
 
@@ -225,7 +226,7 @@ impl Converter {
         message: &M,
     ) -> Result<(), ConvertError> {
         let data = encode(message).map_err(ConvertError::Encoding)?;
-        self.sent.push(Sent { topic, t_ns, data });
+        self.sent.push(TopicMessage { topic, t_ns, data });
         Ok(())
     }
 
@@ -241,7 +242,7 @@ impl Converter {
     }
 
     /// What does not change.
-    fn begin(&mut self, first: &Row, geometry: &Geometry) -> Result<(), ConvertError> {
+    fn begin(&mut self, first: &Row, geometry: &BodyGeometry) -> Result<(), ConvertError> {
         let t_ns = self.at_ms(first.t_ms);
         let is_fixed = |mount: &&SonarMount| !mount.on_servo;
         let fixed: Vec<&str> = geometry
@@ -358,7 +359,7 @@ impl Converter {
     fn joints(
         &mut self,
         t_ns: u64,
-        geometry: &Geometry,
+        geometry: &BodyGeometry,
         wheel_rad_s: [f64; 2],
         servo_rad: f64,
     ) -> Result<(), ConvertError> {
@@ -505,7 +506,7 @@ impl Converter {
 }
 
 /// Where a task leads, from the robot's origin.
-fn goals(task: &Task) -> Vec<MapPose> {
+fn goals(task: &TaskState) -> Vec<MapPose> {
     let at = |x_m: f32, y_m: f32| MapPose {
         x_m: x_m.into(),
         y_m: y_m.into(),

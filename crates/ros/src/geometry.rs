@@ -25,7 +25,7 @@ const SONAR_HEIGHT_M: f64 = 0.05;
 
 /// What of a robot's body messages need.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Geometry {
+pub struct BodyGeometry {
     /// Radii of the wheels, left and right [m].
     pub radius_m: [f64; 2],
     /// Distance between the wheels [m].
@@ -36,7 +36,7 @@ pub struct Geometry {
     pub sonars: Vec<SonarMount>,
 }
 
-impl Geometry {
+impl BodyGeometry {
     /// That of a robot with these parameters, where they are known, or else of its scene. A real robot has no scene:
     /// neither outline nor sonars. `None` where neither has its sizes.
     #[must_use]

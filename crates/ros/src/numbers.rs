@@ -56,7 +56,7 @@ pub fn known_definition(name: &str) -> Option<String> {
 
 /// A type of message, as its definition says.
 #[derive(Debug)]
-pub struct Shape {
+pub struct MessageShape {
     main: Vec<Field>,
     parts: HashMap<String, Vec<Field>>,
 }
@@ -95,7 +95,7 @@ enum Many {
     AsSent,
 }
 
-impl Shape {
+impl MessageShape {
     /// Reads a definition; `None` where it is in another language.
     #[must_use]
     pub fn of(name: &str, definition: &str) -> Option<Self> {
@@ -188,7 +188,7 @@ fn kind_of(name: &str, package: &str) -> Option<Kind> {
 }
 
 struct Reader<'a> {
-    shape: &'a Shape,
+    shape: &'a MessageShape,
     data: &'a [u8],
     at: usize,
     is_little: bool,
@@ -330,7 +330,7 @@ mod tests {
 
     fn numbers<M: Message>(message: &M) -> Numbers {
         let definition = M::DEFINITION;
-        let shape = Shape::of(definition.name, &definition.text()).unwrap();
+        let shape = MessageShape::of(definition.name, &definition.text()).unwrap();
         let data = encode(message).unwrap();
         for end in 0..data.len() {
             // What ends early is no message, and no panic.
@@ -392,7 +392,7 @@ mod tests {
     fn definitions_as_people_write_them_are_read() {
         let text = "# about\nint8 MOST=3\nint8 LEAST = -3\nHeader header  # when\nfloat32[3] gains\nPart part\nstring<=8 note \"none\"\n\
             ================\nMSG: std_msgs/Header\nuint32 seq\nstring frame_id\n================\nMSG: mine/Part\nint16 count 5\n";
-        let shape = Shape::of("mine/msg/Whole", text).unwrap();
+        let shape = MessageShape::of("mine/msg/Whole", text).unwrap();
         let mut data = vec![0, 1, 0, 0, 7, 0, 0, 0, 2, 0, 0, 0, b'b', 0, 0, 0];
         for gain in [1.0_f32, 2.0, 3.0] {
             data.extend(gain.to_le_bytes());
@@ -404,6 +404,6 @@ mod tests {
             (2.0, 260.0)
         );
         assert_eq!(found.frame, "b");
-        assert!(Shape::of("x/msg/Y", "module x { struct Y { double z; }; };").is_none());
+        assert!(MessageShape::of("x/msg/Y", "module x { struct Y { double z; }; };").is_none());
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! MCAP with messages in CDR (ROS 2) or JSON (Foxglove), and the SQLite files (`.db3`) of ROS 2 before Iron.
 
-use crate::numbers::{Shape, known_definition};
+use crate::numbers::{MessageShape, known_definition};
 use crate::sqlite::{Database, MAGIC};
 use rumbo_log::read_foreign;
 use serde_json::Value;
@@ -96,7 +96,7 @@ struct Found {
 
 #[derive(Default)]
 struct Intake {
-    shapes: HashMap<String, Option<Shape>>,
+    shapes: HashMap<String, Option<MessageShape>>,
     series: BTreeMap<String, Found>,
     /// Topics whose messages cannot be read: their type, how many.
     unread: BTreeMap<String, (String, usize)>,
@@ -117,7 +117,7 @@ impl Intake {
             }),
             "cdr" => {
                 let shape = self.shapes.entry(kind.to_owned());
-                let shape = shape.or_insert_with(|| Shape::of(kind, definition));
+                let shape = shape.or_insert_with(|| MessageShape::of(kind, definition));
                 let numbers = shape.as_ref().and_then(|shape| shape.read(data));
                 numbers.map(|numbers| (numbers.frame, numbers.values))
             }
@@ -180,7 +180,7 @@ impl Intake {
                     .cloned()
                     .filter(|text| !text.is_empty());
                 let definition = known.or_else(|| known_definition(kind));
-                let shape = definition.and_then(|text| Shape::of(kind, &text));
+                let shape = definition.and_then(|text| MessageShape::of(kind, &text));
                 self.shapes.insert(kind.clone(), shape);
             }
             let t_ns = u64::try_from(t_ns.integer()?).ok()?;

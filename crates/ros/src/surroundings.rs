@@ -1,11 +1,11 @@
 //! What surrounds a robot, for displays and planners: the world as a map and as walls, the goals and the way driven, and
 //! the sonars as one scan.
 
-use crate::geometry::{BASE, Geometry, LEAST_M, MAP, ODOM, pose};
+use crate::geometry::{BASE, BodyGeometry, LEAST_M, MAP, ODOM, pose};
 use crate::messages::{
     Color, Header, LaserScan, MapMetaData, Marker, Markers, OccupancyGrid, Point, Time, Vector3,
 };
-use rumbo_log::{MapPose, Obstacle};
+use rumbo_log::{MapPose, SceneObstacle};
 use std::f64::consts::{PI, TAU};
 
 /// Side of a map's cell [m]; twice that, and so on, for a world of more than [`MOST_CELLS`].
@@ -42,7 +42,7 @@ const SHOWN_MS: i64 = 1_000;
 const DIRECTIONS: usize = 360;
 
 /// The sides of an obstacle, by their ends.
-fn sides(obstacle: &Obstacle) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+fn sides(obstacle: &SceneObstacle) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
     let corners = &obstacle.corners_m;
     let next = corners.iter().skip(1);
     let next = next.chain(corners.first().filter(|_| obstacle.closed));
@@ -50,7 +50,7 @@ fn sides(obstacle: &Obstacle) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
 }
 
 /// What stands in the world, without what no world has.
-fn sound(obstacles: &[Obstacle]) -> impl Iterator<Item = &Obstacle> {
+fn sound(obstacles: &[SceneObstacle]) -> impl Iterator<Item = &SceneObstacle> {
     let is_near = |corner: &[f64; 2]| corner.iter().all(|at| at.abs() < FAR_M);
     obstacles
         .iter()
@@ -65,7 +65,7 @@ fn header(stamp: &Time, frame: &str) -> Header {
 }
 
 /// The world as a map of cells: all that stands in it, and the floor around the robot's start.
-pub(crate) fn map(stamp: &Time, obstacles: &[Obstacle], start: MapPose) -> OccupancyGrid {
+pub(crate) fn map(stamp: &Time, obstacles: &[SceneObstacle], start: MapPose) -> OccupancyGrid {
     let start = [start.x_m, start.y_m].map(|at| at.clamp(-FAR_M, FAR_M));
     let corners = || sound(obstacles).flat_map(|obstacle| &obstacle.corners_m);
     let fold = |of: fn(f64, f64) -> f64, floor_m: f64, margin_m: f64| {
@@ -126,7 +126,7 @@ pub(crate) fn map(stamp: &Time, obstacles: &[Obstacle], start: MapPose) -> Occup
 
 /// The cells whose middle is in a box: between each two sides that the line through the middles of a row crosses.
 fn fill(
-    obstacle: &Obstacle,
+    obstacle: &SceneObstacle,
     low_m: [f64; 2],
     [width, height]: [usize; 2],
     cell_m: f64,
@@ -166,7 +166,7 @@ fn color([r, g, b]: [f32; 3]) -> Color {
 }
 
 /// Walls and boxes as they stand in the world, in place of those before.
-pub(crate) fn walls(stamp: &Time, obstacles: &[Obstacle]) -> Markers {
+pub(crate) fn walls(stamp: &Time, obstacles: &[SceneObstacle]) -> Markers {
     let mut markers = vec![Marker {
         action: DELETE_ALL,
         ..marker(stamp, MAP, "", 0, CUBE)
@@ -291,7 +291,7 @@ impl Way {
 /// no number where no sonar looks. `ranges_m` by `SonarId` number.
 pub(crate) fn scan(
     stamp: &Time,
-    geometry: &Geometry,
+    geometry: &BodyGeometry,
     servo_rad: f64,
     ranges_m: [Option<f64>; 3],
 ) -> LaserScan {

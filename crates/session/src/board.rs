@@ -11,7 +11,9 @@ use crate::event::Event;
 use crate::program::ShownSketch;
 use crate::world::EditedWorld;
 use ring::{Ring, Versioned};
-use rumbo_log::{Burst, Entry, LoggedEvent, ParameterState, Reading, Row, Scene, Source, State};
+use rumbo_log::{
+    Burst, Entry, LoggedEvent, ParameterState, Reading, ReadingSource, Row, Scene, State,
+};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -183,10 +185,10 @@ impl Board {
             Entry::Readings(readings) => {
                 for reading in readings {
                     match reading.source {
-                        Source::Truth | Source::Loops | Source::Others => {
+                        ReadingSource::Truth | ReadingSource::Loops | ReadingSource::Others => {
                             self.shown.push(reading.clone())
                         }
-                        Source::Usart(_) => self.printed.push(reading.clone()),
+                        ReadingSource::Usart(_) => self.printed.push(reading.clone()),
                     }
                 }
                 true

@@ -109,7 +109,7 @@ mod tests {
     use rumbo_control::params::ParamId;
     use rumbo_log::SIGNALS;
 
-    /// Signals that the simulated loops add ([`rumbo_log::Source::Loops`]), and the distance setpoint as the page has it.
+    /// Signals that the simulated loops add ([`rumbo_log::ReadingSource::Loops`]), and the distance setpoint as the page has it.
     const LOOPS: [&str; 22] = [
         "left_p_pwm",
         "left_i_pwm",

@@ -22,7 +22,7 @@ use rumbo_control::Velocity;
 use rumbo_control::mode::{ModeId, Reference};
 use rumbo_control::params::ParamId;
 use rumbo_wire::text::RowKind;
-use rumbo_wire::{Command, Decoder, Hello, Message, PROTOCOL_VERSION, ToRobot};
+use rumbo_wire::{Command, Decoder, FrameMessage, Hello, PROTOCOL_VERSION, ToRobot};
 
 /// Room for a line of the original's text, the longest thing a robot says.
 const LINE_BYTES: usize = 128;

@@ -27,7 +27,7 @@ const SENDS_PER_SESSION: u32 = 6;
 
 /// What became of a command.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
+pub struct CommandOutcome {
     /// The command.
     pub command: Command,
     /// Its fate.
@@ -110,7 +110,7 @@ pub struct CommandManager {
     velocity: Option<(Velocity, RobotTime)>,
     velocity_sent_us: Option<u64>,
     round_trip: RoundTrip,
-    outcomes: Vec<Outcome>,
+    outcomes: Vec<CommandOutcome>,
 }
 
 impl CommandManager {
@@ -222,7 +222,7 @@ impl CommandManager {
 
     fn give_up_waiting(&mut self, fate: Fate) {
         self.velocity = None;
-        let given_up = self.waiting.drain(..).map(|waiting| Outcome {
+        let given_up = self.waiting.drain(..).map(|waiting| CommandOutcome {
             command: waiting.command,
             fate,
         });
@@ -238,7 +238,7 @@ impl CommandManager {
         if old.is_background() {
             self.background.push_front(command);
         } else {
-            self.outcomes.push(Outcome { command, fate });
+            self.outcomes.push(CommandOutcome { command, fate });
         }
     }
 
@@ -326,7 +326,7 @@ impl CommandManager {
             let over = waiting.is_over(now_us);
             if over {
                 let command = waiting.command;
-                outcomes.push(Outcome { command, fate });
+                outcomes.push(CommandOutcome { command, fate });
             }
             !over
         });
@@ -351,14 +351,14 @@ impl CommandManager {
             Ok(value) => Fate::Applied(value),
             Err(refusal) => Fate::Refused(refusal),
         };
-        self.outcomes.push(Outcome {
+        self.outcomes.push(CommandOutcome {
             command: done.order.command,
             fate,
         });
     }
 
     /// What ended since the last call.
-    pub fn take_outcomes(&mut self) -> Vec<Outcome> {
+    pub fn take_outcomes(&mut self) -> Vec<CommandOutcome> {
         std::mem::take(&mut self.outcomes)
     }
 

@@ -1,7 +1,7 @@
 //! Drives a session: connects it and its target, paced by a wall clock that the caller reads.
 //!
-//! The caller's loop is [`Driver::obey`] for the orders that have come, [`Driver::wall_passed`], [`Driver::slice`] while
-//! one is due and the caller has time, and [`Driver::update`]. The driver passes what happens in the target to the
+//! The caller's loop is [`SessionDriver::obey`] for the orders that have come, [`SessionDriver::wall_passed`], [`SessionDriver::slice`] while
+//! one is due and the caller has time, and [`SessionDriver::update`]. The driver passes what happens in the target to the
 //! [`Session`], the session's bytes to the target, and its events to the [`Host`].
 
 use crate::error::{CalibrationError, TargetError};
@@ -9,7 +9,7 @@ use crate::event::Event;
 use crate::guest::Guest;
 use crate::orders::{MAX_SPEED, Order};
 use crate::pace::{Pace, SLICE_US};
-use crate::session::{Ask, Going, Now, Session, Sight};
+use crate::session::{Ask, Going, Now, Session, TargetView};
 use crate::target::{About, LinkNews, Target};
 use crate::world::{EditedWorld, WorldAct, WorldOrder};
 use rumbo_log::{Choice, Level, Manifest};
@@ -40,7 +40,7 @@ pub trait Host {
 }
 
 /// A session with its target.
-pub struct Driver<H, T: ?Sized = dyn Target> {
+pub struct SessionDriver<H, T: ?Sized = dyn Target> {
     target: Box<T>,
     session: Session,
     host: H,
@@ -50,7 +50,7 @@ pub struct Driver<H, T: ?Sized = dyn Target> {
     bytes: Vec<u8>,
 }
 
-impl<H: Host, T: Target + ?Sized> Driver<H, T> {
+impl<H: Host, T: Target + ?Sized> SessionDriver<H, T> {
     /// A session at `speed`, in seconds of the target per second of the wall clock, that has not begun yet. Times of
     /// the wall clock are \[us\] since any instant, and never decrease.
     pub fn new(target: Box<T>, mut host: H, speed: f64, extras: Extras) -> Self {
@@ -267,7 +267,7 @@ impl<H: Host, T: Target + ?Sized> Driver<H, T> {
     pub fn step(&mut self, wall_us: u64) -> Result<(), TargetError> {
         self.target.advance(SLICE_US)?;
         let now = self.now(wall_us);
-        let sight = Sight {
+        let sight = TargetView {
             truth: self.target.truth(),
             ghost: self.target.ghost(),
             consoles: self.target.consoles(),

@@ -9,7 +9,7 @@ mod sensors;
 mod tests;
 
 use crate::board::News;
-use rumbo_log::{Level, Log, LoggedEvent, Reading, Row, Source};
+use rumbo_log::{Level, Log, LoggedEvent, Reading, ReadingSource, Row};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ const SILENCE_S: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Cause {
     /// Which rule found it.
-    pub kind: Kind,
+    pub kind: CauseKind,
     /// When it began and ended \[s\].
     pub from_s: f64,
     /// See `from_s`.
@@ -34,7 +34,7 @@ pub struct Cause {
 /// What a rule is about; those that explain more come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum CauseKind {
     /// The robot's program started again.
     Restart,
     /// No telemetry came.
@@ -102,7 +102,8 @@ fn causes(
     to_s: f64,
 ) -> Vec<Cause> {
     let within = |t_s: f64| (from_s..=to_s).contains(&t_s);
-    let is_loop = |each: &&Reading| each.source == Source::Loops && within(seconds(each.t_ms));
+    let is_loop =
+        |each: &&Reading| each.source == ReadingSource::Loops && within(seconds(each.t_ms));
     let seen = Seen {
         rows: rows
             .iter()
@@ -126,11 +127,11 @@ fn causes(
 /// What the session itself says of an event.
 fn named_by(event: &LoggedEvent) -> Option<Cause> {
     let kind = if event.text.contains("program started again") {
-        Kind::Restart
+        CauseKind::Restart
     } else if event.level == Level::Fault {
-        Kind::Fault
+        CauseKind::Fault
     } else if event.text == "sent: STOP" || event.text == "sent: OFF" {
-        Kind::Stopped
+        CauseKind::Stopped
     } else {
         return None;
     };
@@ -197,7 +198,7 @@ impl Seen<'_> {
         let gaps = pairs.filter_map(|two| {
             let [from_s, to_s] = [two[0], two[1]].map(|row| seconds(row.t_ms));
             (to_s - from_s > SILENCE_S).then(|| Cause {
-                kind: Kind::Silence,
+                kind: CauseKind::Silence,
                 from_s,
                 to_s,
                 text: format!(

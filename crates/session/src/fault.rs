@@ -30,14 +30,14 @@ pub struct Faults {
 
 /// One direction of a faulty link.
 #[derive(Clone, Debug)]
-pub struct Line {
+pub struct FaultyLine {
     faults: Faults,
     random: u64,
     /// Pieces in flight, with their arrival times.
     waiting: VecDeque<(u64, Vec<u8>)>,
 }
 
-impl Line {
+impl FaultyLine {
     /// A line whose faults follow from the seed.
     #[must_use]
     pub fn new(faults: Faults, seed: u64) -> Self {
@@ -120,8 +120,8 @@ impl Line {
 pub struct Faulty<T> {
     /// The target.
     pub target: T,
-    to_robot: Line,
-    from_robot: Line,
+    to_robot: FaultyLine,
+    from_robot: FaultyLine,
     bytes: Vec<u8>,
 }
 
@@ -130,8 +130,8 @@ impl<T: Target> Faulty<T> {
     pub fn new(target: T, faults: Faults, seed: u64) -> Self {
         Self {
             target,
-            to_robot: Line::new(faults.clone(), seed),
-            from_robot: Line::new(faults, !seed),
+            to_robot: FaultyLine::new(faults.clone(), seed),
+            from_robot: FaultyLine::new(faults, !seed),
             bytes: Vec::new(),
         }
     }
@@ -208,7 +208,7 @@ mod tests {
     use super::*;
 
     fn carried(faults: Faults, pieces: u64) -> Vec<u8> {
-        let mut line = Line::new(faults, 5);
+        let mut line = FaultyLine::new(faults, 5);
         let mut arrived = Vec::new();
         for number in 0..pieces {
             line.send(&[7; 10], number * 1_000);
@@ -267,7 +267,7 @@ mod tests {
             delay_us: 50_000,
             ..Faults::default()
         };
-        let mut line = Line::new(faults, 1);
+        let mut line = FaultyLine::new(faults, 1);
         let (mut arrived, mut late) = (Vec::new(), 0);
         for number in 0..200u8 {
             let now_us = u64::from(number) * 1_000;

@@ -8,7 +8,7 @@ use crate::target::Shown;
 use rumbo_control::mode::{ModeId, ReferenceKind};
 use rumbo_control::params::Params;
 use rumbo_log::{Burst, Entry, Level, LogWriter, Manifest, Outcome, Said, Scene, Truth};
-use rumbo_wire::{Ack, Command, Decoder, FromRobot, Message, Received, ToRobot};
+use rumbo_wire::{Ack, Command, Decoder, FrameMessage, FromRobot, Received, ToRobot};
 use std::io::{self, Write};
 
 /// The state is noted this often \[us\].
@@ -18,7 +18,7 @@ const LINE: usize = 160;
 
 /// The records of a run.
 #[derive(Debug, Default)]
-pub struct Run<'a> {
+pub struct RunRecords<'a> {
     /// What surrounds the robot.
     pub scene: Option<Scene>,
     /// The robot's parameters at the start; `None` if it has no table of them.
@@ -43,7 +43,7 @@ pub struct Run<'a> {
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn record_run<W: Write>(into: W, manifest: &Manifest, run: Run<'_>) -> io::Result<W> {
+pub fn record_run<W: Write>(into: W, manifest: &Manifest, run: RunRecords<'_>) -> io::Result<W> {
     let mut log = LogWriter::new(into, manifest)?;
     let baud = manifest.baud;
     let mut recorder = RunRecorder {

@@ -1,7 +1,7 @@
 //! Who has control: one page at a time, of those that may have it.
 //!
 //! A controller's page gets control with its first order while no page has it, and keeps it until it releases it, is
-//! closed, or another controller takes it on purpose. STOP needs no control. A page is shown a [`View`] of it.
+//! closed, or another controller takes it on purpose. STOP needs no control. A page is shown a [`ControlView`] of it.
 
 use crate::orders::Order;
 use rumbo_wire::Command;
@@ -32,7 +32,7 @@ pub enum Seat {
 
 /// What a page is shown of control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct View {
+pub struct ControlView {
     /// Its relation to control.
     pub seat: Seat,
     /// The page itself.
@@ -101,14 +101,14 @@ impl Lease {
 
     /// What a page is shown.
     #[must_use]
-    pub fn view(&self, page: PageId) -> View {
+    pub fn view(&self, page: PageId) -> ControlView {
         let seat = match self.holder {
             _ if self.pages.get(&page) != Some(&true) => Seat::Viewer,
             None => Seat::Free,
             Some(holder) if holder == page => Seat::Driver,
             Some(_) => Seat::Passenger,
         };
-        View {
+        ControlView {
             seat,
             page,
             holder: self.holder,

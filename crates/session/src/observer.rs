@@ -3,7 +3,7 @@
 pub(crate) mod describe;
 
 use crate::client::{LinkEvent, RobotClient};
-use crate::commands::{Fate, Outcome};
+use crate::commands::{CommandOutcome, Fate};
 use crate::console::{ConsoleText, LINK_CONSOLE, PARTS_CONSOLE, readable};
 use crate::event::Event;
 use crate::origin::Origin;
@@ -19,9 +19,9 @@ use rumbo_control::params::{ParamId, Params};
 use rumbo_control::rig::Rig;
 use rumbo_log::{
     Burst, EARLIER_MS, Entry, Level, LoggedEvent, MapPose, Names, ParameterState, Reading, Row,
-    Said, Sample, Scene, State, Task, Truth, parameters,
+    Said, Sample, Scene, State, TaskState, Truth, parameters,
 };
-use rumbo_wire::{Command, EventKind, Hello, Recalled, Status, Telemetry};
+use rumbo_wire::{Command, EventKind, Hello, Recalled, StatusReport, Telemetry};
 use std::collections::BTreeMap;
 
 /// Touches closer together than this are one collision \[ms\].
@@ -33,11 +33,11 @@ const RESTARTS_MS: i64 = 2_000;
 #[derive(Debug)]
 pub(crate) struct Observer {
     events: Vec<Event>,
-    status: Status,
+    status: StatusReport,
     servo_rad: f32,
     pose: Pose,
     origin: Origin,
-    task: Task,
+    task: TaskState,
     /// The rig the robot reports.
     rig: Option<Rig>,
     parameters: Vec<ParameterState>,
@@ -66,11 +66,11 @@ impl Observer {
     pub(crate) fn new() -> Self {
         let mut observer = Self {
             events: Vec::new(),
-            status: Status::default(),
+            status: StatusReport::default(),
             servo_rad: 0.0,
             pose: Pose::default(),
             origin: Origin::default(),
-            task: Task::default(),
+            task: TaskState::default(),
             rig: None,
             parameters: unread_parameters(),
             believed: Params::default(),
@@ -128,7 +128,7 @@ impl Observer {
     }
 
     /// The slow signals, as far as they are known, updated by telemetry and events between statuses.
-    pub(crate) fn status(&self) -> Status {
+    pub(crate) fn status(&self) -> StatusReport {
         self.status
     }
 
@@ -138,7 +138,7 @@ impl Observer {
     }
 
     /// The robot's task and its outcome.
-    pub(crate) fn task(&self) -> &Task {
+    pub(crate) fn task(&self) -> &TaskState {
         &self.task
     }
 
@@ -460,7 +460,7 @@ impl Observer {
         }
     }
 
-    fn end_command(&mut self, ended: &Outcome, client: &mut RobotClient, now_ms: i64) {
+    fn end_command(&mut self, ended: &CommandOutcome, client: &mut RobotClient, now_ms: i64) {
         if matches!(ended.fate, Fate::Applied(_)) {
             task::applied(&mut self.task, &ended.command, client.mode());
         }

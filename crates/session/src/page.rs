@@ -3,10 +3,12 @@
 use crate::board::{Arrival, News};
 use crate::catalogue::{self, ModeEntry};
 use crate::console::ConsoleText;
-use crate::lease::View;
+use crate::lease::ControlView;
 use crate::program::ShownSketch;
 use crate::world::EditedWorld;
-use rumbo_log::{Burst, Cell, LoggedEvent, ParameterState, Reading, Row, Scene, Source, State};
+use rumbo_log::{
+    Burst, LoggedEvent, ParameterState, Reading, ReadingSource, Row, RowValue, Scene, State,
+};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -68,7 +70,7 @@ pub enum ToPage<'a> {
         /// When the newest arrived.
         heard: Arrival,
         /// In order of time.
-        rows: Vec<Vec<Cell>>,
+        rows: Vec<Vec<RowValue>>,
     },
     /// Signals beside the telemetry; the page discards those of another run.
     Readings {
@@ -95,7 +97,7 @@ pub enum ToPage<'a> {
         bytes: Vec<LinkBytes>,
     },
     /// Who has control.
-    Control(View),
+    Control(ControlView),
     /// Why the connection is closed now.
     Error {
         /// For a person.
@@ -126,10 +128,10 @@ impl<'a> ToPage<'a> {
 /// Readings of the same signals, as the page gets them.
 #[derive(Debug, Serialize)]
 pub struct ReadingGroup<'a> {
-    source: Source,
+    source: ReadingSource,
     names: &'a [String],
     /// Time \[s\] and values of each.
-    rows: Vec<(f64, Vec<Cell>)>,
+    rows: Vec<(f64, Vec<RowValue>)>,
 }
 
 impl<'a> ReadingGroup<'a> {

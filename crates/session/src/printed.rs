@@ -3,7 +3,7 @@
 //!
 //! Whatever is printed, however fast: a port makes at most [`MOST_SIGNALS`] signals and a reading every [`PERIOD_MS`].
 
-use rumbo_log::{Names, Reading, Source};
+use rumbo_log::{Names, Reading, ReadingSource};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Signals of one port.
@@ -48,7 +48,7 @@ impl Printed {
         }
         let row = newest?;
         self.last_ms = Some(now_ms);
-        Some(self.names.reading(now_ms, Source::Usart(usart), row))
+        Some(self.names.reading(now_ms, ReadingSource::Usart(usart), row))
     }
 
     /// The signals of a line, as far as there is room for them.

@@ -76,7 +76,7 @@ pub enum Ask {
 
 /// What is known of a target besides the bytes of its robot.
 #[derive(Clone, Debug, Default)]
-pub struct Sight {
+pub struct TargetView {
     /// Ground truth.
     pub truth: Option<Truth>,
     /// The ghost's.
@@ -264,7 +264,7 @@ impl Session {
     }
 
     /// Takes what is known of the target now.
-    pub fn observe(&mut self, sight: Sight, now: Now) {
+    pub fn observe(&mut self, sight: TargetView, now: Now) {
         if let Some(truth) = sight.ghost {
             self.observer.ghost(now.target_ms(), truth);
         }

@@ -11,7 +11,8 @@ use rumbo_control::Fault;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::Params;
 use rumbo_log::{
-    Burst, Choice, ExperimentState, Level, Manifest, MapPose, ProgramState, Scene, Source, Truth,
+    Burst, Choice, ExperimentState, Level, Manifest, MapPose, ProgramState, ReadingSource, Scene,
+    Truth,
 };
 use rumbo_wire::Command;
 use serde_json::Value;
@@ -82,7 +83,7 @@ impl About {
 }
 
 /// Signals by name, the unit last, and where they come from. Not a number: unknown; infinite: a sonar without an echo.
-pub type Shown = (Source, Vec<(String, f64)>);
+pub type Shown = (ReadingSource, Vec<(String, f64)>);
 
 /// A robot at the other end of a byte link.
 pub trait Target: Send {

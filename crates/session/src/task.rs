@@ -5,23 +5,23 @@
 use rumbo_control::Pose;
 use rumbo_control::mode::waypoints::Route;
 use rumbo_control::mode::{ModeId, Takes};
-use rumbo_log::{End, Place, RoutePlan, Task};
+use rumbo_log::{End, RoutePlace, RoutePlan, TaskState};
 use rumbo_wire::{Command, EventKind};
 
 /// Updates the task for a command applied in this mode.
-pub(crate) fn applied(task: &mut Task, command: &Command, mode: ModeId) {
+pub(crate) fn applied(task: &mut TaskState, command: &Command, mode: ModeId) {
     match *command {
         Command::Mode(mode) => *task = of(mode),
         Command::Goal { x_m, y_m } if !takes_route(mode) => {
-            *task = Task {
+            *task = TaskState {
                 goal: Some([x_m, y_m]),
-                ..Task::default()
+                ..TaskState::default()
             };
         }
         Command::Goal { x_m, y_m } => begin(
             task,
             RoutePlan {
-                waypoints: vec![Place {
+                waypoints: vec![RoutePlace {
                     x_m,
                     y_m,
                     heading_rad: None,
@@ -30,9 +30,9 @@ pub(crate) fn applied(task: &mut Task, command: &Command, mode: ModeId) {
             },
         ),
         Command::Lane => {
-            *task = Task {
+            *task = TaskState {
                 lane: true,
-                ..Task::default()
+                ..TaskState::default()
             };
         }
         Command::Route { repeat, relative } => begin(
@@ -55,7 +55,7 @@ pub(crate) fn applied(task: &mut Task, command: &Command, mode: ModeId) {
 }
 
 /// Updates the task for an event, with the robot at `pose`.
-pub(crate) fn happened(task: &mut Task, kind: EventKind, pose: Pose) {
+pub(crate) fn happened(task: &mut TaskState, kind: EventKind, pose: Pose) {
     match kind {
         EventKind::ModeChanged(mode) => *task = of(mode),
         EventKind::Armed => {
@@ -82,20 +82,25 @@ fn takes_route(mode: ModeId) -> bool {
 }
 
 /// The task of a mode just selected: one of routes begins with the default route.
-fn of(mode: ModeId) -> Task {
+fn of(mode: ModeId) -> TaskState {
     let own = Route::default();
     let route = takes_route(mode).then(|| RoutePlan {
         repeat: own.repeat,
         relative: own.relative,
-        waypoints: own.waypoints().iter().copied().map(Place::from).collect(),
+        waypoints: own
+            .waypoints()
+            .iter()
+            .copied()
+            .map(RoutePlace::from)
+            .collect(),
     });
-    Task {
+    TaskState {
         route,
-        ..Task::default()
+        ..TaskState::default()
     }
 }
 
-fn begin(task: &mut Task, route: RoutePlan) {
+fn begin(task: &mut TaskState, route: RoutePlan) {
     task.route = Some(route);
     task.end = None;
 }
@@ -112,7 +117,7 @@ mod tests {
 
     #[test]
     fn a_goal_is_cleared_once_it_is_reached_and_stays_while_it_is_unreachable() {
-        let mut task = Task::default();
+        let mut task = TaskState::default();
         applied(&mut task, &GOAL, ModeId::Mission);
         happened(&mut task, EventKind::Unreachable, Pose::default());
         assert_eq!(
@@ -127,7 +132,7 @@ mod tests {
 
     #[test]
     fn mode_7_begins_with_the_square_and_takes_another_route_waypoint_by_waypoint() {
-        let mut task = Task::default();
+        let mut task = TaskState::default();
         applied(&mut task, &Command::Mode(ModeId::Waypoints), ModeId::Manual);
         assert_eq!(task.route.as_ref().unwrap().waypoints.len(), 4);
         let begin = Command::Route {
@@ -147,6 +152,6 @@ mod tests {
         applied(&mut task, &GOAL, ModeId::Waypoints);
         assert_eq!(task.route.as_ref().unwrap().waypoints.len(), 1);
         applied(&mut task, &Command::Mode(ModeId::Manual), ModeId::Waypoints);
-        assert_eq!(task, Task::default());
+        assert_eq!(task, TaskState::default());
     }
 }

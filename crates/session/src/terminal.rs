@@ -6,7 +6,7 @@
 
 use rumbo_control::Wheels;
 use rumbo_control::mode::{ModeId, Reference};
-use rumbo_wire::text::{self, RAD_PER_DEG, RAD_S_PER_RPM, Row, RowKind, TextCommand};
+use rumbo_wire::text::{self, RAD_PER_DEG, RAD_S_PER_RPM, RowKind, TextCommand, TextRow};
 use rumbo_wire::{Command, Telemetry};
 
 /// Longest line.
@@ -123,16 +123,16 @@ impl Terminal {
             return None;
         }
         let line = std::mem::take(&mut self.line);
-        let row = Row::parse(str::from_utf8(&line).ok()?.trim()).ok()?;
+        let row = TextRow::parse(str::from_utf8(&line).ok()?.trim()).ok()?;
         let t_ms = self.made_ms(row.dt_ms(), now_ms);
         let (reference, heading_ref_rad) = self.setpoints(&row);
         Some(ParsedRow {
             t_ms,
             telemetry: row.telemetry((t_ms & 0xffff) as u16, self.armed),
             mode: row.mode().and_then(ModeId::from_number).or(match row {
-                Row::Waypoints(_) => Some(ModeId::Waypoints),
-                Row::Mission(_) => Some(ModeId::Mission),
-                Row::Distance(_) | Row::Speed(_) => None,
+                TextRow::Waypoints(_) => Some(ModeId::Waypoints),
+                TextRow::Mission(_) => Some(ModeId::Mission),
+                TextRow::Distance(_) | TextRow::Speed(_) => None,
             }),
             reference,
             heading_ref_rad,
@@ -151,19 +151,21 @@ impl Terminal {
     }
 
     /// The mode's reference and heading setpoint in the row.
-    fn setpoints(&self, row: &Row) -> (Option<Reference>, Option<f32>) {
+    fn setpoints(&self, row: &TextRow) -> (Option<Reference>, Option<f32>) {
         let (reference, heading_rad) = match row {
-            Row::Distance(row) => (Reference::Distance(row.reference_cm / text::CM_PER_M), None),
-            Row::Speed(row) if !self.apart => {
+            TextRow::Distance(row) => {
+                (Reference::Distance(row.reference_cm / text::CM_PER_M), None)
+            }
+            TextRow::Speed(row) if !self.apart => {
                 let both = Wheels::both(row.reference_rpm * RAD_S_PER_RPM);
                 (Reference::Wheels(both), None)
             }
-            Row::Mission(row) => {
+            TextRow::Mission(row) => {
                 let (x_m, y_m) = (row.goal_x_m, row.goal_y_m);
                 let heading_rad = row.heading_reference_deg * RAD_PER_DEG;
                 (Reference::Goal { x_m, y_m }, Some(heading_rad))
             }
-            Row::Speed(_) | Row::Waypoints(_) => return (None, None),
+            TextRow::Speed(_) | TextRow::Waypoints(_) => return (None, None),
         };
         (Some(reference), heading_rad)
     }

@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn the_heartbeat_is_no_longer_than_assumed() {
-        use rumbo_wire::{Message, ToRobot};
+        use rumbo_wire::{FrameMessage, ToRobot};
         let longest = (0..16)
             .map(|seq| ToRobot::Heartbeat.frame(seq).bytes().len())
             .max();

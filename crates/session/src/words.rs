@@ -2,7 +2,7 @@
 
 use crate::anomaly::Anomaly;
 use crate::client::NotTaken;
-use crate::commands::{Fate, Outcome};
+use crate::commands::{CommandOutcome, Fate};
 use rumbo_control::Velocity;
 use rumbo_control::mode::twist::{MAX_FORWARD_M_S, MAX_YAW_RAD_S};
 use rumbo_control::mode::{ModeId, ReferenceDescription, ReferenceKind, SetpointError};
@@ -31,7 +31,7 @@ pub(crate) fn bad_velocity(why: SetpointError) -> String {
 }
 
 /// How a command ended, in words.
-pub(crate) fn outcome(outcome: &Outcome, mode: ModeId) -> String {
+pub(crate) fn outcome(outcome: &CommandOutcome, mode: ModeId) -> String {
     let asked = outcome.command.in_words(mode);
     match outcome.fate {
         Fate::Applied(_) => format!("{asked}: acknowledged"),

@@ -1,6 +1,6 @@
 //! What a simulation is made from, in plain values.
 
-use crate::floor::Line;
+use crate::floor::DarkLine;
 use crate::mega::firmware::Firmware;
 use crate::sonar_fault::TimedSonarFault;
 use crate::wire_fault::TimedWireFault;
@@ -23,7 +23,7 @@ pub struct Config {
     /// The world that it drives in.
     pub world: World,
     /// The dark lines on its floor.
-    pub lines: Arc<[Line]>,
+    pub lines: Arc<[DarkLine]>,
     /// Start pose in the world.
     pub start: Pose,
     /// The wheels turn freely: no floor, the body stays where it is.

@@ -5,7 +5,7 @@ use crate::emulated::Emulated;
 use crate::sim::Sim;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
-use rumbo_emulator::gdb::{Machine, Progress, Session};
+use rumbo_emulator::gdb::{GdbSession, Machine, Progress};
 use std::io;
 use std::net::{Ipv4Addr, TcpListener};
 
@@ -15,7 +15,7 @@ const TURN_US: u64 = 1_000;
 /// A port to which a debugger may connect, and the session of the one that has.
 pub struct Debugging {
     listener: TcpListener,
-    session: Option<Session<Held>>,
+    session: Option<GdbSession<Held>>,
     /// When it was last announced that the program is halted [us]; `None` while it runs.
     stands: Option<u64>,
     news: Vec<String>,
@@ -116,7 +116,7 @@ impl Debugging {
         let held = Held { world, until_us: 0 };
         let session = connection
             .set_nonblocking(false)
-            .and_then(|()| Session::new(held, connection));
+            .and_then(|()| GdbSession::new(held, connection));
         match session {
             Ok(session) => {
                 self.session = Some(session);

@@ -20,14 +20,14 @@ const HYSTERESIS: f64 = 0.05;
 
 /// A dark line.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct DarkLine {
     /// Its corners, in order \[m\].
     pub points_m: Vec<[f64; 2]>,
     /// Its width \[m\].
     pub width_m: f64,
 }
 
-impl Line {
+impl DarkLine {
     /// Its length, back to its first point where it ends there \[m\]; `None` where it is open.
     #[must_use]
     pub fn lap_m(&self) -> Option<f64> {
@@ -40,7 +40,7 @@ impl Line {
 
 /// What a reflectance sensor gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reading {
+pub enum FloorReading {
     /// A level.
     Level,
     /// A voltage, over a light and over a dark floor \[V\].
@@ -59,7 +59,7 @@ pub struct LineSensor {
     /// The board's pin.
     pub pin: u8,
     /// What it gives.
-    pub reading: Reading,
+    pub reading: FloorReading,
     /// A dark floor is high.
     pub dark_high: bool,
 }
@@ -119,11 +119,11 @@ pub struct Nearest {
 
 /// The nearest line of a point.
 #[must_use]
-pub fn nearest(lines: &[Line], [x_m, y_m]: [f64; 2]) -> Option<Nearest> {
+pub fn nearest(lines: &[DarkLine], [x_m, y_m]: [f64; 2]) -> Option<Nearest> {
     let places = lines
         .iter()
         .enumerate()
-        .flat_map(|(line, Line { points_m, width_m })| {
+        .flat_map(|(line, DarkLine { points_m, width_m })| {
             let mut before_m = 0.0;
             points_m.windows(2).map(move |ends| {
                 let ([ax, ay], [bx, by]) = (ends[0], ends[1]);
@@ -149,7 +149,7 @@ pub fn nearest(lines: &[Line], [x_m, y_m]: [f64; 2]) -> Option<Nearest> {
 
 /// The dark share of a spot there, 0 to 1.
 #[must_use]
-pub fn darkness(lines: &[Line], at_m: [f64; 2]) -> f64 {
+pub fn darkness(lines: &[DarkLine], at_m: [f64; 2]) -> f64 {
     nearest(lines, at_m).map_or(0.0, |place| {
         (0.5 + (0.5 * place.width_m - place.distance_m) / SPOT_M).clamp(0.0, 1.0)
     })
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_spot_is_dark_on_a_line_half_at_its_edge_and_light_beside_it() {
-        let line = Line {
+        let line = DarkLine {
             points_m: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]],
             width_m: 0.02,
         };

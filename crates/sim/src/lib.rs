@@ -30,4 +30,4 @@ pub use config::{Config, Program};
 pub use error::SimError;
 pub use instruments::{READING_US, loop_signals};
 pub use rumbo_robot::NETWORK_AT;
-pub use sim::{Burst, Latched, Sim, Touch};
+pub use sim::{ContactStart, Latched, LinkBurst, Sim};

@@ -2,7 +2,7 @@
 
 use crate::instruments::READING_US;
 use crate::mega::CONSOLES;
-use crate::sim::{Burst, Sim};
+use crate::sim::{LinkBurst, Sim};
 use rumbo_control::params::Params;
 use rumbo_plant::contact::Pose;
 use rumbo_plant::plant::Plant;
@@ -16,7 +16,7 @@ pub const SAMPLE_US: u64 = 10_000;
 
 /// Ground truth at one instant.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
+pub struct TruthSample {
     /// Time since the start [s].
     pub t_s: f64,
     /// Position in the world [m].
@@ -42,7 +42,7 @@ pub struct Sample {
 }
 
 /// Two unknown ranges are equal.
-impl PartialEq for Sample {
+impl PartialEq for TruthSample {
     fn eq(&self, other: &Self) -> bool {
         let whole = |sample: &Self| {
             let Self {
@@ -89,11 +89,11 @@ pub struct Trace {
     /// Telemetry, status, events and heading references as they arrived at the station.
     pub messages: Vec<TimedMessage>,
     /// The samples, in order of time.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<TruthSample>,
     /// What crossed the link, in order.
-    pub link: Vec<Burst>,
+    pub link: Vec<LinkBurst>,
     /// What the USARTs of an emulated Mega have sent, in order.
-    pub consoles: Vec<Said>,
+    pub consoles: Vec<UsartOutput>,
     /// What instruments at an emulated Mega have shown, in order.
     pub readings: Vec<Shown>,
     /// What the control loops of our native robot added up, with its time [us], in order.
@@ -158,7 +158,7 @@ impl PartialEq for Shown {
 
 /// What a USART of an emulated Mega has sent since the sample before.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Said {
+pub struct UsartOutput {
     /// Time of the sample [us].
     pub t_us: u64,
     /// Which USART.
@@ -179,7 +179,7 @@ impl Trace {
                 - std::f64::consts::TAU * (change / std::f64::consts::TAU).round()
         });
         let duty = sim.duty();
-        let mut sample = Sample {
+        let mut sample = TruthSample {
             t_s: now_us as f64 * 1e-6,
             x_m: pose.x_m,
             y_m: pose.y_m,
@@ -202,7 +202,7 @@ impl Trace {
 
     /// True range of the left, right or front sonar, 0 to 2, at a sample [m]; infinite when nothing is within reach, not a
     /// number where there is no such sonar. Costs an exact cone query.
-    pub fn range_m(&self, sample: &Sample, sonar: usize) -> f64 {
+    pub fn range_m(&self, sample: &TruthSample, sonar: usize) -> f64 {
         match (
             sample.seen_m,
             self.sights.at(micros(sample.t_s)),
@@ -230,7 +230,7 @@ impl Trace {
             self.loops.push((t_us, loops));
         }
         if let Some(mega) = sim.mega_mut() {
-            let said = (0..CONSOLES).map(|usart| Said {
+            let said = (0..CONSOLES).map(|usart| UsartOutput {
                 t_us,
                 usart,
                 bytes: mega.take_console(usart),
@@ -248,7 +248,7 @@ impl Trace {
     }
 
     /// The samples from `from_s` to just before `until_s`.
-    pub fn between(&self, from_s: f64, until_s: f64) -> &[Sample] {
+    pub fn between(&self, from_s: f64, until_s: f64) -> &[TruthSample] {
         let index = |t_s: f64| {
             self.samples
                 .partition_point(|sample| sample.t_s < t_s - 1e-9)
@@ -267,7 +267,7 @@ impl Trace {
             "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,range_left_m,range_right_m,range_front_m,servo_rad,battery_v\n",
         );
         for sample in &self.samples {
-            let Sample {
+            let TruthSample {
                 t_s,
                 x_m,
                 y_m,
@@ -300,7 +300,7 @@ impl Trace {
 }
 
 /// What a sonar of a plant sees at a sample; not a number where there is none.
-fn seen_m(plant: &Plant, sample: &Sample, sonar: SonarId) -> f64 {
+fn seen_m(plant: &Plant, sample: &TruthSample, sonar: SonarId) -> f64 {
     let pose = Pose {
         x_m: sample.x_m,
         y_m: sample.y_m,

@@ -3,7 +3,7 @@
 use crate::log_file::LogError;
 use crate::recorder;
 use rumbo_log::{Burst, LogWriter, Manifest};
-use rumbo_session::headless::{self, Run};
+use rumbo_session::headless::{self, RunRecords};
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// If the file cannot be written.
-pub fn record_run(path: &Path, manifest: &Manifest, run: Run<'_>) -> Result<(), LogError> {
+pub fn record_run(path: &Path, manifest: &Manifest, run: RunRecords<'_>) -> Result<(), LogError> {
     write(path, recorder::file_at(path)?, |file| {
         headless::record_run(file, manifest, run)
     })
@@ -26,7 +26,7 @@ pub fn record_run(path: &Path, manifest: &Manifest, run: Run<'_>) -> Result<(), 
 pub fn record_run_in(
     folder: &Path,
     manifest: &Manifest,
-    run: Run<'_>,
+    run: RunRecords<'_>,
 ) -> Result<PathBuf, LogError> {
     let (path, file) = recorder::file_in(folder, manifest)?;
     let written = write(&path, file, |file| {

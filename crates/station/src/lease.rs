@@ -1,6 +1,6 @@
 //! The session's lease of control, shared by the pages' connections: a page that is closed releases it.
 
-use rumbo_session::{Order, PageId, Seat, View};
+use rumbo_session::{ControlView, Order, PageId, Seat};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 
@@ -55,7 +55,7 @@ impl Place {
     }
 
     /// What the page is shown.
-    pub(crate) fn view(&self) -> View {
+    pub(crate) fn view(&self) -> ControlView {
         self.lease.lock().view(self.page)
     }
 }

@@ -25,6 +25,7 @@ mod socket;
 mod subscribers;
 mod tuning;
 mod web;
+mod wired;
 
 pub use rumbo_session::Extras;
 
@@ -32,8 +33,9 @@ pub use echo::Print;
 pub use ending::asked_to_end;
 pub use error::{ServeError, SessionError};
 pub use folder::{Folder, serve_folder};
-pub use recorder::{Recording, now_utc, today_utc};
+pub use recorder::{RecordingSetting, now_utc, today_utc};
 pub use serve::{
-    Addresses, Answer, DEFAULT_PORT, Lab, LabConfig, Named, ServeAt, serve, serve_all, serve_log,
+    Addresses, DEFAULT_PORT, Lab, LabConfig, Named, ServeAt, serve, serve_all, serve_log,
 };
 pub use tuning::{NotTuned, Tuner};
+pub use wired::Answer;

@@ -20,7 +20,7 @@ const QUEUE: usize = 4_096;
 
 /// Where runs are recorded.
 #[derive(Clone, Debug)]
-pub struct Recording {
+pub struct RecordingSetting {
     /// The folder for their logs; created if it does not exist.
     pub folder: PathBuf,
 }

@@ -4,7 +4,7 @@
 
 use crate::error::ServeError;
 use crate::log_file;
-use rumbo_log::{Cell, Log, Row, Summary};
+use rumbo_log::{Log, Row, RowValue, Summary};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -54,7 +54,7 @@ pub(crate) struct Content {
     metrics: BTreeMap<String, Option<f64>>,
     parameters: BTreeMap<String, f32>,
     columns: Vec<&'static str>,
-    rows: Vec<Vec<Cell>>,
+    rows: Vec<Vec<RowValue>>,
 }
 
 /// Why a recording could not be shown or deleted.

@@ -7,7 +7,7 @@ use crate::error::{ServeError, SessionError};
 use crate::guard::{self, Guard};
 use crate::lease::Lease;
 use crate::order_sender::OrderSender;
-use crate::recorder::Recording;
+use crate::recorder::RecordingSetting;
 use crate::recordings::Recordings;
 use crate::replay;
 use crate::session::{Orders, Running, Seat};
@@ -15,6 +15,7 @@ use crate::socket::Hub;
 use crate::subscribers::Subscribers;
 use crate::tuning::{Tuner, Tuning};
 use crate::web;
+use crate::wired::Answer;
 use rumbo_log::Log;
 use rumbo_session::{Extras, Ghost, Replay, Target, TargetError};
 use std::io;
@@ -61,7 +62,7 @@ pub struct LabConfig {
     /// Seconds of the target per second of the wall clock; 0 starts paused. A real robot's is 1.
     pub speed: f64,
     /// Where runs are recorded; `None` for nowhere.
-    pub recording: Option<Recording>,
+    pub recording: Option<RecordingSetting>,
     /// Prints warnings and faults as well.
     pub echo: Option<Print>,
     /// What searches for parameters, for the page in control.
@@ -69,9 +70,6 @@ pub struct LabConfig {
     /// What answers a page of this computer that wires a robot.
     pub wired: Option<Answer>,
 }
-
-/// Answers what a page asks.
-pub type Answer = fn(&serde_json::Value) -> serde_json::Value;
 
 impl Default for LabConfig {
     fn default() -> Self {
@@ -287,7 +285,6 @@ fn start_on(
 ) -> io::Result<Lab> {
     let (opens, opened) = mpsc::channel();
     let at = listener.local_addr()?;
-    let (local, port) = (at.ip().is_loopback(), at.port());
     let guard = Guard::new(at, opens.clone()).map_err(io::Error::other)?;
     let (url, viewers_url) = (guard.url(), guard.viewers_url());
     let key = guard.drivers_key().to_owned();
@@ -306,7 +303,7 @@ fn start_on(
             lease: Lease::default(),
             robot,
             robots: Arc::clone(&robots),
-            local,
+            local: at.ip().is_loopback(),
             recordings: beside.recordings.clone(),
             tuning: beside.tuning.clone(),
             wired: beside.wired,
@@ -323,10 +320,8 @@ fn start_on(
 
     let router = web::router(guard, hubs);
     let (web_ends, ended) = oneshot::channel::<()>();
-    let ended = async {
-        // An error: the lab was dropped.
-        let _ = ended.await;
-    };
+    // An error: the lab was dropped.
+    let ended = async { drop(ended.await) };
     let web = door::spawn(listener, router, ended, move || {
         let _ = opens.send(());
     })?;
@@ -335,7 +330,7 @@ fn start_on(
         viewers_url,
         key,
         addresses,
-        port,
+        port: at.port(),
         opened,
         web_ends: Some(web_ends),
         session: Some(session),

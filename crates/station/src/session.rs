@@ -1,6 +1,6 @@
 //! The session's thread: drives it by the wall clock, and connects it with the pages and the log.
 //!
-//! It wakes every [`WAKE`], or at once for an order, and has the [`Driver`] advance the target by the time due. Nothing
+//! It wakes every [`WAKE`], or at once for an order, and has the [`SessionDriver`] advance the target by the time due. Nothing
 //! waits for a page.
 
 use crate::log_file::LogError;
@@ -8,7 +8,7 @@ use crate::recorder::{Recorder, now_utc};
 use crate::recordings::Recordings;
 use crate::subscribers::Subscribers;
 use rumbo_log::{Level, Manifest};
-use rumbo_session::{Driver, Event, Extras, Host, Order, Target, TargetError, stop_first};
+use rumbo_session::{Event, Extras, Host, Order, SessionDriver, Target, TargetError, stop_first};
 use rumbo_wire::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -74,7 +74,7 @@ fn recorder(recordings: &Recordings, manifest: Manifest) -> Result<Recorder, Log
 
 /// The session of a robot.
 struct Robot {
-    driver: Driver<Around>,
+    driver: SessionDriver<Around>,
     orders: Orders,
 }
 
@@ -105,7 +105,7 @@ impl Running {
                 recordings: recordings.clone(),
             };
             Robot {
-                driver: Driver::new(seat.target, around, speed, extras),
+                driver: SessionDriver::new(seat.target, around, speed, extras),
                 orders: seat.orders,
             }
         });

@@ -3,19 +3,22 @@
 //! Decoding checks lengths and numbers of enumerations, never plausibility: a non-finite value is passed on, and the
 //! robot refuses it with a reason.
 
+mod command;
+
+use command::{command, mode, put_command};
 use rumbo_control::math::{is_finite, round};
-use rumbo_control::mode::{ModeId, Movement, Reference};
+use rumbo_control::mode::Reference;
 use rumbo_control::rig::Rig;
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Range, Velocity, Wheels};
 
 use crate::bytes::{Reader, Writer};
-use crate::frame::{Body, Frame, Kind};
+use crate::frame::{Frame, FrameBody, Kind};
 use crate::malformed::Malformed;
 use crate::message::*;
 use crate::quantise::{from_i12, from_i16, from_turn, limited, to_i12, to_i16, to_turn};
 
 /// What travels in frames in one direction.
-pub trait Message: Sized {
+pub trait FrameMessage: Sized {
     /// The frame for this message, number `seq` of its direction (modulo 16).
     fn frame(&self, seq: u8) -> Frame;
 
@@ -23,10 +26,10 @@ pub trait Message: Sized {
     ///
     /// # Errors
     /// If the frame holds no message of this direction.
-    fn from_body(body: &Body) -> Result<Self, Malformed>;
+    fn from_body(body: &FrameBody) -> Result<Self, Malformed>;
 }
 
-impl Message for FromRobot {
+impl FrameMessage for FromRobot {
     fn frame(&self, seq: u8) -> Frame {
         let mut to = Writer::default();
         let kind = match self {
@@ -43,7 +46,7 @@ impl Message for FromRobot {
         Frame::new(kind, seq, to.payload())
     }
 
-    fn from_body(body: &Body) -> Result<Self, Malformed> {
+    fn from_body(body: &FrameBody) -> Result<Self, Malformed> {
         let mut from = Reader::new(body.payload());
         let message = match body.kind {
             Kind::RobotHello => FromRobot::Hello(hello(&mut from)?),
@@ -61,7 +64,7 @@ impl Message for FromRobot {
     }
 }
 
-impl Message for ToRobot {
+impl FrameMessage for ToRobot {
     fn frame(&self, seq: u8) -> Frame {
         let mut to = Writer::default();
         let kind = match self {
@@ -90,7 +93,7 @@ impl Message for ToRobot {
         Frame::new(kind, seq, to.payload())
     }
 
-    fn from_body(body: &Body) -> Result<Self, Malformed> {
+    fn from_body(body: &FrameBody) -> Result<Self, Malformed> {
         let mut from = Reader::new(body.payload());
         let message = match body.kind {
             // A later version may append to its HELLO: it is still one.
@@ -279,7 +282,7 @@ const BATTERY_UNKNOWN: u16 = u16::MAX;
 /// The servo's angle is sent in degrees.
 const SERVO_PER_RAD: f32 = 180.0 / core::f32::consts::PI;
 
-fn put_status(to: &mut Writer, status: &Status) -> Kind {
+fn put_status(to: &mut Writer, status: &StatusReport) -> Kind {
     let battery = match status.battery_v {
         Some(volts) if is_finite(volts) => round(volts * BATTERY_PER_V).clamp(0, 65_534) as u16,
         _ => BATTERY_UNKNOWN,
@@ -314,9 +317,9 @@ fn time(from: &mut Reader) -> RobotTime {
     }
 }
 
-fn status(from: &mut Reader) -> Result<Status, Malformed> {
+fn status(from: &mut Reader) -> Result<StatusReport, Malformed> {
     let mode = mode(from)?;
-    Ok(Status {
+    Ok(StatusReport {
         mode,
         armed: from.u8() & 1 != 0,
         fault: match from.u8() {
@@ -334,10 +337,6 @@ fn status(from: &mut Reader) -> Result<Status, Malformed> {
         rig: Rig::from_number(from.u8()).ok_or(from.wrong())?,
         at: time(from),
     })
-}
-
-fn mode(from: &mut Reader) -> Result<ModeId, Malformed> {
-    ModeId::from_number(from.u8()).ok_or(from.wrong())
 }
 
 fn fault(from: &mut Reader) -> Result<Fault, Malformed> {
@@ -401,113 +400,8 @@ fn ack(from: &mut Reader) -> Result<Ack, Malformed> {
     })
 }
 
-/// `level` as a byte for the kind and the value.
-const LEVEL_DUTY: u8 = 0;
-const LEVEL_SPEED: u8 = 1;
-
-fn put_command(to: &mut Writer, command: &Command) {
-    match command {
-        Command::Stop => to.put([1]),
-        Command::Arm => to.put([2]),
-        Command::Disarm => to.put([3]),
-        Command::ClearFault => to.put([4]),
-        Command::Mode(mode) => to.put([5, *mode as u8]),
-        Command::Reference(value) => to.put([6]).put(value.to_le_bytes()),
-        Command::WheelReference(wheels) => to
-            .put([7])
-            .put(wheels.left.to_le_bytes())
-            .put(wheels.right.to_le_bytes()),
-        Command::Move { movement, level } => {
-            let (which, value) = match level {
-                Level::Duty(value) => (LEVEL_DUTY, value),
-                Level::Speed(value) => (LEVEL_SPEED, value),
-            };
-            to.put([8, *movement as u8, which]).put(value.to_le_bytes())
-        }
-        Command::SetParam { id, value } => to.put([9, *id]).put(value.to_le_bytes()),
-        Command::GetParam { id } => to.put([10, *id]),
-        Command::ResetParams => to.put([11]),
-        Command::ResetPose => to.put([12]),
-        Command::Goal { x_m, y_m } => to.put([13]).put(x_m.to_le_bytes()).put(y_m.to_le_bytes()),
-        Command::Lane => to.put([14]),
-        Command::Route { repeat, relative } => {
-            to.put([15, u8::from(*repeat) | u8::from(*relative) << 1])
-        }
-        Command::Waypoint(Waypoint {
-            x_m,
-            y_m,
-            heading_rad,
-        }) => {
-            to.put([16])
-                .put(x_m.to_le_bytes())
-                .put(y_m.to_le_bytes())
-                .put([u8::from(heading_rad.is_some())]);
-            to.put(heading_rad.unwrap_or(0.0).to_le_bytes())
-        }
-        Command::SaveParams => to.put([17]),
-    };
-}
-
-fn command(from: &mut Reader) -> Result<Command, Malformed> {
-    Ok(match from.u8() {
-        1 => Command::Stop,
-        2 => Command::Arm,
-        3 => Command::Disarm,
-        4 => Command::ClearFault,
-        5 => Command::Mode(mode(from)?),
-        6 => Command::Reference(from.f32()),
-        7 => Command::WheelReference(Wheels {
-            left: from.f32(),
-            right: from.f32(),
-        }),
-        8 => Command::Move {
-            movement: movement(from.u8()).ok_or(from.wrong())?,
-            level: match from.u8() {
-                LEVEL_DUTY => Level::Duty(from.f32()),
-                LEVEL_SPEED => Level::Speed(from.f32()),
-                _ => return Err(from.wrong()),
-            },
-        },
-        9 => Command::SetParam {
-            id: from.u8(),
-            value: from.f32(),
-        },
-        10 => Command::GetParam { id: from.u8() },
-        11 => Command::ResetParams,
-        12 => Command::ResetPose,
-        13 => Command::Goal {
-            x_m: from.f32(),
-            y_m: from.f32(),
-        },
-        14 => Command::Lane,
-        15 => {
-            let flags = from.u8();
-            Command::Route {
-                repeat: flags & 1 != 0,
-                relative: flags & 2 != 0,
-            }
-        }
-        16 => {
-            let (x_m, y_m) = (from.f32(), from.f32());
-            let has_heading = from.u8() != 0;
-            let heading_rad = from.f32();
-            Command::Waypoint(Waypoint {
-                x_m,
-                y_m,
-                heading_rad: has_heading.then_some(heading_rad),
-            })
-        }
-        17 => Command::SaveParams,
-        _ => return Err(from.wrong()),
-    })
-}
-
-fn movement(number: u8) -> Option<Movement> {
-    Movement::ALL.get(usize::from(number)).copied()
-}
-
 /// Session and number of a command frame, also of one whose command is not understood: it can still be refused.
-pub fn command_number(body: &Body) -> Option<(u8, u16)> {
+pub fn command_number(body: &FrameBody) -> Option<(u8, u16)> {
     let mut from = Reader::new(body.payload());
     match body.kind {
         Kind::Command => {

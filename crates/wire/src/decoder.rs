@@ -5,13 +5,13 @@
 //! them are printable ASCII. Garbage is neither. A LF inside a frame does not end the frame; should the bytes before
 //! it happen to be printable they also come out as a line, which then fails to parse and is ignored.
 
-use crate::frame::Body;
+use crate::frame::FrameBody;
 
 /// What came in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Received<'a> {
     /// A frame that passed the CRC.
-    Frame(Body),
+    Frame(FrameBody),
     /// A line of printable ASCII, without its end. As bytes: to make text of them takes 700 bytes of the chip's flash.
     Line(&'a [u8]),
 }
@@ -108,15 +108,15 @@ impl<const N: usize> Decoder<N> {
         self.line_start -= keep_from;
     }
 
-    fn end_frame(&mut self) -> Option<Body> {
+    fn end_frame(&mut self) -> Option<FrameBody> {
         let pending = self.buffer.get(..self.len).unwrap_or(&[]);
         let after_text = self.after_text.and_then(|start| pending.get(start..));
         let whole = if self.frame_cut {
             None
         } else {
-            Body::parse(pending)
+            FrameBody::parse(pending)
         };
-        let body = whole.or_else(|| Body::parse(after_text?));
+        let body = whole.or_else(|| FrameBody::parse(after_text?));
         let noise = match after_text {
             Some(rest) => !rest.is_empty(),
             None => self.frame_cut || !pending.is_empty(),

@@ -108,7 +108,7 @@ impl Frame {
 
 /// What was in a frame that passed the CRC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Body {
+pub struct FrameBody {
     /// What the payload is.
     pub kind: Kind,
     /// Number of the frame in its direction, 0..=15.
@@ -117,9 +117,9 @@ pub struct Body {
     len: usize,
 }
 
-impl Body {
+impl FrameBody {
     /// The content of a frame, given without its 0x00; `None` if anything is wrong with it.
-    pub fn parse(stuffed: &[u8]) -> Option<Body> {
+    pub fn parse(stuffed: &[u8]) -> Option<FrameBody> {
         let mut bytes = [0; MAX_BODY];
         let len = unstuff(stuffed, &mut bytes)?;
         let (checked, check) = bytes.get(..len)?.split_last_chunk::<2>()?;
@@ -129,7 +129,7 @@ impl Body {
             crc(CRC_START, kind.schema(PROTOCOL_VERSION)),
             |sum, byte| crc(sum, *byte),
         );
-        (sum == u16::from_le_bytes(*check)).then_some(Body {
+        (sum == u16::from_le_bytes(*check)).then_some(FrameBody {
             kind,
             seq: header & 0xF,
             bytes,
@@ -253,13 +253,13 @@ mod tests {
         fn a_frame_gives_back_its_payload(payload in payload(), seq in 0u8..16) {
             let frame = Frame::new(Kind::Status, seq, &payload);
             prop_assert_eq!(frame.bytes().len(), payload.len() + OVERHEAD);
-            let body = Body::parse(&frame.bytes()[..frame.len - 1]).unwrap();
+            let body = FrameBody::parse(&frame.bytes()[..frame.len - 1]).unwrap();
             prop_assert_eq!((body.kind, body.seq, body.payload()), (Kind::Status, seq, &payload[..]));
         }
 
         #[test]
         fn any_bytes_are_parsed_without_panic(bytes in prop::collection::vec(any::<u8>(), 0..64)) {
-            let _ = Body::parse(&bytes);
+            let _ = FrameBody::parse(&bytes);
         }
     }
 
@@ -267,8 +267,8 @@ mod tests {
     fn a_frame_of_another_version_fails_the_crc_and_a_hello_does_not() {
         let header = (Kind::Heartbeat as u8) << 4;
         let other = crc(crc(CRC_START, PROTOCOL_VERSION + 1), header).to_le_bytes();
-        assert_eq!(Body::parse(&[4, header, other[0], other[1]]), None);
-        assert!(Body::parse(&Frame::new(Kind::Heartbeat, 0, &[]).bytes()[..4]).is_some());
+        assert_eq!(FrameBody::parse(&[4, header, other[0], other[1]]), None);
+        assert!(FrameBody::parse(&Frame::new(Kind::Heartbeat, 0, &[]).bytes()[..4]).is_some());
         assert_eq!(Kind::StationHello.schema(PROTOCOL_VERSION), 0);
     }
 }

@@ -32,9 +32,9 @@ mod text_units;
 #[cfg(feature = "names")]
 mod words;
 
-pub use codec::Message;
+pub use codec::FrameMessage;
 pub use decoder::{Decoder, Received};
-pub use frame::{Body, Frame, Kind, crc as crc16};
+pub use frame::{Frame, FrameBody, Kind, crc as crc16};
 pub use line_ending::LineEnding;
 pub use malformed::Malformed;
 pub use message::*;

@@ -1,6 +1,6 @@
 //! The messages between the two ends, as values. Their bytes: [`crate::codec`].
 
-pub use rumbo_control::mode::Level;
+pub use rumbo_control::mode::MovementLevel;
 pub use rumbo_control::mode::waypoints::Waypoint;
 use rumbo_control::mode::{ModeId, Movement, Reference};
 use rumbo_control::rig::Rig;
@@ -63,7 +63,7 @@ pub enum FromRobot {
     /// The fast signals, 25 times a second.
     Telemetry(Telemetry),
     /// The slow signals, twice a second.
-    Status(Status),
+    Status(StatusReport),
     /// Something happened.
     Event(Event),
     /// The result of a command.
@@ -154,7 +154,7 @@ pub struct Telemetry {
     pub state: u8,
     /// The wheels may turn.
     pub armed: bool,
-    /// A fault is latched; its cause is in [`Status`] and in an [`Event`].
+    /// A fault is latched; its cause is in [`StatusReport`] and in an [`Event`].
     pub faulted: bool,
     /// PWM applied to the wheels.
     pub duty: Wheels<Duty>,
@@ -172,7 +172,7 @@ pub struct Telemetry {
 
 /// The slow signals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Status {
+pub struct StatusReport {
     /// The mode selected.
     pub mode: ModeId,
     /// The wheels may turn.
@@ -286,7 +286,7 @@ pub enum Command {
         /// Which one.
         movement: Movement,
         /// How fast the (outer) wheel turns.
-        level: Level,
+        level: MovementLevel,
     },
     /// Set a parameter of the table.
     SetParam {

@@ -14,8 +14,8 @@ use crate::decimal;
 use crate::message::Command;
 
 pub use crate::text_error::TextError;
-pub use crate::text_line::Line;
-pub use crate::text_row::{DistanceRow, MissionRow, Row, RowKind, SpeedRow, WaypointsRow};
+pub use crate::text_line::TextLine;
+pub use crate::text_row::{DistanceRow, MissionRow, RowKind, SpeedRow, TextRow, WaypointsRow};
 pub use crate::text_units::{
     CM_PER_M, MAX_LINE, RAD_PER_DEG, RAD_S_PER_RPM, cm_from_range, range_from_cm,
 };

@@ -5,14 +5,14 @@ use rumbo_control::{Duty, Pose, Range, Wheels};
 use crate::decimal::Text;
 use crate::text_units::{MAX_LINE, RAD_PER_DEG, RAD_S_PER_RPM, cm_from_range};
 
-/// A row being written. Its first column is the time since the previous row; [`Row`](crate::text::Row) defines the
+/// A row being written. Its first column is the time since the previous row; [`Row`](crate::text::TextRow) defines the
 /// rest.
-pub struct Line(Text<MAX_LINE>);
+pub struct TextLine(Text<MAX_LINE>);
 
-impl Line {
+impl TextLine {
     /// Begins a row, `dt_ms` after the one before.
-    pub fn new(dt_ms: u32) -> Line {
-        let mut line = Line(Text::EMPTY);
+    pub fn new(dt_ms: u32) -> TextLine {
+        let mut line = TextLine(Text::EMPTY);
         line.0
             .push_integer(i32::try_from(dt_ms).unwrap_or(i32::MAX));
         line

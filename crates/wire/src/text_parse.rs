@@ -6,15 +6,15 @@ use rumbo_control::math::round;
 use crate::decimal;
 use crate::text_error::TextError;
 use crate::text_published;
-use crate::text_row::{DistanceRow, MissionRow, Row, RowKind, SpeedRow, WaypointsRow};
+use crate::text_row::{DistanceRow, MissionRow, RowKind, SpeedRow, TextRow, WaypointsRow};
 
-impl Row {
+impl TextRow {
     /// The row in a line, given without its end; its columns determine the kind. A row of the published sketches has no
     /// time: its `dt_ms` is 0.
     ///
     /// # Errors
     /// If the line has other columns than any row, or a value is no number.
-    pub fn parse(line: &str) -> Result<Row, TextError> {
+    pub fn parse(line: &str) -> Result<TextRow, TextError> {
         if let Some(row) = text_published::row(line) {
             return Ok(row);
         }
@@ -28,17 +28,17 @@ impl Row {
             13 => RowKind::Mission,
             _ => return Err(TextError::Columns),
         };
-        Row::parse_as(kind, line)
+        TextRow::parse_as(kind, line)
     }
 
     /// The row in a line whose columns are known from the header of a file.
     ///
     /// # Errors
     /// If values are missing, too many, no numbers or out of range.
-    pub fn parse_as(kind: RowKind, line: &str) -> Result<Row, TextError> {
+    pub fn parse_as(kind: RowKind, line: &str) -> Result<TextRow, TextError> {
         let mut from = Fields::new(line);
         let row = match kind {
-            RowKind::Distance => Row::Distance(DistanceRow {
+            RowKind::Distance => TextRow::Distance(DistanceRow {
                 dt_ms: from.milliseconds()?,
                 left_cm: from.number()?,
                 right_cm: from.number()?,
@@ -46,14 +46,14 @@ impl Row {
                 mode: from.small()?,
                 pwm: from.pwm()?,
             }),
-            RowKind::Speed => Row::Speed(SpeedRow {
+            RowKind::Speed => TextRow::Speed(SpeedRow {
                 dt_ms: from.milliseconds()?,
                 wheel_rpm: from.wheels()?,
                 reference_rpm: from.number()?,
                 mode: from.small()?,
                 pwm: from.pwm()?,
             }),
-            RowKind::Waypoints => Row::Waypoints(WaypointsRow {
+            RowKind::Waypoints => TextRow::Waypoints(WaypointsRow {
                 dt_ms: from.milliseconds()?,
                 wheel_rpm: from.wheels()?,
                 reference_rpm: from.wheels()?,
@@ -62,7 +62,7 @@ impl Row {
                 heading_deg: from.number()?,
                 pwm: from.pwm()?,
             }),
-            RowKind::Mission => Row::Mission(MissionRow {
+            RowKind::Mission => TextRow::Mission(MissionRow {
                 dt_ms: from.milliseconds()?,
                 reference_rpm: from.wheels()?,
                 heading_reference_deg: from.number()?,

@@ -11,7 +11,7 @@
 //! Units are the text protocol's. The first sonar of a pair is the right one ahead, the front one (`left`) on a side.
 
 use crate::decimal;
-use crate::text_row::{DistanceRow, Row, SpeedRow, WaypointsRow};
+use crate::text_row::{DistanceRow, SpeedRow, TextRow, WaypointsRow};
 use rumbo_control::Wheels;
 use rumbo_control::math::round;
 
@@ -21,7 +21,7 @@ const MOST: usize = 10;
 const ROUNDING_CM: f32 = 0.02;
 
 /// The row in a line; `None` of any other text.
-pub(crate) fn row(line: &str) -> Option<Row> {
+pub(crate) fn row(line: &str) -> Option<TextRow> {
     let (mut values, mut count) = ([0.0; MOST], 0);
     for field in line.split(',') {
         *values.get_mut(count)? = decimal::parse(field.trim_ascii().as_bytes())?;
@@ -52,7 +52,7 @@ pub(crate) fn row(line: &str) -> Option<Row> {
             let pwm = counts([a, b])?;
             Some(distances(3, [first_cm, second_cm], reference_cm, pwm))
         }
-        [right, left, reference_rpm, _, a, b] => Some(Row::Speed(SpeedRow {
+        [right, left, reference_rpm, _, a, b] => Some(TextRow::Speed(SpeedRow {
             dt_ms: 0,
             wheel_rpm: Wheels { left, right },
             reference_rpm,
@@ -63,7 +63,7 @@ pub(crate) fn row(line: &str) -> Option<Row> {
         [right, left, _, _, _, _, x_m, y_m, heading_deg, _]
             if line.split(',').next()?.contains('.') =>
         {
-            Some(Row::Waypoints(WaypointsRow {
+            Some(TextRow::Waypoints(WaypointsRow {
                 reference_rpm: Wheels { left, right },
                 x_m,
                 y_m,
@@ -80,8 +80,13 @@ fn differ(reference_cm: f32, distance_cm: f32, error_cm: f32) -> bool {
     off_cm < ROUNDING_CM && off_cm > -ROUNDING_CM
 }
 
-fn distances(mode: u8, [left_cm, right_cm]: [f32; 2], reference_cm: f32, pwm: Wheels<i16>) -> Row {
-    Row::Distance(DistanceRow {
+fn distances(
+    mode: u8,
+    [left_cm, right_cm]: [f32; 2],
+    reference_cm: f32,
+    pwm: Wheels<i16>,
+) -> TextRow {
+    TextRow::Distance(DistanceRow {
         dt_ms: 0,
         left_cm,
         right_cm,

@@ -1,4 +1,4 @@
-//! The rows of telemetry of the original's text protocol; the robot writes them with [`Line`](crate::text::Line).
+//! The rows of telemetry of the original's text protocol; the robot writes them with [`Line`](crate::text::TextLine).
 
 use rumbo_control::Wheels;
 
@@ -84,7 +84,7 @@ pub struct MissionRow {
 
 /// A row of telemetry.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Row {
+pub enum TextRow {
     /// Modes 1 to 4.
     Distance(DistanceRow),
     /// Modes 5 and 6 (and 0).
@@ -108,14 +108,14 @@ pub enum RowKind {
     Mission,
 }
 
-impl Row {
+impl TextRow {
     /// Which columns it has.
     pub fn kind(&self) -> RowKind {
         match self {
-            Row::Distance(_) => RowKind::Distance,
-            Row::Speed(_) => RowKind::Speed,
-            Row::Waypoints(_) => RowKind::Waypoints,
-            Row::Mission(_) => RowKind::Mission,
+            TextRow::Distance(_) => RowKind::Distance,
+            TextRow::Speed(_) => RowKind::Speed,
+            TextRow::Waypoints(_) => RowKind::Waypoints,
+            TextRow::Mission(_) => RowKind::Mission,
         }
     }
 }

@@ -3,25 +3,25 @@
 use rumbo_control::{AgedRange, Duty, Pose, SonarId, Wheels};
 
 use crate::message::Telemetry;
-use crate::text::{RAD_PER_DEG, RAD_S_PER_RPM, Row, range_from_cm};
+use crate::text::{RAD_PER_DEG, RAD_S_PER_RPM, TextRow, range_from_cm};
 
-impl Row {
+impl TextRow {
     /// Time since the row before [ms].
     pub fn dt_ms(&self) -> u32 {
         match self {
-            Row::Distance(row) => row.dt_ms,
-            Row::Speed(row) => row.dt_ms,
-            Row::Waypoints(row) => row.dt_ms,
-            Row::Mission(row) => row.dt_ms,
+            TextRow::Distance(row) => row.dt_ms,
+            TextRow::Speed(row) => row.dt_ms,
+            TextRow::Waypoints(row) => row.dt_ms,
+            TextRow::Mission(row) => row.dt_ms,
         }
     }
 
     /// Number of the mode, where the row has it.
     pub fn mode(&self) -> Option<u8> {
         match self {
-            Row::Distance(row) => Some(row.mode),
-            Row::Speed(row) => Some(row.mode),
-            Row::Waypoints(_) | Row::Mission(_) => None,
+            TextRow::Distance(row) => Some(row.mode),
+            TextRow::Speed(row) => Some(row.mode),
+            TextRow::Waypoints(_) | TextRow::Mission(_) => None,
         }
     }
 
@@ -40,23 +40,23 @@ impl Row {
         };
         let mut ranges = [None; 3];
         match self {
-            Row::Distance(row) => {
+            TextRow::Distance(row) => {
                 ranges[SonarId::Left as usize] = Some(row.left_cm);
                 ranges[SonarId::Right as usize] = Some(row.right_cm);
                 sample.duty = row.pwm.map(Duty::new);
             }
-            Row::Speed(row) => {
+            TextRow::Speed(row) => {
                 sample.wheel_rad_s = [rad_s(row.wheel_rpm); 2];
                 sample.wheel_ref_rad_s = rad_s(Wheels::both(row.reference_rpm));
                 sample.duty = row.pwm.map(Duty::new);
             }
-            Row::Waypoints(row) => {
+            TextRow::Waypoints(row) => {
                 sample.wheel_rad_s = [rad_s(row.wheel_rpm); 2];
                 sample.wheel_ref_rad_s = rad_s(row.reference_rpm);
                 sample.pose = pose(row.x_m, row.y_m, row.heading_deg);
                 sample.duty = row.pwm.map(Duty::new);
             }
-            Row::Mission(row) => {
+            TextRow::Mission(row) => {
                 ranges[SonarId::Left as usize] = Some(row.left_cm);
                 ranges[SonarId::Right as usize] = Some(row.right_cm);
                 ranges[SonarId::Front as usize] = Some(row.front_cm);

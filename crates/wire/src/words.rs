@@ -1,6 +1,6 @@
 //! Commands in words, for people: cm, rpm and % instead of SI.
 
-use crate::message::{Command, Level, Waypoint};
+use crate::message::{Command, MovementLevel, Waypoint};
 use crate::text::RAD_S_PER_RPM;
 use core::fmt;
 use rumbo_control::mode::{ModeId, Movement, ReferenceKind};
@@ -49,10 +49,10 @@ impl fmt::Display for InWords {
             Command::Move { movement, level } => {
                 let movement = movement_words(movement);
                 match level {
-                    Level::Duty(duty) => {
+                    MovementLevel::Duty(duty) => {
                         write!(f, "movement {movement} with {:.0} % PWM", duty * 100.0)
                     }
-                    Level::Speed(speed_rad_s) => {
+                    MovementLevel::Speed(speed_rad_s) => {
                         write!(f, "movement {movement} at {:.0} rpm", rpm(speed_rad_s))
                     }
                 }

@@ -6,8 +6,8 @@ use rumbo_control::params::ParamId;
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_sim::{Config, Sim};
 use rumbo_wire::{
-    Command, Decoder, EventKind, FromRobot, Hello, Message, Received, Refusal, RobotTime, Status,
-    ToRobot,
+    Command, Decoder, EventKind, FrameMessage, FromRobot, Hello, Received, Refusal, RobotTime,
+    StatusReport, ToRobot,
 };
 
 /// Time between two polls of the robot [us].
@@ -33,7 +33,7 @@ pub(crate) struct Drive {
     /// Whether the station is alive.
     pub(crate) heartbeats: bool,
     /// The last status, also after a test clears `received`.
-    pub(crate) last_status: Option<Status>,
+    pub(crate) last_status: Option<StatusReport>,
     decoder: Decoder<128>,
     number: u16,
     seq: u8,
@@ -200,7 +200,7 @@ impl Drive {
     }
 
     /// The last status received.
-    pub(crate) fn status(&self) -> Status {
+    pub(crate) fn status(&self) -> StatusReport {
         let mut last = self.received.iter().rev();
         last.find_map(|(_, message)| match message {
             FromRobot::Status(status) => Some(*status),

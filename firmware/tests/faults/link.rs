@@ -2,7 +2,7 @@
 
 use super::drive::{Drive, setup, under_way_in_each};
 use crate::world::Random;
-use rumbo_control::mode::{Level, ModeId, Movement};
+use rumbo_control::mode::{ModeId, Movement, MovementLevel};
 use rumbo_control::{Fault, Wheels};
 use rumbo_wire::message::Waypoint;
 use rumbo_wire::{Command, Refusal};
@@ -74,7 +74,7 @@ fn commands() -> Vec<Command> {
         Command::WheelReference(Wheels::both(3.0)),
         Command::Move {
             movement: Movement::Forward,
-            level: Level::Duty(0.9),
+            level: MovementLevel::Duty(0.9),
         },
         Command::SetParam { id: 2, value: 0.2 },
         Command::GetParam { id: 2 },

@@ -2,7 +2,7 @@
 
 use super::drive::{Drive, setup, under_way_in_each};
 use crate::board::image;
-use rumbo_control::mode::{Level, Movement};
+use rumbo_control::mode::{Movement, MovementLevel};
 use rumbo_emulator::devices::{Cause, Input};
 use rumbo_wire::{Command, FromRobot, Refusal, ResetCause, ToRobot};
 
@@ -58,7 +58,7 @@ fn a_supply_that_falls_while_it_drives_resets_it_and_it_stays_released() {
     drive.received.clear();
     let command = Command::Move {
         movement: Movement::Forward,
-        level: Level::Duty(1.0),
+        level: MovementLevel::Duty(1.0),
     };
     let frame = drive.frame_of(command);
     drive.sim.send(&frame);

@@ -2,7 +2,7 @@
 //! faults, the robot accepts.
 
 use rumbo_control::{Inputs, Micros};
-use rumbo_robot::{Config, Robot};
+use rumbo_robot::{Robot, RobotConfig};
 use rumbo_session::client::{KnownTable, RobotClient};
 use rumbo_session::{BadOrder, Order};
 use rumbo_wire::{Command, ResetCause};
@@ -49,7 +49,7 @@ fn commands(text: &str) -> Result<Vec<Command>, BadOrder> {
 pub fn check(text: &str) {
     let mut bench = Bench {
         client: RobotClient::new(1, true, KnownTable::OURS),
-        robot: Robot::new(Config {
+        robot: Robot::new(RobotConfig {
             image: 0,
             reset: ResetCause::PowerOn,
             start: 0,

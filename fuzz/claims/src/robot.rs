@@ -3,8 +3,8 @@
 
 use arbitrary::Arbitrary;
 use rumbo_control::{Echo, Edges, Inputs, Micros, SonarId, Wheels};
-use rumbo_robot::{Config, Robot};
-use rumbo_wire::{Decoder, Frame, FromRobot, Kind, Message, Received, ResetCause};
+use rumbo_robot::{Robot, RobotConfig};
+use rumbo_wire::{Decoder, Frame, FrameMessage, FromRobot, Kind, Received, ResetCause};
 
 /// Ticks that a run may have.
 const TICKS: u32 = 2_000;
@@ -111,7 +111,7 @@ impl Bench {
 /// Panics if the claim does not hold.
 pub fn check(steps: Vec<Step>) {
     let mut bench = Bench {
-        robot: Robot::new(Config {
+        robot: Robot::new(RobotConfig {
             image: 0,
             reset: ResetCause::PowerOn,
             start: 0,

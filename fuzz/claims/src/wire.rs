@@ -2,19 +2,19 @@
 
 use rumbo_wire::csv::recognise;
 use rumbo_wire::frame::MAX_PAYLOAD;
-use rumbo_wire::text::{Row, TextCommand};
-use rumbo_wire::{Body, Decoder, Frame, FromRobot, Kind, Message, Received, ToRobot};
+use rumbo_wire::text::{TextCommand, TextRow};
+use rumbo_wire::{Decoder, Frame, FrameBody, FrameMessage, FromRobot, Kind, Received, ToRobot};
 
 /// What a frame holds.
-fn body_of(frame: &Frame) -> Body {
+fn body_of(frame: &Frame) -> FrameBody {
     let stuffed = frame.bytes().strip_suffix(&[0]);
     stuffed
-        .and_then(Body::parse)
+        .and_then(FrameBody::parse)
         .expect("a frame of ours is whole")
 }
 
 /// The message in a frame, if it is one, sent on: numbers may be rounded once.
-fn send_on<M: Message>(body: &Body) {
+fn send_on<M: FrameMessage>(body: &FrameBody) {
     let Ok(message) = M::from_body(body) else {
         return;
     };
@@ -31,7 +31,7 @@ fn line(line: &[u8]) {
         return;
     };
     let _ = recognise(text);
-    if let Ok(row) = Row::parse(text) {
+    if let Ok(row) = TextRow::parse(text) {
         let telemetry = FromRobot::Telemetry(row.telemetry(row.dt_ms() as u16, true));
         send_on::<FromRobot>(&body_of(&telemetry.frame(0)));
     }

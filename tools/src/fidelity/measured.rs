@@ -5,7 +5,7 @@ use rumbo_control::Wheels;
 use rumbo_experiment::files::{FileError, Setup, TimedCommand};
 use rumbo_experiment::run::RunResult;
 use rumbo_wire::csv;
-use rumbo_wire::text::{RAD_S_PER_RPM, Row, RowKind};
+use rumbo_wire::text::{RAD_S_PER_RPM, RowKind, TextRow};
 use rumbo_wire::{Command, FromRobot};
 use std::path::Path;
 
@@ -42,7 +42,7 @@ impl Recorded {
         };
         let mut now_s = ARMED_S;
         for line in rows.lines() {
-            let Ok(Row::Speed(row)) = Row::parse_as(RowKind::Speed, line.trim()) else {
+            let Ok(TextRow::Speed(row)) = TextRow::parse_as(RowKind::Speed, line.trim()) else {
                 return Err(wrong(&format!("`{line}` is no row of mode 5")));
             };
             now_s += f64::from(row.dt_ms) * 1e-3;

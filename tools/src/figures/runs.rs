@@ -2,7 +2,7 @@
 
 use rumbo_experiment::files::{Kind, Library, NativeProgram, Overrides, Setup};
 use rumbo_experiment::run::{RunResult, run_all};
-use rumbo_sim::trace::Sample;
+use rumbo_sim::trace::TruthSample;
 
 pub(crate) const SEEDS: u64 = 20;
 
@@ -86,7 +86,7 @@ pub(crate) fn runs(scenario: &str, change: Change) -> Result<Option<Runs>, Strin
 
 impl Runs {
     /// A signal over time in each run.
-    pub(crate) fn over_time(&self, signal: impl Fn(&Sample) -> f64) -> Vec<Vec<(f64, f64)>> {
+    pub(crate) fn over_time(&self, signal: impl Fn(&TruthSample) -> f64) -> Vec<Vec<(f64, f64)>> {
         self.each(|sample| (sample.t_s, signal(sample)))
     }
 
@@ -105,7 +105,7 @@ impl Runs {
     }
 
     /// A curve in each run.
-    pub(crate) fn each(&self, point: impl Fn(&Sample) -> (f64, f64)) -> Vec<Vec<(f64, f64)>> {
+    pub(crate) fn each(&self, point: impl Fn(&TruthSample) -> (f64, f64)) -> Vec<Vec<(f64, f64)>> {
         let results = self.results.iter();
         results
             .map(|result| result.trace.samples.iter().map(&point).collect())

@@ -6,7 +6,7 @@
 //! that the run does not have `–`. Both languages have the same runs and figures. Scenarios in `toml` blocks run.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 use serde_json::Value;
@@ -39,21 +39,7 @@ struct Figure {
 /// Checks the lessons in both languages.
 pub(crate) fn check(project: &Project) -> Result<(), Stop> {
     let rumbo = project.rumbo()?;
-    let files = project.files()?;
-    let mut lessons: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for file in &files {
-        let path = file.to_string_lossy().replace('\\', "/");
-        let Some((language, name)) = path
-            .strip_prefix(FOLDER)
-            .and_then(|rest| rest.trim_start_matches('/').split_once('/'))
-        else {
-            continue;
-        };
-        lessons
-            .entry(name.to_owned())
-            .or_default()
-            .push(language.to_owned());
-    }
+    let lessons = languages(&project.files()?);
     let mut wrong = Vec::new();
     let mut known = BTreeMap::new();
     let mut count = 0;
@@ -98,6 +84,22 @@ pub(crate) fn check(project: &Project) -> Result<(), Stop> {
         true => Ok(()),
         false => Err(Stop::Failed(format!("the lessons:\n{}", wrong.join("\n")))),
     }
+}
+
+/// The languages of each lesson, by its name.
+fn languages(files: &[PathBuf]) -> BTreeMap<String, Vec<String>> {
+    let mut lessons: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for file in files {
+        let path = file.to_string_lossy().replace('\\', "/");
+        let inside = path
+            .strip_prefix(FOLDER)
+            .map(|rest| rest.trim_start_matches('/'));
+        if let Some((language, name)) = inside.and_then(|rest| rest.split_once('/')) {
+            let of_it = lessons.entry(name.to_owned()).or_default();
+            of_it.push(language.to_owned());
+        }
+    }
+    lessons
 }
 
 /// The figures of a lesson's tables.

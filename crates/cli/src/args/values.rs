@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
 use rumbo_experiment::files::new_robot::{JUMPERS, LINE, LINK_BAUD, OBSTACLE, SHARP};
-use rumbo_experiment::files::{Port, TimedText, check_line, parameters, placed, pressed};
+use rumbo_experiment::files::{TimedText, TypedPort, check_line, parameters, placed, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Driver};
 use rumbo_sim::wiring::SIGNALS;
@@ -119,13 +119,13 @@ pub(super) fn timed_text(text: &str) -> Result<TimedText, Failure> {
         at_s,
         text: line.to_owned(),
         ending: LineEnding::default(),
-        port: Port::Link,
+        port: TypedPort::Link,
     })
 }
 
 /// The same for the USB cable.
 pub(super) fn usb_text(text: &str) -> Result<TimedText, Failure> {
-    let port = Port::Usb;
+    let port = TypedPort::Usb;
     timed_text(text).map(|timed| TimedText { port, ..timed })
 }
 

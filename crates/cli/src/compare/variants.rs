@@ -17,7 +17,7 @@ use rumbo_experiment::files::{
     Library, NativeProgram, Overrides, ScenarioFile, Setup, parameters, unknown,
 };
 use rumbo_plant::params::Params;
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use rumbo_report::compare::page;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -59,7 +59,7 @@ pub(super) fn compare(args: &CompareArgs, scenario: &str) -> Result<(), Failure>
         texts.join(" "),
         format!("{:?}", [first, args.runs.into()]),
     ];
-    let stamp = Stamp::of("compare", &about);
+    let stamp = FileStamp::of("compare", &about);
     if let Some(path) = &args.out {
         Guard::new([PathBuf::from(scenario)], args.overwrite.force)
             .check(path, &Mark::of(&stamp))?;

@@ -17,7 +17,7 @@ use crate::output;
 use crate::place::{self, Guard};
 use crate::run::set_threads;
 use rumbo_experiment::grade::{Assignment, grade};
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use rumbo_report::text::Language;
 use rumbo_sketch::archive::{Bounds, Entry, pack as zip, unpack};
 use rumbo_sketch::sandbox::Sandbox;
@@ -47,7 +47,7 @@ pub(super) fn run(args: &GradeArgs, place: &Path) -> Result<(), Failure> {
     let notes = class_notes(&assignment, compiler.as_ref());
     let hand_ins = hand_ins::compile(&found, compiler.as_ref(), || {});
     let marks = grade(&assignment, &hand_ins, || {});
-    let stamp = Stamp::of("grade", std::slice::from_ref(&assignment.name));
+    let stamp = FileStamp::of("grade", std::slice::from_ref(&assignment.name));
     let language = language(args.language);
     for mark in &marks {
         let json = gradescope::results(&assignment, mark, &notes, language, &stamp)?;

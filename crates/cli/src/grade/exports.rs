@@ -3,7 +3,7 @@
 use crate::export::text_cell;
 use crate::junit::{Case, Suite, document};
 use rumbo_experiment::grade::{Assignment, Mark};
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use rumbo_report::grade::earned_in_words;
 use rumbo_report::text::Language;
 
@@ -38,7 +38,7 @@ pub(super) fn csv(assignment: &Assignment, marks: &[Mark]) -> String {
 }
 
 /// A suite for each hand-in, a case for each line of the rubric; one without all its points has failed.
-pub(super) fn junit(assignment: &Assignment, marks: &[Mark], stamp: &Stamp) -> String {
+pub(super) fn junit(assignment: &Assignment, marks: &[Mark], stamp: &FileStamp) -> String {
     let suites = marks.iter().map(|mark| {
         let cases = mark.lines.iter().map(|line| {
             let refused = mark.refused.first().cloned();

@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use rumbo_experiment::grade::{Assignment, Mark};
 use rumbo_experiment::note::Note;
-use rumbo_report::Stamp;
+use rumbo_report::FileStamp;
 use rumbo_report::grade::{earned_in_words, noted, of, place_in_words, seeds_in_words};
 use rumbo_report::text::Language;
 use serde_json::json;
@@ -15,7 +15,7 @@ pub(super) fn results(
     mark: &Mark,
     notes: &[Note],
     language: Language,
-    stamp: &Stamp,
+    stamp: &FileStamp,
 ) -> Result<String, Failure> {
     let tests: Vec<_> = mark
         .lines

@@ -75,14 +75,8 @@ pub(super) fn find(folder: &Path) -> Result<Class, Failure> {
     let own = folder.canonicalize().map_err(wrong)?;
     let name = stem(&own);
     if !is_archive(&own) && (about.is_file() || own.join(format!("{name}.ino")).is_file()) {
-        let given = given(&own, false);
-        let is_late = false;
         return Ok(Class {
-            found: vec![Found {
-                name,
-                is_late,
-                given,
-            }],
+            found: vec![Found { name, ..only(&own) }],
             others: Vec::new(),
             _unpacked: None,
         });
@@ -108,50 +102,46 @@ pub(super) fn find(folder: &Path) -> Result<Class, Failure> {
     let (paths, own): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| !hidden(path));
     let more = more.into_iter().filter(|path| !hidden(path)).chain(own);
     others.extend(more.map(|path| super::name_of(&path)));
-    match paths.len() {
-        0 => {
-            return Err(Failure::Input(format!(
-                "{}: no hand-ins; each is a folder with a sketch, an .ino, an .elf, a .hex, or a .zip of these",
-                folder.display()
-            )));
-        }
-        1..=MOST => {}
-        count => {
-            return Err(Failure::Input(format!(
-                "{}: {count} hand-ins; at most {MOST} are graded at a time",
-                folder.display()
-            )));
-        }
+    let problem = match paths.len() {
+        0 => "no hand-ins; each is a folder with a sketch, an .ino, an .elf, a .hex, or a .zip of these".into(),
+        1..=MOST => String::new(),
+        count => format!("{count} hand-ins; at most {MOST} are graded at a time"),
+    };
+    if !problem.is_empty() {
+        return Err(Failure::Input(format!("{}: {problem}", folder.display())));
     }
     if unpacked.is_none() && paths.iter().any(|path| is_archive(path)) {
         unpacked = Some(tempfile::tempdir().map_err(wrong)?);
     }
+    let place = unpacked.as_ref().map(tempfile::TempDir::path);
+    Ok(Class {
+        found: hand_ins(&paths, place),
+        others,
+        _unpacked: unpacked,
+    })
+}
+
+/// The hand-ins at these paths, a person's second one with its number; archives are unpacked at this place.
+fn hand_ins(paths: &[PathBuf], place: Option<&Path>) -> Vec<Found> {
     let mut tries: BTreeMap<String, usize> = BTreeMap::new();
-    let mut found = Vec::new();
-    for (number, path) in paths.iter().enumerate() {
+    let each = (0..).zip(paths).map(|(number, path)| {
         let (person, is_late) = person(&stem(path));
         let tried = tries.entry(person.clone()).or_default();
         *tried += 1;
-        let place = unpacked
-            .as_ref()
-            .map(|place| place.path().join(number.to_string()));
-        found.push(Found {
+        let place = place.filter(|_| is_archive(path));
+        Found {
             name: match tried {
                 1 => person,
                 tried => format!("{person} ({tried})"),
             },
             is_late,
-            given: match place.filter(|_| is_archive(path)) {
-                Some(place) => of_archive(path, &place),
+            given: match place {
+                Some(place) => of_archive(path, &place.join(format!("{number}"))),
                 None => given(path, false),
             },
-        });
-    }
-    Ok(Class {
-        found,
-        others,
-        _unpacked: unpacked,
-    })
+        }
+    });
+    each.collect()
 }
 
 /// What is in a person's archive. Of a sketch, which is read then, nothing stays unpacked.

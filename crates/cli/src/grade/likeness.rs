@@ -3,7 +3,7 @@
 use super::hand_ins::Found;
 use crate::failure::Failure;
 use rumbo_experiment::grade::Assignment;
-use rumbo_report::alike::{Alike, pair};
+use rumbo_report::alike::{AlikeHandIns, pair};
 use rumbo_report::text::Language;
 use rumbo_sketch::similar::{Pair, similar, text_of};
 use rumbo_sketch::{Given, given};
@@ -36,7 +36,7 @@ impl Likeness {
         })
     }
 
-    fn all(&self) -> impl Iterator<Item = Alike<'_>> {
+    fn all(&self) -> impl Iterator<Item = AlikeHandIns<'_>> {
         self.pairs.iter().map(|Pair { of, share, lines }| {
             let side = |at: usize| {
                 let own = of[at];
@@ -46,7 +46,7 @@ impl Likeness {
                     &lines[at],
                 )
             };
-            Alike {
+            AlikeHandIns {
                 of: [side(0), side(1)],
                 share: *share,
             }

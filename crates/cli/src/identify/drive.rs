@@ -10,9 +10,9 @@ use super::session::Driven;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::output;
-use rumbo_control::mode::{Level, ModeId, Movement};
+use rumbo_control::mode::{ModeId, Movement, MovementLevel};
 use rumbo_experiment::files::Overrides;
-use rumbo_identify::plan::{Part, Step, plan};
+use rumbo_identify::plan::{PlanPart, PlanStep, plan};
 use rumbo_identify::{BATTERY, IN_THE_AIR, ON_THE_FLOOR};
 use rumbo_lab::SimulatedRobot;
 use rumbo_log::{Choice, Row};
@@ -72,7 +72,7 @@ pub(crate) fn in_lab(drive: &Drive<'_>, robot: &str, seed: u64) -> Result<Drivin
         ..Overrides::default()
     };
     let robot = SimulatedRobot::new(overrides, choice)?;
-    let truth = *robot.params();
+    let truth = robot.params();
     let battery_v = drive.battery_v.unwrap_or(truth.battery.open_circuit_v);
     let mut driven = Driven::begin(robot, drive.folder)?;
     let asked = Arc::new(AtomicBool::new(false));
@@ -153,7 +153,7 @@ fn all_parts<T: Target>(
     driven: &mut Driven<T>,
     battery_v: Option<f64>,
     asked: &AtomicBool,
-    mut ready: impl FnMut(&mut Driven<T>, &Part) -> Result<(), Failure>,
+    mut ready: impl FnMut(&mut Driven<T>, &PlanPart) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     answer(driven, asked)?;
     if let Some(volts) = battery_v {
@@ -175,12 +175,12 @@ fn all_parts<T: Target>(
 /// ON, the movements, OFF.
 fn drive_part<T: Target>(
     driven: &mut Driven<T>,
-    part: &Part,
+    part: &PlanPart,
     asked: &AtomicBool,
 ) -> Result<(), Failure> {
     driven.take_trouble();
     driven.order(Command::Mode(ModeId::Manual))?;
-    driven.order(command(Step {
+    driven.order(command(PlanStep {
         movement: Movement::Stop,
         pwm: 0,
         seconds: 0.0,
@@ -199,7 +199,7 @@ fn drive_part<T: Target>(
             }
         }
     }
-    driven.order(command(Step {
+    driven.order(command(PlanStep {
         movement: Movement::Stop,
         pwm: 0,
         seconds: 0.0,
@@ -236,8 +236,8 @@ fn wait<T: Target>(
 /// Whether the step may go on; an error where the robot must not.
 fn supervise<T: Target>(
     driven: &mut Driven<T>,
-    part: &Part,
-    step: Step,
+    part: &PlanPart,
+    step: PlanStep,
     from: Option<[f64; 2]>,
 ) -> Result<bool, Failure> {
     let Some(row) = driven.signals(SILENT_US) else {
@@ -296,10 +296,10 @@ fn position(row: Option<&Row>) -> Option<[f64; 2]> {
     Some([row.signal("x_m")?, row.signal("y_m")?])
 }
 
-fn command(step: Step) -> Command {
+fn command(step: PlanStep) -> Command {
     Command::Move {
         movement: step.movement,
-        level: Level::Duty(f32::from(step.pwm) / 255.0),
+        level: MovementLevel::Duty(f32::from(step.pwm) / 255.0),
     }
 }
 

@@ -5,7 +5,7 @@
 
 use crate::failure::Failure;
 use rumbo_log::{Entry, Level, LogWriter, Manifest, Row};
-use rumbo_session::{Driver, Event, Extras, Host, Order, SLICE_US, Target};
+use rumbo_session::{Event, Extras, Host, Order, SLICE_US, SessionDriver, Target};
 use rumbo_station::headless::begin_log;
 use rumbo_station::now_utc;
 use rumbo_wire::Command;
@@ -21,7 +21,7 @@ const UPDATE_US: u64 = 20_000;
 
 /// A session, its robot and its log.
 pub(crate) struct Driven<T> {
-    driver: Driver<Recording, T>,
+    driver: SessionDriver<Recording, T>,
     began: Instant,
     /// The robot lives in real time.
     is_real: bool,
@@ -111,7 +111,7 @@ impl<T: Target> Driven<T> {
             connected: false,
             trouble: None,
         };
-        let mut driver = Driver::new(Box::new(target), recording, 1.0, Extras::default());
+        let mut driver = SessionDriver::new(Box::new(target), recording, 1.0, Extras::default());
         driver.begin(0);
         driver.wall_passed(0);
         let mut driven = Self {

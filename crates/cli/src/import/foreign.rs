@@ -86,6 +86,28 @@ pub(super) fn import_table(
     Ok(true)
 }
 
+/// What to write where a guess leaves something open.
+fn remedies(guesses: &[Guess]) -> Result<(), Failure> {
+    let has = |test: &dyn Fn(&Guess) -> bool| guesses.iter().any(test);
+    if !has(&|guess| guess.name.starts_with("t_") || guess.name.starts_with("dt_")) {
+        output::line("  no column is a time: write the time between two rows, as dt_ms=20")?;
+    }
+    if has(&|guess| guess.divisor == Some("COUNTS")) {
+        output::line(
+            "  COUNTS is what a whole turn of the wheel counts, as 748 or, for a disc of 20 slots, 20 or 40",
+        )?;
+    }
+    if has(&|guess| guess.divisor == Some("RADIUS")) {
+        output::line("  RADIUS is that of the wheel in m, as 0.0325, in mm for mm/s")?;
+    }
+    if has(&|guess| !guess.is_sure && guess.divisor.is_none()) {
+        output::line(
+            "  what has a ? is guessed, its unit too; the names there are: rumbo import --help",
+        )?;
+    }
+    Ok(())
+}
+
 impl Held {
     /// What the columns may be, and the command that imports them so.
     fn preview(&self, args: &ImportArgs, rows: usize) -> Result<(), Failure> {
@@ -130,24 +152,7 @@ impl Held {
         }
         output::table(&table)?;
         output::remark(&format!("import it: {command}"))?;
-        let has = |test: &dyn Fn(&Guess) -> bool| guesses.iter().any(test);
-        if !has(&|guess| guess.name.starts_with("t_") || guess.name.starts_with("dt_")) {
-            output::line("  no column is a time: write the time between two rows, as dt_ms=20")?;
-        }
-        if has(&|guess| guess.divisor == Some("COUNTS")) {
-            output::line(
-                "  COUNTS is what a whole turn of the wheel counts, as 748 or, for a disc of 20 slots, 20 or 40",
-            )?;
-        }
-        if has(&|guess| guess.divisor == Some("RADIUS")) {
-            output::line("  RADIUS is that of the wheel in m, as 0.0325, in mm for mm/s")?;
-        }
-        if has(&|guess| !guess.is_sure && guess.divisor.is_none()) {
-            output::line(
-                "  what has a ? is guessed, its unit too; the names there are: rumbo import --help",
-            )?;
-        }
-        Ok(())
+        remedies(&guesses)
     }
 
     fn import(

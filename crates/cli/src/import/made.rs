@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::output::{self, figure};
 use rumbo_identify::lacks;
 use rumbo_log::{
-    ANOTHER, Entry, Level, LogKind, LogWriter, LoggedEvent, Manifest, Names, Row, Source,
+    ANOTHER, Entry, Level, LogKind, LogWriter, LoggedEvent, Manifest, Names, ReadingSource, Row,
 };
 use rumbo_ros::recorded::Series;
 use serde_json::json;
@@ -62,7 +62,7 @@ impl Made {
             let values = instant
                 .iter()
                 .map(|(_, index, value)| (self.numbers[*index].0.clone(), *value));
-            names.reading(instant[0].0, Source::Usart(0), values.collect())
+            names.reading(instant[0].0, ReadingSource::Usart(0), values.collect())
         };
         for row in &self.rows {
             while let Some(instant) = instants.next_if(|instant| instant[0].0 <= row.t_ms) {
@@ -125,17 +125,12 @@ impl Made {
                 open.join(",")
             ))?;
         }
+        let log = out.display();
         let next = match missing.is_empty() {
-            true => format!(
-                "`rumbo identify {} --robot ROBOT` fits a robot to it",
-                out.display()
-            ),
+            true => format!("`rumbo identify {log} --robot ROBOT` fits a robot to it"),
             false => format!("for `rumbo identify` it lacks {}", missing.join(", ")),
         };
-        output::line(&format!(
-            "`rumbo replay {}` shows it; {next}",
-            out.display()
-        ))
+        output::line(&format!("`rumbo replay {log}` shows it; {next}"))
     }
 }
 

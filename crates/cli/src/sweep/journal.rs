@@ -4,7 +4,7 @@
 
 use crate::failure::Failure;
 use crate::place;
-use rumbo_experiment::sweep::{Plan, Row};
+use rumbo_experiment::sweep::{RunRow, SweepPlan};
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -75,9 +75,9 @@ impl Journal {
     pub(super) fn resume(
         path: &Path,
         header: &Header,
-        plan: &Plan,
+        plan: &SweepPlan,
         resume: bool,
-    ) -> Result<Option<(Self, Vec<Row>)>, Failure> {
+    ) -> Result<Option<(Self, Vec<RunRow>)>, Failure> {
         let Some(text) = read(path)? else {
             return Ok(None);
         };
@@ -128,13 +128,13 @@ impl Journal {
 
 /// What is in a file.
 struct Content {
-    rows: Vec<Row>,
+    rows: Vec<RunRow>,
     /// Of the lines that are whole \[bytes\].
     length: usize,
 }
 
 impl Content {
-    fn parse(path: &Path, text: &str, header: &Header, plan: &Plan) -> Result<Self, Failure> {
+    fn parse(path: &Path, text: &str, header: &Header, plan: &SweepPlan) -> Result<Self, Failure> {
         let wrong = |line: usize, what: &str| {
             Failure::Input(format!(
                 "{}, line {line}: {what}; choose another folder with --out, or begin again with --force",
@@ -155,7 +155,8 @@ impl Content {
         }
         let (mut rows, mut length) = (Vec::new(), first.len());
         for (index, line) in lines.enumerate() {
-            let row: Row = serde_json::from_str(line).map_err(|_| wrong(index + 2, "is no run"))?;
+            let row: RunRow =
+                serde_json::from_str(line).map_err(|_| wrong(index + 2, "is no run"))?;
             if index < plan.len() && plan.job(index) != (row.point, row.seed) {
                 return Err(wrong(index + 2, "is a run of another sweep"));
             }

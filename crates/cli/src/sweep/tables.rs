@@ -3,18 +3,18 @@
 //! One row per run: point, seed, the parameters, those of switches and choices by name, whether it passed, every metric. Empty where what is measured
 //! never happened, or where the run has no such metric.
 
-use rumbo_experiment::sweep::Sweep;
+use rumbo_experiment::sweep::SweepOutcome;
 use std::collections::BTreeSet;
 
 /// Names of all metrics of any run.
-fn metrics(sweep: &Sweep) -> Vec<&str> {
+fn metrics(sweep: &SweepOutcome) -> Vec<&str> {
     let names = sweep.rows.iter().flat_map(|row| row.metrics.keys());
     let names: BTreeSet<&str> = names.map(String::as_str).collect();
     names.into_iter().collect()
 }
 
 /// As comma-separated values.
-pub(super) fn csv(sweep: &Sweep) -> String {
+pub(super) fn csv(sweep: &SweepOutcome) -> String {
     let metrics = metrics(sweep);
     let axes = sweep.plan.axes.iter().map(|axis| axis.name.as_str());
     let header: Vec<&str> = ["point", "seed"]

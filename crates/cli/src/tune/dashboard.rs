@@ -4,7 +4,7 @@ use super::{as_json, seeds};
 use crate::calibrate::rewritten;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use rumbo_experiment::files::{FileError, Kind, Library, Overrides, Setup, unknown};
-use rumbo_experiment::tune::{Objective, Over, Plan, Request, Search, tunable};
+use rumbo_experiment::tune::{Objective, Over, Search, TuningPlan, TuningRequest, tunable};
 use rumbo_report::text::Language;
 use rumbo_station::{NotTuned, Tuner};
 use serde::Deserialize;
@@ -150,7 +150,7 @@ impl OfLab {
         Ok(json!({ "page": String::from_utf8_lossy(&page) }))
     }
 
-    fn plan(&self, asked: Asked) -> Result<Plan, NotTuned> {
+    fn plan(&self, asked: Asked) -> Result<TuningPlan, NotTuned> {
         let library = Library::new();
         let names = self.names(&library);
         if !names.contains(&asked.scenario) {
@@ -180,7 +180,7 @@ impl OfLab {
             "" => Objective::default(),
             aims => aims.parse().map_err(refused)?,
         };
-        let request = Request {
+        let request = TuningRequest {
             over: over.collect::<Result<_, _>>().map_err(refused)?,
             objective,
             seed: asked.seed,
@@ -189,7 +189,7 @@ impl OfLab {
         };
         let setup = self.setup(&library, &asked.scenario, &asked.params);
         let own = library.scenario(&asked.scenario).map_err(refused)?;
-        Plan::new(setup.map_err(refused)?, &own, request).map_err(refused)
+        TuningPlan::new(setup.map_err(refused)?, &own, request).map_err(refused)
     }
 }
 

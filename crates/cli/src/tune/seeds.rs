@@ -43,30 +43,7 @@ pub(super) fn drive(
     goes_on: &(dyn Fn() -> bool + Sync),
 ) -> Result<Value, NotTuned> {
     let library = Library::new();
-    let one_of = |what, name: &String, known: &[String]| match known.contains(name) {
-        true => Ok(()),
-        false => Err(refused(unknown(
-            what,
-            name,
-            known.iter().map(String::as_str),
-        ))),
-    };
-    one_of("scenario", &asked.scenario, scenarios)?;
-    if let Some(world) = &asked.world {
-        one_of("world", world, &library.list(Kind::World))?;
-    }
-    if !(1..=MOST).contains(&asked.seeds) {
-        return Err(refused(format!(
-            "from 1 to {MOST} seeds are driven for a page"
-        )));
-    }
-    let overrides = Overrides {
-        robot: robot.clone(),
-        world: asked.world,
-        rig: asked.rig,
-        parameters: asked.params.into_iter().collect(),
-        ..Overrides::default()
-    };
+    let overrides = overrides(&asked, robot, scenarios, &library)?;
     let setup = library
         .setup(&asked.scenario, &overrides)
         .map_err(refused)?;
@@ -109,6 +86,39 @@ pub(super) fn drive(
         Err(Failure::Input(why)) => Err(NotTuned(why)),
         Err(_) => Err(refused("ended before all seeds were driven")),
     }
+}
+
+/// What is in place of the scenario's, if all of it is offered.
+fn overrides(
+    asked: &Asked,
+    robot: &Option<String>,
+    scenarios: &[String],
+    library: &Library,
+) -> Result<Overrides, NotTuned> {
+    let one_of = |what, name: &String, known: &[String]| match known.contains(name) {
+        true => Ok(()),
+        false => Err(refused(unknown(
+            what,
+            name,
+            known.iter().map(String::as_str),
+        ))),
+    };
+    one_of("scenario", &asked.scenario, scenarios)?;
+    if let Some(world) = &asked.world {
+        one_of("world", world, &library.list(Kind::World))?;
+    }
+    if !(1..=MOST).contains(&asked.seeds) {
+        return Err(refused(format!(
+            "from 1 to {MOST} seeds are driven for a page"
+        )));
+    }
+    Ok(Overrides {
+        robot: robot.clone(),
+        world: asked.world.clone(),
+        rig: asked.rig.clone(),
+        parameters: asked.params.clone().into_iter().collect(),
+        ..Overrides::default()
+    })
 }
 
 fn refused(error: impl Display) -> NotTuned {

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use rumbo_log::{LogKind, Manifest, Truth};
-use rumbo_session::headless::Run;
+use rumbo_session::headless::RunRecords;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
 use std::path::Path;
@@ -110,10 +110,10 @@ fn a_log_of_a_real_robot_stands_beside_ours_and_one_of_a_simulated_robot_does_no
     let truths: Vec<_> = (0..=end_us / 10_000)
         .map(|tick| (tick * 10_000, Truth::default()))
         .collect();
-    let run = Run {
+    let run = RunRecords {
         truths: &truths,
         link: &log.link,
-        ..Run::default()
+        ..RunRecords::default()
     };
     record_run(&folder.path().join("real/robot.mcap"), &manifest, run).unwrap();
     let output = experiments(folder.path(), "C", &["--only", "mode5", "--real", "real"]);

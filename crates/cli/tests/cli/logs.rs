@@ -4,11 +4,11 @@
 
 use crate::support::program;
 use rumbo_log::{Burst, Truth};
-use rumbo_session::headless::Run;
+use rumbo_session::headless::RunRecords;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
 use rumbo_wire::message::Hello;
-use rumbo_wire::{Decoder, FromRobot, Message, Received};
+use rumbo_wire::{Decoder, FrameMessage, FromRobot, Received};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -463,10 +463,10 @@ fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
         to_robot: false,
         t_us: 20_000,
     }];
-    let run = Run {
+    let run = RunRecords {
         truths: &[(60_000_000, Truth::default())],
         link: &link,
-        ..Run::default()
+        ..RunRecords::default()
     };
     record_run(&path, &manifest, run).unwrap();
     let other = rumbo(&["rerun", "mode5-1.mcap"], folder.path());

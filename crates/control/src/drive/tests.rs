@@ -46,9 +46,9 @@ fn a_turning_wheel_is_released_until_it_stands_before_it_is_driven_back() {
             Wheels::both(Duty::RELEASED)
         );
     }
-    assert_eq!(layer.directions(), Wheels::both(Direction::Forward));
+    assert_eq!(layer.directions(), Wheels::both(WheelDirection::Forward));
     assert!(step(&mut layer, speed(-6.0), STANDING).left.counts() < 0);
-    assert_eq!(layer.directions(), Wheels::both(Direction::Backward));
+    assert_eq!(layer.directions(), Wheels::both(WheelDirection::Backward));
 }
 
 fn wheels(left: WheelMotion, right: WheelMotion) -> Wheels<WheelMotion> {

@@ -10,7 +10,7 @@ use crate::estimate::Estimate;
 #[cfg(feature = "names")]
 use crate::params::ParamId;
 use crate::params::Params;
-use crate::policy::{Observation, Shape};
+use crate::policy::{NetworkShape, Observation};
 use crate::rig::Rig;
 use crate::types::{Fault, Look};
 
@@ -160,7 +160,7 @@ impl ActiveMode {
     /// knows, with the goal there.
     pub fn decide(
         &mut self,
-        shape: &Shape,
+        shape: &NetworkShape,
         read: impl Fn(u16) -> u8,
         observe: impl FnOnce(&(f32, f32)) -> Observation,
     ) {

@@ -3,7 +3,7 @@
 use super::mission::Task;
 use super::waypoints::{self, Route, Waypoint};
 use super::{
-    ActiveMode, Level, MAX_WHEEL_RAD_S, Movement, SetpointError, manual, policy, twist,
+    ActiveMode, MAX_WHEEL_RAD_S, Movement, MovementLevel, SetpointError, manual, policy, twist,
     wheel_speed, within,
 };
 use crate::types::{Velocity, Wheels};
@@ -101,13 +101,17 @@ impl ActiveMode {
     ///
     /// # Errors
     /// Why it is refused; the last one stays.
-    pub fn set_movement(&mut self, movement: Movement, level: Level) -> Result<(), SetpointError> {
+    pub fn set_movement(
+        &mut self,
+        movement: Movement,
+        level: MovementLevel,
+    ) -> Result<(), SetpointError> {
         let Self::Manual(setpoint, ()) = self else {
             return Err(SetpointError::NotInThisMode);
         };
         match level {
-            Level::Duty(duty) => within(duty, 0.0, 1.0)?,
-            Level::Speed(rad_s) => within(rad_s, 0.0, MAX_WHEEL_RAD_S)?,
+            MovementLevel::Duty(duty) => within(duty, 0.0, 1.0)?,
+            MovementLevel::Speed(rad_s) => within(rad_s, 0.0, MAX_WHEEL_RAD_S)?,
         }
         *setpoint = manual::Setpoint { movement, level };
         Ok(())
@@ -146,7 +150,7 @@ mod tests {
         );
         assert_eq!(mode.reference().numbers(), [0.0; 2]);
         assert_eq!(
-            mode.set_movement(Movement::Forward, Level::Duty(0.5)),
+            mode.set_movement(Movement::Forward, MovementLevel::Duty(0.5)),
             Err(SetpointError::NotInThisMode)
         );
     }
@@ -214,15 +218,15 @@ mod tests {
         assert_eq!(mission.reference(), goal);
         let mut manual = ActiveMode::new(ModeId::Manual);
         assert_eq!(
-            manual.set_movement(Movement::Forward, Level::Duty(0.5)),
+            manual.set_movement(Movement::Forward, MovementLevel::Duty(0.5)),
             Ok(())
         );
         let before = manual;
         for level in [
-            Level::Duty(1.1),
-            Level::Duty(-0.1),
-            Level::Speed(20.1),
-            Level::Speed(f32::NAN),
+            MovementLevel::Duty(1.1),
+            MovementLevel::Duty(-0.1),
+            MovementLevel::Speed(20.1),
+            MovementLevel::Speed(f32::NAN),
         ] {
             assert!(manual.set_movement(Movement::Backward, level).is_err());
         }

@@ -29,11 +29,11 @@ pub struct Description {
     /// The rigs with the sonars it needs.
     pub rigs: Rigs,
     /// The parameters it uses, the most important ones first. A parameter of no mode belongs to the robot.
-    pub parameters: &'static [Group],
+    pub parameters: &'static [ParamGroup],
     /// What its control loops compute, from the outer to the inner ones, as far as signals show it.
     pub laws: &'static [&'static [Law]],
     /// The plots to show, in this order.
-    pub plots: &'static [Plot],
+    pub plots: &'static [ModePlot],
     /// The metrics of its runs, besides those of every run.
     pub metrics: &'static [MetricGroup],
 }
@@ -73,14 +73,14 @@ pub enum Takes {
 
 /// Parameters that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Group {
+pub struct ParamGroup {
     /// Their subject.
     pub title: &'static str,
     /// The parameters.
     pub parameters: &'static [ParamId],
 }
 
-impl Group {
+impl ParamGroup {
     /// A group.
     pub const fn new(title: &'static str, parameters: &'static [ParamId]) -> Self {
         Self { title, parameters }
@@ -125,7 +125,7 @@ impl Law {
 
 /// A plot that a mode may show by default; the page decides its curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Plot {
+pub enum ModePlot {
     /// Ranges and the reference of the distance.
     Distance,
     /// Wheel speeds and their references.
@@ -139,15 +139,15 @@ pub enum Plot {
 }
 
 #[cfg(feature = "names")]
-impl Plot {
+impl ModePlot {
     /// The name in messages to the dashboard.
     pub const fn name(self) -> &'static str {
         match self {
-            Plot::Distance => "distance",
-            Plot::Wheels => "wheels",
-            Plot::Pwm => "PWM",
-            Plot::Heading => "heading",
-            Plot::Position => "position",
+            ModePlot::Distance => "distance",
+            ModePlot::Wheels => "wheels",
+            ModePlot::Pwm => "PWM",
+            ModePlot::Heading => "heading",
+            ModePlot::Position => "position",
         }
     }
 }
@@ -182,7 +182,7 @@ pub enum MetricGroup {
 }
 
 /// The PID of each wheel.
-pub(super) const SPEED_LOOPS: Group = Group::new(
+pub(super) const SPEED_LOOPS: ParamGroup = ParamGroup::new(
     "speed loops",
     &[
         ParamId::SpeedKpLeft,
@@ -194,7 +194,7 @@ pub(super) const SPEED_LOOPS: Group = Group::new(
     ],
 );
 /// Feedforward of the wheels.
-pub(super) const FEEDFORWARD: Group = Group::new(
+pub(super) const FEEDFORWARD: ParamGroup = ParamGroup::new(
     "feedforward",
     &[
         ParamId::StaticLeftForward,
@@ -207,7 +207,7 @@ pub(super) const FEEDFORWARD: Group = Group::new(
     ],
 );
 /// How fast the wheels' references may change.
-pub(super) const WHEEL_RAMPS: Group = Group::new(
+pub(super) const WHEEL_RAMPS: ParamGroup = ParamGroup::new(
     "ramps of the wheels",
     &[ParamId::WheelAccel, ParamId::WheelDecel],
 );
@@ -284,7 +284,7 @@ pub(super) const SPEED: &[Law] = &[
     ]),
 ];
 /// Of [`crate::motion::Turn`].
-pub(super) const TURNS: Group = Group::new(
+pub(super) const TURNS: ParamGroup = ParamGroup::new(
     "turns on the spot",
     &[
         ParamId::TurnRate,
@@ -294,7 +294,7 @@ pub(super) const TURNS: Group = Group::new(
     ],
 );
 /// Of [`crate::motion::Line`].
-pub(super) const LINES: Group = Group::new(
+pub(super) const LINES: ParamGroup = ParamGroup::new(
     "straight lines",
     &[
         ParamId::LineCruise,

@@ -22,7 +22,9 @@ use super::description::{
     FEEDFORWARD, SPEED, SPEED_LOOPS, TURNS, TWIST, WHEEL_RAMPS, states, turning,
 };
 use super::front_distance::{self, FrontDistance};
-use super::{Action, Description, Group, Law, MetricGroup, Mode, Plot, Reference, SetpointError};
+use super::{
+    Action, Description, Law, MetricGroup, Mode, ModePlot, ParamGroup, Reference, SetpointError,
+};
 use crate::ahead::{Ahead, AheadState};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
@@ -31,7 +33,7 @@ use crate::params::{ParamId, Params};
 use crate::rig::{Rig, Rigs};
 use crate::types::{Drive, Fault, TICK_S};
 use crate::unrest::Unrest;
-use crate::wall::Wall;
+use crate::wall::WallEstimate;
 
 /// Description of mode 2.
 pub const DESCRIPTION: Description = Description {
@@ -45,7 +47,7 @@ pub const DESCRIPTION: Description = Description {
     takes: None,
     rigs: Rigs::of(&[Rig::FrontPair, Rig::Final]),
     parameters: &[
-        Group::new(
+        ParamGroup::new(
             "angle to the wall",
             &[
                 ParamId::AlignKp,
@@ -60,7 +62,7 @@ pub const DESCRIPTION: Description = Description {
         WHEEL_RAMPS,
     ],
     laws: &[LAWS, TWIST, SPEED],
-    plots: &[Plot::Distance, Plot::Heading, Plot::Wheels],
+    plots: &[ModePlot::Distance, ModePlot::Heading, ModePlot::Wheels],
     metrics: &[MetricGroup::Alignment],
 };
 
@@ -142,7 +144,11 @@ pub struct State {
 
 impl FrontAlign<'_> {
     /// The nearest thing and the wall.
-    fn see(&self, state: &mut AheadState, estimate: &Estimate) -> Result<(f32, Wall), Fault> {
+    fn see(
+        &self,
+        state: &mut AheadState,
+        estimate: &Estimate,
+    ) -> Result<(f32, WallEstimate), Fault> {
         let nearest_m = self.ahead.nearest_m(estimate)?;
         Ok((nearest_m, self.ahead.wall(state, estimate)?))
     }

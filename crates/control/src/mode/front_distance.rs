@@ -20,8 +20,8 @@
 
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
 use super::{
-    Action, Description, Group, Law, MAX_DISTANCE_M, MIN_DISTANCE_M, MetricGroup, Mode, Plot,
-    Reference, ReferenceDescription, ReferenceKind, SetpointError,
+    Action, Description, Law, MAX_DISTANCE_M, MIN_DISTANCE_M, MetricGroup, Mode, ModePlot,
+    ParamGroup, Reference, ReferenceDescription, ReferenceKind, SetpointError,
 };
 use crate::ahead::drivable_m;
 use crate::estimate::Estimate;
@@ -44,13 +44,13 @@ pub const DESCRIPTION: Description = Description {
     rigs: Rigs::of(&[Rig::FrontSingle, Rig::Final]),
     parameters: &[
         APPROACH,
-        Group::new("straightening", &[ParamId::FrontHeading]),
+        ParamGroup::new("straightening", &[ParamId::FrontHeading]),
         SPEED_LOOPS,
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
     laws: &[LAWS, TWIST, SPEED],
-    plots: &[Plot::Distance, Plot::Wheels, Plot::Pwm],
+    plots: &[ModePlot::Distance, ModePlot::Wheels, ModePlot::Pwm],
     metrics: &[MetricGroup::DistanceSteps],
 };
 
@@ -63,7 +63,7 @@ pub(super) const REFERENCE: ReferenceDescription = ReferenceDescription::command
 );
 
 /// Approach to the distance, in mode 2 too.
-pub(super) const APPROACH: Group = Group::new(
+pub(super) const APPROACH: ParamGroup = ParamGroup::new(
     "approach to the wall",
     &[
         ParamId::FrontCruise,

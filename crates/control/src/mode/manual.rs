@@ -7,7 +7,9 @@
 //! The report moves open loop only; by speed the two wheels keep their ratio on any floor.
 
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states};
-use super::{Action, Description, Group, Level, MetricGroup, Mode, Movement, Plot, Takes};
+use super::{
+    Action, Description, MetricGroup, Mode, ModePlot, Movement, MovementLevel, ParamGroup, Takes,
+};
 use crate::estimate::Estimate;
 use crate::params::{ParamId, Params};
 use crate::rig::Rigs;
@@ -25,13 +27,13 @@ pub const DESCRIPTION: Description = Description {
     takes: Some(Takes::Movements),
     rigs: Rigs::ANY,
     parameters: &[
-        Group::new("arcs", &[ParamId::ArcRatio]),
+        ParamGroup::new("arcs", &[ParamId::ArcRatio]),
         SPEED_LOOPS,
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
     laws: &[SPEED],
-    plots: &[Plot::Wheels, Plot::Pwm, Plot::Heading],
+    plots: &[ModePlot::Wheels, ModePlot::Pwm, ModePlot::Heading],
     metrics: &[
         MetricGroup::Movement,
         MetricGroup::DeadZones,
@@ -58,14 +60,14 @@ pub struct Setpoint {
     /// Which movement.
     pub movement: Movement,
     /// How fast the outer wheel turns.
-    pub level: Level,
+    pub level: MovementLevel,
 }
 
 impl Default for Setpoint {
     fn default() -> Self {
         Self {
             movement: Movement::Stop,
-            level: Level::Duty(0.0),
+            level: MovementLevel::Duty(0.0),
         }
     }
 }
@@ -121,11 +123,11 @@ impl<'a> Mode<'a> for Manual<'a> {
         let factors = self.factors();
         let (drive, phase) = match (self.setpoint.movement, self.setpoint.level) {
             (Movement::Stop, _) => (Drive::Release, Phase::Stop),
-            (_, Level::Duty(duty)) => (
+            (_, MovementLevel::Duty(duty)) => (
                 Drive::Duty(factors.map(|factor| factor * duty)),
                 Phase::OpenLoop,
             ),
-            (_, Level::Speed(rad_s)) => (
+            (_, MovementLevel::Speed(rad_s)) => (
                 Drive::WheelSpeed(factors.map(|factor| factor * rad_s)),
                 Phase::BySpeed,
             ),
@@ -142,7 +144,7 @@ impl<'a> Mode<'a> for Manual<'a> {
 mod tests {
     use super::*;
 
-    fn drive(movement: Movement, level: Level) -> Drive {
+    fn drive(movement: Movement, level: MovementLevel) -> Drive {
         Manual::new(&Params::default(), &Setpoint { movement, level })
             .step(&mut (), &Estimate::default())
             .unwrap()
@@ -151,7 +153,7 @@ mod tests {
 
     #[test]
     fn a_pivot_moves_one_wheel_alone() {
-        let duty = |movement| drive(movement, Level::Duty(0.4));
+        let duty = |movement| drive(movement, MovementLevel::Duty(0.4));
         assert_eq!(
             duty(Movement::PivotLeftForward),
             Drive::Duty(Wheels {
@@ -171,14 +173,14 @@ mod tests {
     #[test]
     fn an_arc_to_the_left_has_the_left_wheel_inside() {
         assert_eq!(
-            drive(Movement::ArcLeft, Level::Speed(6.0)),
+            drive(Movement::ArcLeft, MovementLevel::Speed(6.0)),
             Drive::WheelSpeed(Wheels {
                 left: 3.0,
                 right: 6.0
             })
         );
         assert_eq!(
-            drive(Movement::ArcRight, Level::Speed(6.0)),
+            drive(Movement::ArcRight, MovementLevel::Speed(6.0)),
             Drive::WheelSpeed(Wheels {
                 left: 6.0,
                 right: 3.0
@@ -197,8 +199,8 @@ mod tests {
             (Movement::ArcRight, Movement::ArcRightBackward),
         ] {
             let (Drive::Duty(there), Drive::Duty(back)) = (
-                drive(forward, Level::Duty(0.5)),
-                drive(backward, Level::Duty(0.5)),
+                drive(forward, MovementLevel::Duty(0.5)),
+                drive(backward, MovementLevel::Duty(0.5)),
             ) else {
                 panic!("open loop");
             };
@@ -208,7 +210,13 @@ mod tests {
 
     #[test]
     fn stop_releases_whatever_the_level() {
-        assert_eq!(drive(Movement::Stop, Level::Duty(1.0)), Drive::Release);
-        assert_eq!(drive(Movement::Stop, Level::Speed(5.0)), Drive::Release);
+        assert_eq!(
+            drive(Movement::Stop, MovementLevel::Duty(1.0)),
+            Drive::Release
+        );
+        assert_eq!(
+            drive(Movement::Stop, MovementLevel::Speed(5.0)),
+            Drive::Release
+        );
     }
 }

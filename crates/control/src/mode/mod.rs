@@ -24,8 +24,10 @@ mod movement;
 mod reference;
 
 pub use active::{ActiveMode, ModeId};
-pub use description::{Description, Group, Law, MetricGroup, Plot, StateDescription, Takes, Way};
-pub use movement::{Level, Movement};
+pub use description::{
+    Description, Law, MetricGroup, ModePlot, ParamGroup, StateDescription, Takes, Way,
+};
+pub use movement::{Movement, MovementLevel};
 pub use reference::{Reference, ReferenceDescription, ReferenceKind};
 
 use crate::estimate::Estimate;

@@ -54,7 +54,7 @@ impl Movement {
 
 /// Level of a basic movement.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Level {
+pub enum MovementLevel {
     /// Open loop: fraction of full PWM, 0..=1.
     Duty(f32),
     /// Closed loop: wheel speed [rad/s], 0 to [`super::MAX_WHEEL_RAD_S`].

@@ -9,11 +9,11 @@
 
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states, way};
 use super::mission::Watch;
-use super::{Action, Description, Law, MetricGroup, Mode, Plot, Reference, waypoints};
+use super::{Action, Description, Law, MetricGroup, Mode, ModePlot, Reference, waypoints};
 use crate::estimate::Estimate;
 use crate::math::{clamp, sqrt};
 use crate::params::{ParamId, Params};
-use crate::policy::{DECISION_TICKS, Decision, ONE, OUTPUTS, Observation, Shape};
+use crate::policy::{DECISION_TICKS, Decision, NetworkShape, ONE, OUTPUTS, Observation};
 use crate::rig::{Rig, Rigs};
 use crate::types::{Drive, Fault, ServoAngle, Wheels};
 use core::f32::consts::FRAC_PI_2;
@@ -31,7 +31,7 @@ pub const DESCRIPTION: Description = Description {
     rigs: Rigs::of(&[Rig::Final]),
     parameters: &[SPEED_LOOPS, FEEDFORWARD, WHEEL_RAMPS],
     laws: &[LAWS, SPEED],
-    plots: &[Plot::Position, Plot::Wheels, Plot::Distance],
+    plots: &[ModePlot::Position, ModePlot::Wheels, ModePlot::Distance],
     metrics: &[MetricGroup::Journey],
 };
 
@@ -193,7 +193,7 @@ impl State {
     pub(super) fn decide(
         &mut self,
         goal_m: &(f32, f32),
-        shape: &Shape,
+        shape: &NetworkShape,
         read: impl Fn(u16) -> u8,
         observe: impl FnOnce(&(f32, f32)) -> Observation,
     ) {

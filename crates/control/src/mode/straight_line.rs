@@ -17,7 +17,7 @@
 
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, TWIST, WHEEL_RAMPS, states};
 use super::{
-    Action, Description, Group, Law, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference,
+    Action, Description, Law, MAX_WHEEL_RAD_S, MetricGroup, Mode, ModePlot, ParamGroup, Reference,
     ReferenceDescription, ReferenceKind, SetpointError,
 };
 use crate::estimate::Estimate;
@@ -39,17 +39,17 @@ pub const DESCRIPTION: Description = Description {
     takes: None,
     rigs: Rigs::ANY,
     parameters: &[
-        Group::new(
+        ParamGroup::new(
             "straightening",
             &[ParamId::StraightKp, ParamId::StraightOffset],
         ),
-        Group::new("ramp", &[ParamId::StraightAccel, ParamId::StraightDecel]),
+        ParamGroup::new("ramp", &[ParamId::StraightAccel, ParamId::StraightDecel]),
         SPEED_LOOPS,
         FEEDFORWARD,
         WHEEL_RAMPS,
     ],
     laws: &[LAWS, TWIST, SPEED],
-    plots: &[Plot::Wheels, Plot::Heading, Plot::Position],
+    plots: &[ModePlot::Wheels, ModePlot::Heading, ModePlot::Position],
     metrics: &[MetricGroup::Drift],
 };
 

@@ -7,7 +7,9 @@
 //! [`MAX_WHEEL_RAD_S`], both are slowed by the same factor: the arc stays.
 
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states};
-use super::{Action, Description, Law, MAX_WHEEL_RAD_S, Mode, Plot, SetpointError, Takes, within};
+use super::{
+    Action, Description, Law, MAX_WHEEL_RAD_S, Mode, ModePlot, SetpointError, Takes, within,
+};
 use crate::estimate::Estimate;
 use crate::math::abs;
 use crate::odometry::Geometry;
@@ -28,7 +30,7 @@ pub const DESCRIPTION: Description = Description {
     rigs: Rigs::ANY,
     parameters: &[WHEEL_RAMPS, SPEED_LOOPS, FEEDFORWARD],
     laws: &[LAWS, SPEED],
-    plots: &[Plot::Wheels, Plot::Heading, Plot::Pwm],
+    plots: &[ModePlot::Wheels, ModePlot::Heading, ModePlot::Pwm],
     metrics: &[],
 };
 

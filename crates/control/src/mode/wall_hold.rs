@@ -163,7 +163,7 @@ mod tests {
     use super::*;
     use crate::params::ParamId;
     use crate::rig::Rig;
-    use crate::types::{AgedRange, Drive, Reading, View};
+    use crate::types::{AgedRange, Drive, SonarReading, SonarView};
 
     /// A robot with a pair of sonars on its left; returns the tick's action for a reading of one of them.
     fn step_with(state: &mut State, sonar: SonarId, range_m: f32) -> Result<Action, Fault> {
@@ -177,10 +177,10 @@ mod tests {
                 age_ticks: 0,
             };
         }
-        estimate.reading = Some(Reading {
+        estimate.reading = Some(SonarReading {
             sonar,
             range: Range::Valid(range_m),
-            view: View::default(),
+            view: SonarView::default(),
             servo_rad: 0.0,
         });
         WallHold::new(&params, &()).step(state, &estimate)

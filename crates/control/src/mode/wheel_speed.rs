@@ -10,8 +10,8 @@
 
 use super::description::{FEEDFORWARD, SPEED, SPEED_LOOPS, WHEEL_RAMPS, states};
 use super::{
-    Action, Description, MAX_WHEEL_RAD_S, MetricGroup, Mode, Plot, Reference, ReferenceDescription,
-    ReferenceKind, SetpointError,
+    Action, Description, MAX_WHEEL_RAD_S, MetricGroup, Mode, ModePlot, Reference,
+    ReferenceDescription, ReferenceKind, SetpointError,
 };
 use crate::estimate::Estimate;
 use crate::params::Params;
@@ -32,7 +32,7 @@ pub const DESCRIPTION: Description = Description {
     rigs: Rigs::ANY,
     parameters: &[SPEED_LOOPS, FEEDFORWARD, WHEEL_RAMPS],
     laws: &[SPEED],
-    plots: &[Plot::Wheels, Plot::Pwm],
+    plots: &[ModePlot::Wheels, ModePlot::Pwm],
     metrics: &[MetricGroup::SpeedSteps],
 };
 

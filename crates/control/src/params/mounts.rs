@@ -2,7 +2,7 @@
 
 use super::{ParamId, Params};
 use crate::rig::Rig;
-use crate::types::{SonarId, View};
+use crate::types::{SonarId, SonarView};
 use core::f32::consts::FRAC_PI_2;
 
 impl Params {
@@ -25,7 +25,7 @@ impl Params {
     }
 
     /// The view of a sonar, with the servo at `servo_rad`; `None` where the rig has no such sonar.
-    pub fn view(&self, sonar: SonarId, servo_rad: f32) -> Option<View> {
+    pub fn view(&self, sonar: SonarId, servo_rad: f32) -> Option<SonarView> {
         let ahead = self.get(ParamId::SonarFrontX);
         let beside = self.get(ParamId::SonarSideY);
         let middle = self.get(ParamId::SonarSideX);
@@ -55,7 +55,7 @@ impl Params {
             (Rig::FrontSingle, _) => return None,
             (_, SonarId::Front) => return None,
         };
-        Some(View { x_m, y_m, axis_rad })
+        Some(SonarView { x_m, y_m, axis_rad })
     }
 }
 

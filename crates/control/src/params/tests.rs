@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn every_default_is_within_its_limits_and_every_number_finds_its_parameter() {
     for id in ParamId::ALL {
-        let Limits { min, max, default } = id.limits();
+        let ParamLimits { min, max, default } = id.limits();
         assert!(min <= default && default <= max && min < max, "{id:?}");
         assert_eq!(ParamId::from_number(id as u8), Some(id));
         assert_eq!(Params::default().get(id), default);
@@ -17,7 +17,7 @@ fn every_default_is_within_its_limits_and_every_number_finds_its_parameter() {
 fn a_value_out_of_range_or_not_finite_is_refused_and_changes_nothing() {
     let mut params = Params::default();
     for id in ParamId::ALL {
-        let Limits { min, max, .. } = id.limits();
+        let ParamLimits { min, max, .. } = id.limits();
         assert_eq!(params.set(id, max + 1.0), Err(ParamError::OutOfRange));
         assert_eq!(params.set(id, min - 1.0), Err(ParamError::OutOfRange));
         assert_eq!(params.set(id, f32::NAN), Err(ParamError::NotFinite));
@@ -36,7 +36,7 @@ fn copies_in_the_eeprom_of_robots_stay_valid() {
 #[test]
 fn a_switch_or_a_choice_has_a_name_for_each_whole_value_within_its_limits() {
     for id in ParamId::ALL {
-        let Limits { min, max, default } = id.limits();
+        let ParamLimits { min, max, default } = id.limits();
         let kind = id.kind();
         if kind == ParamKind::Number {
             assert_eq!(kind.name_of(default), None);

@@ -6,7 +6,7 @@ use std::vec::Vec;
 /// Bytes of a network with these inputs (column, centre, factor) and layers of neurons (shift, bias, weights).
 fn bytes(inputs: &[(u8, f32, f32)], layers: &[&[(u8, i32, &[i8])]]) -> Vec<u8> {
     let neurons: Vec<usize> = layers.iter().map(|layer| layer.len()).collect();
-    let shape = Shape::new(inputs.len(), &neurons).unwrap();
+    let shape = NetworkShape::new(inputs.len(), &neurons).unwrap();
     let mut bytes = MAGIC.to_vec();
     bytes.extend(shape.bytes().to_le_bytes());
     bytes.extend([inputs.len() as u8, layers.len() as u8]);
@@ -28,7 +28,7 @@ fn bytes(inputs: &[(u8, f32, f32)], layers: &[&[(u8, i32, &[i8])]]) -> Vec<u8> {
 
 fn decided(bytes: &[u8], observation: &Observation) -> [i8; OUTPUTS] {
     let read = |at: u16| bytes[usize::from(at)];
-    decide(&Shape::read(read).unwrap(), read, observation)
+    decide(&NetworkShape::read(read).unwrap(), read, observation)
 }
 
 /// An observation of which these columns differ from zero.
@@ -89,7 +89,7 @@ fn the_dearest_network_is_done_when_its_decision_is_due() {
     let wide = [(9, 100, &weights[..]); MOST_VALUES];
     let network = bytes(&inputs, &[&wide, &wide, &wide[..OUTPUTS]]);
     let read = |at: u16| network[usize::from(at)];
-    let shape = Shape::read(read).unwrap();
+    let shape = NetworkShape::read(read).unwrap();
     let mut decision = Decision::begin(&shape, read, &seen(&[("goal_ahead_m", 1.0)]));
     let mut ticks = 0;
     while decision.outputs(&shape).is_none() {
@@ -118,7 +118,7 @@ fn a_shape_that_cannot_be_evaluated_is_refused() {
         (4, &[8, 8, 8, 3]),
     ] {
         assert_eq!(
-            Shape::new(inputs, neurons),
+            NetworkShape::new(inputs, neurons),
             Err(NetworkError::Shape),
             "{inputs} {neurons:?}"
         );
@@ -134,10 +134,10 @@ fn bytes_that_are_no_network_are_told_apart() {
     let read_with = |at: usize, value: u8| {
         let mut bytes = whole.clone();
         bytes[at] = value;
-        Shape::read(|at| bytes.get(usize::from(at)).copied().unwrap_or(0xFF))
+        NetworkShape::read(|at| bytes.get(usize::from(at)).copied().unwrap_or(0xFF))
     };
     assert!(read_with(0, MAGIC[0]).is_ok());
-    assert_eq!(Shape::read(|_| 0xFF), Err(NetworkError::NotOne));
+    assert_eq!(NetworkShape::read(|_| 0xFF), Err(NetworkError::NotOne));
     assert_eq!(
         read_with(3, 2),
         Err(NetworkError::NotOne),

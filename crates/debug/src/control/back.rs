@@ -1,18 +1,18 @@
 //! The way back: where the program stood before.
 
-use super::{DataBreakpoint, Debugger, Reason, Step, calls};
+use super::{DataBreakpoint, Debugger, Reason, StepKind, calls};
 use crate::expression;
 use crate::stack::stack;
 use crate::value::Memory;
 use rumbo_emulator::chip::Chip;
-use rumbo_emulator::gdb::World;
+use rumbo_emulator::gdb::DebuggedWorld;
 use std::collections::BTreeSet;
 
-impl<W: World> Debugger<W> {
+impl<W: DebuggedWorld> Debugger<W> {
     /// Goes back: over an instruction, a line, or out to the call.
-    pub fn step_back(&mut self, step: Step) -> Reason {
+    pub fn step_back(&mut self, step: StepKind) -> Reason {
         let found = match step {
-            Step::Instruction => self.history.last_instruction(),
+            StepKind::Instruction => self.history.last_instruction(),
             _ => {
                 let (stops, cfa, inside) = self.lines_back();
                 let symbols = &self.symbols;

@@ -2,7 +2,7 @@
 
 use super::Debugger;
 use crate::expression;
-use rumbo_emulator::gdb::World;
+use rumbo_emulator::gdb::DebuggedWorld;
 use rumbo_emulator::observe::Watchpoint;
 
 /// What a breakpoint is set at, and when it stops the program.
@@ -50,7 +50,7 @@ impl DataBreakpoint {
     }
 }
 
-impl<W: World> Debugger<W> {
+impl<W: DebuggedWorld> Debugger<W> {
     /// Replaces the breakpoints of a group by others.
     pub fn set_breakpoints(&mut self, group: &str, breakpoints: Vec<Breakpoint>) {
         self.breakpoints

@@ -12,17 +12,17 @@ pub use breakpoints::{Breakpoint, DataBreakpoint};
 
 use crate::history::History;
 use crate::stack::{CallFrame, stack};
-use crate::symbols::{Kind, Scope, Symbols};
+use crate::symbols::{Scope, ScopeKind, Symbols};
 use crate::value::Memory;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::decode::Code;
-use rumbo_emulator::gdb::World;
+use rumbo_emulator::gdb::DebuggedWorld;
 use std::collections::BTreeSet;
 
 /// How far a step goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum StepKind {
     /// To the next line, over calls.
     Over,
     /// To the next line, into calls of functions with lines.
@@ -82,7 +82,7 @@ pub struct Debugger<W> {
     logged: Vec<String>,
 }
 
-impl<W: World> Debugger<W> {
+impl<W: DebuggedWorld> Debugger<W> {
     /// The program stands where the world does.
     pub fn new(symbols: Symbols, world: W) -> Self {
         let history = History::new(world);
@@ -191,9 +191,9 @@ impl<W: World> Debugger<W> {
     ///
     /// # Errors
     /// There is nothing that it could go to.
-    pub fn step(&mut self, step: Step) -> Result<Option<Reason>, String> {
-        if step == Step::Instruction
-            || self.symbols.function(self.address()).is_none() && step != Step::Out
+    pub fn step(&mut self, step: StepKind) -> Result<Option<Reason>, String> {
+        if step == StepKind::Instruction
+            || self.symbols.function(self.address()).is_none() && step != StepKind::Out
         {
             let stopped = self.history.step();
             return Ok(Some(self.ended(&stopped).unwrap_or(Reason::Step)));
@@ -233,7 +233,7 @@ impl<W: World> Debugger<W> {
         2 * self.chip().cpu().program_counter()
     }
 
-    fn plan(&self, step: Step) -> Result<Plan, String> {
+    fn plan(&self, step: StepKind) -> Result<Plan, String> {
         let frames = self.symbols.frames(self.chip());
         let Some(frame) = frames.first() else {
             return Err("the program stands nowhere".into());
@@ -249,7 +249,7 @@ impl<W: World> Debugger<W> {
         };
         let own = calls(function, at);
         let line = self.symbols.lines.row(at);
-        let is_own = |row: &crate::symbols::Row| {
+        let is_own = |row: &crate::symbols::LineRow| {
             line.is_some_and(|line| (line.line, line.file) == (row.line, row.file))
         };
         for row in function
@@ -265,18 +265,20 @@ impl<W: World> Debugger<W> {
                 .count();
             let goes = match step {
                 // In this or an outer of the inlined functions.
-                Step::Over => depth == there.len() && !is_own(&row),
-                Step::In => !is_own(&row) || there.len() > own.len(),
-                Step::Out | Step::Instruction => depth == there.len() && there.len() < own.len(),
+                StepKind::Over => depth == there.len() && !is_own(&row),
+                StepKind::In => !is_own(&row) || there.len() > own.len(),
+                StepKind::Out | StepKind::Instruction => {
+                    depth == there.len() && there.len() < own.len()
+                }
             };
             if goes {
                 plan.stops.insert(row.address / 2);
             }
         }
-        if step == Step::In {
+        if step == StepKind::In {
             plan.calls = self.calls_in(function);
         }
-        if step == Step::Out && plan.stops.is_empty() && plan.returns.is_none() {
+        if step == StepKind::Out && plan.stops.is_empty() && plan.returns.is_none() {
             return Err("nothing has called this function: there is no step out of it".into());
         }
         Ok(plan)
@@ -396,6 +398,6 @@ fn calls(function: &Scope, address: u32) -> Vec<&Scope> {
     function
         .chain(address)
         .into_iter()
-        .filter(|scope| scope.kind != Kind::Block)
+        .filter(|scope| scope.kind != ScopeKind::Block)
         .collect()
 }

@@ -3,10 +3,10 @@
 use super::Debugger;
 use crate::expression::{self, Item};
 use crate::spot::Spot;
-use rumbo_emulator::gdb::World;
+use rumbo_emulator::gdb::DebuggedWorld;
 use rumbo_emulator::space::DATA;
 
-impl<W: World> Debugger<W> {
+impl<W: DebuggedWorld> Debugger<W> {
     /// An expression in a frame of the stack, by its number.
     pub(crate) fn evaluate(&self, text: &str, frame: usize) -> Result<Item, String> {
         let stack = self.stack();

@@ -2,12 +2,12 @@
 
 use super::inspect::source;
 use super::message::{Breakpoints, Lines, Place, SetBreakpoints, Source, Wanted};
-use super::{Adapter, Host};
+use super::{Adapter, LaunchHost};
 use crate::control::{Breakpoint, DataBreakpoint};
 use serde_json::{Value, json};
 use std::path::Path;
 
-impl<H: Host> Adapter<H> {
+impl<H: LaunchHost> Adapter<H> {
     pub(super) fn set_breakpoints(&mut self, set: &SetBreakpoints) -> Result<Value, String> {
         let first = self.lines_start_at;
         let name = path(&set.source)?.to_owned();

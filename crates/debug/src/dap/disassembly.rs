@@ -3,7 +3,7 @@
 use super::breakpoints::address;
 use super::inspect::source;
 use super::message::Disassemble;
-use super::{Adapter, Host};
+use super::{Adapter, LaunchHost};
 use rumbo_emulator::decode::is_long;
 use rumbo_emulator::disassemble;
 use serde_json::{Value, json};
@@ -13,7 +13,7 @@ const MOST: usize = 4_096;
 /// Longest instruction [bytes].
 const LONGEST: i64 = 4;
 
-impl<H: Host> Adapter<H> {
+impl<H: LaunchHost> Adapter<H> {
     pub(super) fn disassemble(&mut self, wanted: &Disassemble) -> Result<Value, String> {
         let first = self.lines_start_at;
         let at = address(&wanted.memory_reference)? + wanted.offset;

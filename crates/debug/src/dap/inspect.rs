@@ -1,13 +1,13 @@
 //! What a client sees of a program that stands: frames, scopes, variables, expressions.
 
 use super::message::{Levels, Place};
-use super::{Adapter, Host};
+use super::{Adapter, LaunchHost};
 use crate::expression::{Item, assignment};
 use crate::spot::{Piece, Spot};
 use crate::stack::CallFrame;
 use crate::symbols::{SourceFile, Variable};
 use crate::value::Value as Shown;
-use rumbo_emulator::gdb::World;
+use rumbo_emulator::gdb::DebuggedWorld;
 use rumbo_emulator::status::Status;
 use serde_json::{Value, json};
 
@@ -38,7 +38,7 @@ pub(super) fn source(file: &SourceFile) -> Value {
     }
 }
 
-impl<H: Host> Adapter<H> {
+impl<H: LaunchHost> Adapter<H> {
     pub(super) fn stack_trace(&mut self, levels: &Levels) -> Result<Value, String> {
         let first = self.lines_start_at;
         let debugger = self.debugger()?;

@@ -10,10 +10,10 @@ mod message;
 
 pub use message::Launch;
 
-use crate::control::{Debugger, Reason, Step};
+use crate::control::{Debugger, Reason, StepKind};
 use inspect::Reference;
 use message::{Frames, Initialize, Request, Stepping, framed};
-use rumbo_emulator::gdb::World;
+use rumbo_emulator::gdb::DebuggedWorld;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -24,9 +24,9 @@ const USB: u8 = 0;
 const THREAD: i64 = 1;
 
 /// Who prepares what a client launches.
-pub trait Host {
+pub trait LaunchHost {
     /// The kind of world.
-    type World: World;
+    type World: DebuggedWorld;
 
     /// The program in its world, standing at its start, and notes for the user.
     ///
@@ -41,7 +41,7 @@ pub trait Host {
 }
 
 /// An adapter with its client.
-pub struct Adapter<H: Host> {
+pub struct Adapter<H: LaunchHost> {
     host: H,
     frames: Frames,
     debugger: Option<Debugger<H::World>>,
@@ -62,7 +62,7 @@ pub struct Adapter<H: Host> {
     is_done: bool,
 }
 
-impl<H: Host> Adapter<H> {
+impl<H: LaunchHost> Adapter<H> {
     /// An adapter before the first request.
     pub fn new(host: H) -> Self {
         Adapter {
@@ -321,7 +321,7 @@ impl<H: Host> Adapter<H> {
         let by_instruction = read::<Stepping>(arguments)?.granularity == "instruction";
         let step = |step| {
             if by_instruction {
-                Step::Instruction
+                StepKind::Instruction
             } else {
                 step
             }
@@ -334,11 +334,11 @@ impl<H: Host> Adapter<H> {
             "setExpression" => self.set_expression(&read(arguments)?),
             "evaluate" => self.evaluate(&read(arguments)?),
             "disassemble" => self.disassemble(&read(arguments)?),
-            "next" => self.step(step(Step::Over)),
-            "stepIn" => self.step(step(Step::In)),
-            "stepOut" => self.step(Step::Out),
+            "next" => self.step(step(StepKind::Over)),
+            "stepIn" => self.step(step(StepKind::In)),
+            "stepOut" => self.step(StepKind::Out),
             "stepBack" => {
-                let reason = self.debugger()?.step_back(step(Step::Over));
+                let reason = self.debugger()?.step_back(step(StepKind::Over));
                 self.stop = Some(reason);
                 Ok(Value::Null)
             }
@@ -387,7 +387,7 @@ impl<H: Host> Adapter<H> {
         Ok(Value::Null)
     }
 
-    fn step(&mut self, step: Step) -> Result<Value, String> {
+    fn step(&mut self, step: StepKind) -> Result<Value, String> {
         self.references.clear();
         if let Some(reason) = self.debugger()?.step(step)? {
             self.stop = Some(reason);

@@ -16,7 +16,7 @@ pub struct SourceFile {
 
 /// A line begins at an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Row {
+pub struct LineRow {
     /// Of its first instruction [bytes].
     pub address: u32,
     /// Its file, in [`Lines::files`].
@@ -35,7 +35,7 @@ pub struct Lines {
     /// The files.
     pub files: Vec<SourceFile>,
     /// By address.
-    rows: Vec<Row>,
+    rows: Vec<LineRow>,
 }
 
 impl Lines {
@@ -66,7 +66,7 @@ impl Lines {
                         ColumnType::Column(column) => column.get() as u32,
                     };
                     let line = row.line().map_or(0, |line| line.get() as u32);
-                    sequence.push(Row {
+                    sequence.push(LineRow {
                         address: row.address() as u32,
                         file,
                         line: if row.end_sequence() { 0 } else { line },
@@ -100,14 +100,14 @@ impl Lines {
     }
 
     /// The row that an instruction is of: of several at one address the last.
-    pub fn row(&self, address: u32) -> Option<Row> {
+    pub fn row(&self, address: u32) -> Option<LineRow> {
         let after = self.rows.partition_point(|row| row.address <= address);
         let row = self.rows.get(after.checked_sub(1)?)?;
         (row.line != 0).then_some(*row)
     }
 
     /// Rows in a range of addresses that begin a line: the row before is of another.
-    pub(crate) fn begins(&self, addresses: std::ops::Range<u32>) -> impl Iterator<Item = Row> {
+    pub(crate) fn begins(&self, addresses: std::ops::Range<u32>) -> impl Iterator<Item = LineRow> {
         self.numbers(addresses).filter_map(|at| {
             let row = self.rows[at];
             let before = at.checked_sub(1).map(|before| self.rows[before]);
@@ -122,7 +122,7 @@ impl Lines {
     }
 
     /// The rows that begin in a range of addresses.
-    pub(crate) fn within(&self, addresses: std::ops::Range<u32>) -> &[Row] {
+    pub(crate) fn within(&self, addresses: std::ops::Range<u32>) -> &[LineRow] {
         &self.rows[self.numbers(addresses)]
     }
 
@@ -167,7 +167,7 @@ impl Lines {
     }
 
     /// The rows of a line, or of the next one that has any, by address.
-    pub(crate) fn of_line(&self, file: usize, line: u32) -> Vec<Row> {
+    pub(crate) fn of_line(&self, file: usize, line: u32) -> Vec<LineRow> {
         let in_file = || {
             self.rows
                 .iter()

@@ -7,9 +7,9 @@ mod lines;
 mod scopes;
 mod types;
 
-pub use lines::{Lines, Row, SourceFile};
+pub use lines::{LineRow, Lines, SourceFile};
 pub(crate) use scopes::Variable;
-pub use scopes::{Kind, Scope};
+pub use scopes::{Scope, ScopeKind};
 pub(crate) use types::{Type, TypeId, Types};
 
 use crate::location::Place;
@@ -175,7 +175,7 @@ impl Symbols {
                 .ranges
                 .first()
                 .map_or(function.entry, |range| range.end);
-        let is_inlined = |scope: &&Scope| matches!(scope.kind, Kind::Inlined { .. });
+        let is_inlined = |scope: &&Scope| matches!(scope.kind, ScopeKind::Inlined { .. });
         // Where a function begins, the one before ends.
         let rows = self.lines.within(range).iter().filter(|row| row.line != 0);
         let mut later = rows.skip(1).map(|row| row.address);

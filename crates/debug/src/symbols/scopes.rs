@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// What a scope is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ScopeKind {
     /// A function.
     Function,
     /// A function inlined at a line of a file.
@@ -40,7 +40,7 @@ pub(crate) struct Variable {
 #[derive(Clone, Debug)]
 pub struct Scope {
     /// What it is.
-    pub kind: Kind,
+    pub kind: ScopeKind,
     /// With classes and namespaces; of a block empty.
     pub name: String,
     /// Its first instruction [bytes].
@@ -91,7 +91,7 @@ pub(super) fn read(
         match die.tag() {
             // What the linker left out is at 0.
             constants::DW_TAG_subprogram if die.ranges.iter().any(|range| range.start > 0) => {
-                functions.push(reader.scope(number, Kind::Function));
+                functions.push(reader.scope(number, ScopeKind::Function));
             }
             constants::DW_TAG_variable if is_global(dies, die) => {
                 globals.extend(reader.variable(number, true))
@@ -122,7 +122,7 @@ struct ScopeReader<'a> {
 }
 
 impl ScopeReader<'_> {
-    fn scope(&mut self, number: usize, kind: Kind) -> Scope {
+    fn scope(&mut self, number: usize, kind: ScopeKind) -> Scope {
         let die = &self.dies.all[number];
         let start = die
             .ranges
@@ -132,7 +132,7 @@ impl ScopeReader<'_> {
             .unwrap_or(0);
         let mut scope = Scope {
             kind,
-            name: if kind == Kind::Block {
+            name: if kind == ScopeKind::Block {
                 String::new()
             } else {
                 qualified(self.dies, number)
@@ -156,7 +156,7 @@ impl ScopeReader<'_> {
                     scope.variables.extend(self.variable(*child, false));
                 }
                 constants::DW_TAG_lexical_block if !inner.ranges.is_empty() => {
-                    scope.inner.push(self.scope(*child, Kind::Block));
+                    scope.inner.push(self.scope(*child, ScopeKind::Block));
                 }
                 constants::DW_TAG_inlined_subroutine if !inner.ranges.is_empty() => {
                     let file = inner
@@ -165,7 +165,7 @@ impl ScopeReader<'_> {
                     let line = inner.call_line.unwrap_or(0);
                     scope
                         .inner
-                        .push(self.scope(*child, Kind::Inlined { file, line }));
+                        .push(self.scope(*child, ScopeKind::Inlined { file, line }));
                 }
                 constants::DW_TAG_GNU_call_site | constants::DW_TAG_call_site => {
                     scope.calls.push(self.call(inner))

@@ -82,10 +82,15 @@ impl Types {
         self.known.insert(number, id);
         // What refers to itself on the way finds this.
         self.all.push(Type::Function { returns: None });
+        self.all[id] = self.made(dies, number);
+        Some(id)
+    }
+
+    fn made(&mut self, dies: &Dies, number: usize) -> Type {
         let die = &dies.all[number];
         let name = || die.name.clone().unwrap_or_default();
         let bytes = die.bytes.unwrap_or(0) as usize;
-        let made = match die.tag() {
+        match die.tag() {
             constants::DW_TAG_base_type => Type::Base {
                 name: name(),
                 bytes,
@@ -147,9 +152,7 @@ impl Types {
                 bytes,
                 encoding: constants::DW_ATE_unsigned,
             },
-        };
-        self.all[id] = made;
-        Some(id)
+        }
     }
 
     fn member(&mut self, dies: &Dies, die: &Die) -> Option<Member> {

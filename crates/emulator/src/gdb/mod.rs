@@ -13,7 +13,7 @@ mod target;
 use crate::chip::Chip;
 use crate::cpu::Stopped;
 use gdbstub::stub::{DisconnectReason, GdbStub};
-pub use session::{Progress, Session};
+pub use session::{GdbSession, Progress};
 use std::io;
 use std::net::TcpStream;
 use target::{Debugger, Events};
@@ -39,9 +39,17 @@ pub trait Machine {
 }
 
 /// A chip with its world. A clone is a snapshot, which continues bit for bit the same.
-pub trait World: Machine + Clone {
-    /// Runs like [`Machine::go`], at most to this cycle of the crystal.
-    fn go_to(&mut self, cycle: u64) -> Stopped;
+pub trait DebuggedWorld: Machine + Clone {
+    /// From now on halts at this cycle of the crystal, if any.
+    fn halt_at(&mut self, cycle: Option<u64>);
+
+    /// Runs like [`Machine::go`], at most to this cycle.
+    fn go_to(&mut self, cycle: u64) -> Stopped {
+        self.halt_at(Some(cycle));
+        let stopped = self.go();
+        self.halt_at(None);
+        stopped
+    }
 
     /// Simulated time [us].
     fn now_us(&self) -> u64;

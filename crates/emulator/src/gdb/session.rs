@@ -23,23 +23,23 @@ pub enum Progress {
 type State<M> = GdbStubStateMachine<'static, Debugger<M>, TcpStream>;
 
 /// A machine with a debugger at it.
-pub struct Session<M: Machine + 'static> {
+pub struct GdbSession<M: Machine + 'static> {
     debugger: Debugger<M>,
     /// `None` once the debugger is gone.
     state: Option<State<M>>,
 }
 
-impl<M: Machine> Session<M> {
+impl<M: Machine> GdbSession<M> {
     /// Halts the program until the debugger resumes it.
     ///
     /// # Errors
     /// The connection broke.
-    pub fn new(machine: M, connection: TcpStream) -> io::Result<Session<M>> {
+    pub fn new(machine: M, connection: TcpStream) -> io::Result<GdbSession<M>> {
         let mut debugger = Debugger::new(machine);
         let state = GdbStub::new(connection)
             .run_state_machine(&mut debugger)
             .map_err(|error| io::Error::other(format!("debugger: {error}")))?;
-        Ok(Session {
+        Ok(GdbSession {
             debugger,
             state: Some(state),
         })

@@ -1,7 +1,7 @@
 //! The robots of a seed: one, or several in one world that go on together.
 
 use super::history::{Act, History};
-use super::pilot::{Driver, TRUE};
+use super::pilot::{DrivenBy, TRUE};
 use super::robot::Robot;
 use super::{Life, Made};
 use crate::files::{FileError, Setup};
@@ -22,7 +22,7 @@ impl Group {
     /// A robot of each setup at its start, driven so; `made` is called after each one, and its error ends it.
     pub(super) fn new(
         setups: &[Arc<Setup>],
-        drivers: &[Driver],
+        drivers: &[DrivenBy],
         seed: u64,
         made: Made<'_>,
     ) -> Result<Self, FileError> {

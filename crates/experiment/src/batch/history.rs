@@ -5,7 +5,7 @@
 
 use crate::files::FileError;
 use rumbo_control::{ServoAngle, Wheels};
-use rumbo_wire::{Body, Command, Message, RobotTime, ToRobot};
+use rumbo_wire::{Command, FrameBody, FrameMessage, RobotTime, ToRobot};
 
 /// One thing that was done to a robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -159,7 +159,7 @@ fn take_act(bytes: &mut &[u8]) -> Option<Act> {
         [0] => Act::Advance(u32::from_le_bytes(take(bytes)?)),
         [1] => {
             let frame = take_text(bytes)?;
-            let body = Body::parse(frame.strip_suffix(&[0])?)?;
+            let body = FrameBody::parse(frame.strip_suffix(&[0])?)?;
             match ToRobot::from_body(&body).ok()? {
                 ToRobot::Command { command, .. } => Act::Command(command),
                 _ => return None,

@@ -13,7 +13,7 @@ mod probe;
 mod robot;
 
 pub use group::Group;
-pub use pilot::{Driver, TRUE};
+pub use pilot::{DrivenBy, TRUE};
 pub use probe::{Probe, Pulse};
 pub use robot::Robot;
 pub use rumbo_control::policy::OBSERVED;
@@ -35,7 +35,7 @@ pub type Made<'a> = &'a (dyn Fn() -> Result<(), FileError> + Sync);
 pub struct Batch {
     /// Of each robot of a group, and who commands it.
     setups: Vec<Arc<Setup>>,
-    drivers: Vec<Driver>,
+    drivers: Vec<DrivenBy>,
     /// The world of all robots that are in the same.
     world: OnceLock<Arc<World>>,
     groups: Vec<Group>,
@@ -46,7 +46,7 @@ impl Batch {
     ///
     /// # Errors
     /// The setup's values do not fit together, a calibration failed, or a program takes no commands of a caller.
-    pub fn new(setup: &Setup, driver: Driver, seeds: &[u64]) -> Result<Self, FileError> {
+    pub fn new(setup: &Setup, driver: DrivenBy, seeds: &[u64]) -> Result<Self, FileError> {
         let lives: Vec<Life> = seeds.iter().map(|seed| (*seed, Vec::new())).collect();
         let drivers = vec![driver; setup.robots().len()];
         Self::of_lives(setup, drivers, &lives, &|| Ok(()))
@@ -59,7 +59,7 @@ impl Batch {
     /// As [`Batch::new`], that of `made`, or a history that is none.
     pub fn of_lives(
         setup: &Setup,
-        drivers: Vec<Driver>,
+        drivers: Vec<DrivenBy>,
         lives: &[Life],
         made: Made<'_>,
     ) -> Result<Self, FileError> {

@@ -39,7 +39,7 @@ pub const TRUE: [&str; 20] = [
 
 /// Who commands the robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Driver {
+pub enum DrivenBy {
     /// Its scenario, over the link, as in a run.
     #[default]
     Scenario,
@@ -73,7 +73,7 @@ impl Pilot {
     /// The setup's values do not fit together, its calibration failed, or its program takes no commands of a caller.
     pub(super) fn new(
         setup: &Arc<Setup>,
-        driver: Driver,
+        driver: DrivenBy,
         seed: u64,
     ) -> Result<(Sim, Self), FileError> {
         let drawn = setup.of_seed(seed)?;
@@ -85,7 +85,7 @@ impl Pilot {
                 _ => [0.0; 2],
             },
         });
-        if driver == Driver::Caller {
+        if driver == DrivenBy::Caller {
             let mut sim = drawn.sim(seed)?;
             if !sim.unlink() {
                 return Err(FileError::Setting(format!(

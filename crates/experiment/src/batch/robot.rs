@@ -1,7 +1,7 @@
 //! One robot of a batch: its simulation, and who commands it.
 
 use super::history::{Act, History};
-use super::pilot::{Driver, Pilot, TRUE};
+use super::pilot::{DrivenBy, Pilot, TRUE};
 use super::probe::Probe;
 use crate::files::{FileError, Setup};
 use rumbo_control::policy::Observation;
@@ -31,7 +31,7 @@ impl Robot {
     ///
     /// # Errors
     /// The setup's values do not fit together, its calibration failed, or its program takes no commands of a caller.
-    pub fn new(setup: &Arc<Setup>, driver: Driver, seed: u64) -> Result<Self, FileError> {
+    pub fn new(setup: &Arc<Setup>, driver: DrivenBy, seed: u64) -> Result<Self, FileError> {
         let (sim, pilot) = Pilot::new(setup, driver, seed)?;
         Ok(Self {
             seed,

@@ -181,7 +181,7 @@ pub(super) fn steady(samples: &[Sample], forward: bool) -> Option<Steady> {
 
 /// Duty = kS of wheel and direction + kV speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Feedforward {
+pub struct FittedFeedforward {
     /// Forward, both wheels.
     pub forward: Wheels<Measured>,
     /// Backward, both wheels.
@@ -191,7 +191,7 @@ pub struct Feedforward {
 }
 
 /// The feedforward that explains the steady parts of all legs.
-pub(super) fn feedforward(legs: &[Steady]) -> Result<Feedforward, CalibrateError> {
+pub(super) fn feedforward(legs: &[Steady]) -> Result<FittedFeedforward, CalibrateError> {
     let mut rows: Vec<Row<5>> = Vec::new();
     for leg in legs {
         for (index, side) in SIDES.into_iter().enumerate() {
@@ -225,7 +225,7 @@ pub(super) fn feedforward(legs: &[Steady]) -> Result<Feedforward, CalibrateError
         value: found[index],
         error: (variance * inverse[(index, index)]).sqrt(),
     };
-    Ok(Feedforward {
+    Ok(FittedFeedforward {
         forward: Wheels {
             left: measured(0),
             right: measured(1),

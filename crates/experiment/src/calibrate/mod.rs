@@ -25,8 +25,8 @@ mod station;
 
 pub use calibrator::{Calibrator, Linked, calibrate};
 pub use error::CalibrateError;
-pub use fit::{Feedforward, Measured};
-pub use report::{Row, rows};
+pub use fit::{FittedFeedforward, Measured};
+pub use report::{CalibrationRow, rows};
 pub use rewrite::{is_calibrated, rewrite};
 pub use simulated::{WORLD, calibrate_simulated};
 
@@ -47,7 +47,7 @@ pub struct Calibration {
     /// Duty at which each wheel broke away, forward and backward.
     pub dead_zone: [Wheels<Option<f64>>; 2],
     /// Duty for each speed.
-    pub feedforward: Feedforward,
+    pub feedforward: FittedFeedforward,
     /// How long it took [s].
     pub duration_s: f64,
     /// Distance driven along the wall [m].
@@ -76,7 +76,7 @@ impl Calibration {
 
     /// The parameters to set, within their limits.
     pub fn parameters(&self) -> Vec<(ParamId, f32)> {
-        let Feedforward {
+        let FittedFeedforward {
             forward,
             backward,
             velocity,

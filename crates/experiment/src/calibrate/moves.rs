@@ -3,7 +3,7 @@
 use super::error::CalibrateError;
 use super::sample::Sample;
 use super::station::Station;
-use rumbo_control::mode::{Level, ModeId, Movement};
+use rumbo_control::mode::{ModeId, Movement, MovementLevel};
 use rumbo_control::{SIDES, SonarId, Wheels};
 use rumbo_wire::{Command, Waypoint};
 
@@ -151,7 +151,7 @@ impl Station {
             }
             self.command(Command::Move {
                 movement,
-                level: Level::Duty(duty as f32),
+                level: MovementLevel::Duty(duty as f32),
             })
             .await?;
             if !armed {

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// One quantity.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct CalibrationRow {
     /// Its name, with its unit.
     pub name: String,
     /// The value found.
@@ -20,8 +20,8 @@ pub struct Row {
 }
 
 /// All quantities; `truth` is the simulated robot, where there is one.
-pub fn rows(calibration: &Calibration, truth: Option<&Params>) -> Vec<Row> {
-    let row = |name: &str, found: Measured, truth: Option<f64>| Row {
+pub fn rows(calibration: &Calibration, truth: Option<&Params>) -> Vec<CalibrationRow> {
+    let row = |name: &str, found: Measured, truth: Option<f64>| CalibrationRow {
         name: name.into(),
         found: found.value,
         standard_error: Some(found.error),
@@ -29,52 +29,35 @@ pub fn rows(calibration: &Calibration, truth: Option<&Params>) -> Vec<Row> {
     };
     let radii = truth.map(|params| (params.wheels.left.radius_m, params.wheels.right.radius_m));
     let mean_m = radii.map(|(left_m, right_m)| 0.5 * (left_m + right_m));
+    let Calibration {
+        ratio,
+        base_m,
+        radius_before_m: radius,
+        feedforward,
+        ..
+    } = calibration;
+    let true_ratio = radii.map(|(left_m, right_m)| right_m / left_m);
+    let true_base = truth.zip(mean_m);
+    let true_base = true_base.map(|(params, mean_m)| params.body.base_m * radius.value / mean_m);
     let mut rows = vec![
-        row(
-            "radius, right over left",
-            calibration.ratio,
-            radii.map(|(left_m, right_m)| right_m / left_m),
-        ),
-        row(
-            "base_m (with the mean radius in force)",
-            calibration.base_m,
-            truth.zip(mean_m).map(|(params, mean_m)| {
-                params.body.base_m * calibration.radius_before_m.value / mean_m
-            }),
-        ),
-        row(
-            "mean radius in force, m",
-            calibration.radius_before_m,
-            mean_m,
-        ),
+        row("radius, right over left", *ratio, true_ratio),
+        row("base_m (with the mean radius in force)", *base_m, true_base),
+        row("mean radius in force, m", *radius, mean_m),
     ];
-    rows.extend(
-        calibration
-            .radius_m
-            .map(|sonar| row("mean radius by the front sonar, m", sonar, mean_m)),
-    );
-    let feedforward = &calibration.feedforward;
-    for (name, found) in [
-        (ParamId::StaticLeftForward.name(), feedforward.forward.left),
-        (
-            ParamId::StaticLeftBackward.name(),
-            feedforward.backward.left,
-        ),
-        (
-            ParamId::StaticRightForward.name(),
-            feedforward.forward.right,
-        ),
-        (
-            ParamId::StaticRightBackward.name(),
-            feedforward.backward.right,
-        ),
-        (ParamId::Velocity.name(), feedforward.velocity),
-    ] {
-        rows.push(row(name, found, None));
-    }
+    let by_sonar = calibration.radius_m;
+    rows.extend(by_sonar.map(|sonar| row("mean radius by the front sonar, m", sonar, mean_m)));
+    let [forward, backward] = [&feedforward.forward, &feedforward.backward];
+    let fitted = [
+        (ParamId::StaticLeftForward, forward.left),
+        (ParamId::StaticLeftBackward, backward.left),
+        (ParamId::StaticRightForward, forward.right),
+        (ParamId::StaticRightBackward, backward.right),
+        (ParamId::Velocity, feedforward.velocity),
+    ];
+    rows.extend(fitted.map(|(id, found)| row(id.name(), found, None)));
     for (way, found) in ["forward", "backward"].iter().zip(&calibration.dead_zone) {
         for (side, word) in [(Side::Left, "left"), (Side::Right, "right")] {
-            rows.extend(found[side].map(|duty| Row {
+            rows.extend(found[side].map(|duty| CalibrationRow {
                 name: format!("dead zone, {word} {way}, duty"),
                 found: duty,
                 standard_error: None,

@@ -6,8 +6,8 @@ use super::sample::Sample;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Range, SIDES, Wheels};
 use rumbo_wire::{
-    Command, Decoder, EventKind, FromRobot, GUEST_SESSION, Message, Received, RobotTime, Telemetry,
-    ToRobot,
+    Command, Decoder, EventKind, FrameMessage, FromRobot, GUEST_SESSION, Received, RobotTime,
+    Telemetry, ToRobot,
 };
 
 /// Time between two polls of the link [us].

@@ -6,18 +6,14 @@
 //! after a second in which nothing was in range, looks like free floor: those runs are a separate class
 //! ([`Class::FreeFloor`]). With an image the chip fails too ([`ChipFailure`]).
 
+pub use super::failure::{ChipFailure, Failure};
 use crate::files::{FileError, Library, Overrides, Setup};
 use crate::run::{Run, prepare};
 use rayon::prelude::*;
 use rumbo_control::{Fault, SonarId};
-use rumbo_emulator::devices::{Cause, Input};
-use rumbo_plant::drivetrain::Side;
-use rumbo_sim::Sim;
-use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
+use rumbo_sim::sonar_fault::SonarFault;
 use rumbo_sim::trace::Trace;
-use rumbo_sim::wire_fault::{TimedWireFault, Wire, WireFault};
 use rumbo_wire::{EventKind, FromRobot};
-use std::fmt;
 
 /// Instants per drive.
 pub const INSTANTS: usize = 5;
@@ -44,214 +40,6 @@ pub const RUNS_PER_TOUCH: usize = 500;
 /// One run in this many may touch something faster than [`GENTLE_M_S`]: what a sonar that has just fallen silent did not
 /// show, or what stands beside a turn with an encoder that has just begun to lose most of its edges.
 pub const RUNS_PER_HARD_TOUCH: usize = 5_000;
-/// More friction than any motor has torque [N m].
-const HELD_N_M: f64 = 2.0;
-
-/// What fails.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Failure {
-    /// A sonar.
-    Sonar(SonarId, SonarFault),
-    /// A wire.
-    Wire(Wire, WireFault),
-    /// A wheel is held.
-    Held(Side),
-    /// The chip that the image runs on.
-    Chip(ChipFailure),
-}
-
-/// What fails of the chip.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ChipFailure {
-    /// The button is pressed, or the port of a serial adapter is opened.
-    Reset,
-    /// The supply dips.
-    BrownOut,
-    /// A tick hangs.
-    Hang,
-    /// The EEPROM holds nothing but zeros, and the chip is reset.
-    Forgets,
-}
-
-/// Where a tick of our image can be stopped.
-const IN_EACH_TICK: &str = "rumbo_inputs_latched";
-/// A jump to itself.
-const FOR_EVER: u16 = 0xCFFF;
-
-impl ChipFailure {
-    fn befall(self, sim: &mut Sim) {
-        let Some(mega) = sim.mega_mut() else {
-            return;
-        };
-        let place = mega.firmware().image().function_named(IN_EACH_TICK);
-        let place = place.map(|function| function.address);
-        let chip = mega.chip_mut();
-        let reset = |cause| Input::Reset(cause);
-        match self {
-            Self::Reset => chip.input(chip.cycle(), reset(Cause::External)),
-            Self::BrownOut => chip.input(chip.cycle(), reset(Cause::BrownOut)),
-            Self::Hang => {
-                if let Some(place) = place {
-                    chip.cpu_mut().write_flash(place, FOR_EVER);
-                }
-            }
-            Self::Forgets => {
-                chip.devices_mut().eeprom_mut().fill(0);
-                chip.input(chip.cycle(), reset(Cause::External));
-            }
-        }
-    }
-}
-
-impl fmt::Display for ChipFailure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Reset => "chip: reset",
-            Self::BrownOut => "chip: brown-out",
-            Self::Hang => "chip: a tick that hangs",
-            Self::Forgets => "chip: EEPROM of zeros, and a reset",
-        })
-    }
-}
-
-impl Failure {
-    /// Every failure of the campaign; those of the chip are for images.
-    #[must_use]
-    pub fn all() -> Vec<Self> {
-        let encoder = [
-            WireFault::Low,
-            WireFault::High,
-            WireFault::Losing(0.1),
-            WireFault::Losing(0.5),
-            WireFault::Losing(0.6),
-            WireFault::Losing(0.7),
-            WireFault::Losing(0.8),
-            WireFault::Losing(0.9),
-            WireFault::Losing(0.95),
-            WireFault::Losing(0.98),
-            WireFault::Noisy(20.0),
-            WireFault::Noisy(200.0),
-            WireFault::Noisy(2_000.0),
-        ];
-        let echo = [
-            WireFault::Low,
-            WireFault::High,
-            WireFault::Losing(0.3),
-            WireFault::Noisy(200.0),
-            WireFault::Noisy(2_000.0),
-        ];
-        let sonar = [
-            SonarFault::Cut,
-            SonarFault::Stuck,
-            SonarFault::Clear,
-            SonarFault::Spiking(0.1),
-            SonarFault::Spiking(0.3),
-            SonarFault::Spiking(0.5),
-            SonarFault::Spiking(0.7),
-            SonarFault::Spiking(0.9),
-            SonarFault::Spiking(1.0),
-        ];
-        let wheels = [Side::Left, Side::Right].into_iter().flat_map(|side| {
-            let wires = encoder.map(|fault| Self::Wire(Wire::Encoder(side), fault));
-            wires.into_iter().chain([Self::Held(side)])
-        });
-        let sonars = SonarId::ALL.into_iter().rev().flat_map(|id| {
-            let wires = echo.map(|fault| Self::Wire(Wire::Echo(id), fault));
-            sonar
-                .map(|fault| Self::Sonar(id, fault))
-                .into_iter()
-                .chain(wires)
-        });
-        let chip = [
-            ChipFailure::Reset,
-            ChipFailure::BrownOut,
-            ChipFailure::Hang,
-            ChipFailure::Forgets,
-        ];
-        let chip = chip.into_iter().map(Self::Chip);
-        wheels.chain(sonars).chain(chip).collect()
-    }
-
-    /// Whether the robot carries what fails.
-    fn befalls(self, setup: &Setup) -> bool {
-        let mounted = |id: SonarId| match id {
-            SonarId::Left => setup.rig.left.is_some(),
-            SonarId::Right => setup.rig.right.is_some(),
-            SonarId::Front => setup.rig.front.is_some(),
-        };
-        match self {
-            Self::Sonar(id, _) | Self::Wire(Wire::Echo(id), _) => mounted(id),
-            Self::Wire(Wire::Encoder(_), _) | Self::Held(_) => true,
-            Self::Chip(_) => setup.firmware.is_some(),
-        }
-    }
-
-    /// The same drive, with this failure.
-    fn put_into(self, setup: &mut Setup, at_s: f64) {
-        let scenario = &mut setup.scenario;
-        scenario.sonar_faults.clear();
-        scenario.wire_faults.clear();
-        match self {
-            Self::Sonar(sonar, fault) => {
-                scenario
-                    .sonar_faults
-                    .push(TimedSonarFault { at_s, sonar, fault });
-            }
-            Self::Wire(wire, fault) => {
-                scenario
-                    .wire_faults
-                    .push(TimedWireFault { at_s, wire, fault });
-            }
-            Self::Chip(_) | Self::Held(_) => {}
-        }
-    }
-
-    /// What the scenario does not do: it befalls the drive now.
-    fn befall(self, sim: &mut Sim) {
-        match self {
-            Self::Chip(failure) => failure.befall(sim),
-            Self::Held(side) => sim.hold(side, HELD_N_M),
-            Self::Sonar(..) | Self::Wire(..) => {}
-        }
-    }
-}
-
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sonar = |id: &SonarId| match id {
-            SonarId::Left => "left sonar",
-            SonarId::Right => "right sonar",
-            SonarId::Front => "front sonar",
-        };
-        let percent = |share: &f64| (100.0 * share).round();
-        match self {
-            Self::Sonar(id, SonarFault::Cut) => write!(f, "{}: cut", sonar(id)),
-            Self::Sonar(id, SonarFault::Stuck) => write!(f, "{}: last answer for ever", sonar(id)),
-            Self::Sonar(id, SonarFault::Clear) => {
-                write!(f, "{}: nothing in reach for ever", sonar(id))
-            }
-            Self::Sonar(id, SonarFault::Spiking(share)) => {
-                write!(f, "{}: {} % random", sonar(id), percent(share))
-            }
-            Self::Wire(wire, fault) => {
-                match wire {
-                    Wire::Encoder(Side::Left) => f.write_str("left encoder: ")?,
-                    Wire::Encoder(Side::Right) => f.write_str("right encoder: ")?,
-                    Wire::Echo(id) => write!(f, "{}, echo line: ", sonar(id))?,
-                }
-                match fault {
-                    WireFault::Low => f.write_str("low"),
-                    WireFault::High => f.write_str("high"),
-                    WireFault::Losing(share) => write!(f, "loses {} %", percent(share)),
-                    WireFault::Noisy(rate_hz) => write!(f, "{rate_hz} pulses/s of noise"),
-                }
-            }
-            Self::Held(Side::Left) => f.write_str("left wheel: held"),
-            Self::Held(Side::Right) => f.write_str("right wheel: held"),
-            Self::Chip(failure) => failure.fmt(f),
-        }
-    }
-}
 
 /// Which requirement applies to a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -273,7 +61,7 @@ pub enum Named {
 
 /// The outcome of one drive.
 #[derive(Clone, Debug)]
-pub struct Drive {
+pub struct FaultDrive {
     /// Index into [`DRIVES`].
     pub drive: usize,
     /// Its seed.
@@ -290,7 +78,7 @@ pub struct Drive {
     pub named: Option<(f64, Named)>,
 }
 
-impl Drive {
+impl FaultDrive {
     /// A contact faster than [`GENTLE_M_S`].
     #[must_use]
     pub fn touched_hard(&self) -> bool {
@@ -300,7 +88,7 @@ impl Drive {
 
 /// Summary of the drives in which the robot could detect the failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Verdict {
+pub struct DetectionSummary {
     /// How many there were.
     pub runs: usize,
     /// In how many something was touched.
@@ -309,17 +97,18 @@ pub struct Verdict {
     pub hard: usize,
 }
 
-impl Verdict {
+impl DetectionSummary {
     /// Of these drives, without those of [`Class::FreeFloor`].
     #[must_use]
-    pub fn of(drives: &[Drive]) -> Self {
+    pub fn of(drives: &[FaultDrive]) -> Self {
         let knowable = drives.iter().filter(|drive| drive.class == Class::Knowable);
-        let touches: Vec<&Drive> = knowable.clone().filter(|run| run.touch.is_some()).collect();
-        let count = |of: &dyn Fn(&Drive) -> bool| touches.iter().filter(|run| of(run)).count();
+        let touches: Vec<&FaultDrive> =
+            knowable.clone().filter(|run| run.touch.is_some()).collect();
+        let count = |of: &dyn Fn(&FaultDrive) -> bool| touches.iter().filter(|run| of(run)).count();
         Self {
             runs: knowable.count(),
             touches: touches.len(),
-            hard: count(&Drive::touched_hard),
+            hard: count(&FaultDrive::touched_hard),
         }
     }
 
@@ -353,7 +142,7 @@ pub fn drive_all(
     seeds: std::ops::Range<u64>,
     instants: usize,
     keep: impl Fn(&str, Failure) -> bool + Sync,
-) -> Result<Vec<Drive>, FileError> {
+) -> Result<Vec<FaultDrive>, FileError> {
     let library = Library::new();
     let setups = DRIVES.map(|(name, _)| library.setup(name, overrides));
     let mut jobs = Vec::new();
@@ -361,7 +150,7 @@ pub fn drive_all(
         let setup = setup?;
         jobs.extend(seeds.clone().map(|seed| (drive, setup.clone(), seed)));
     }
-    let drives: Result<Vec<Vec<Drive>>, FileError> = jobs
+    let drives: Result<Vec<Vec<FaultDrive>>, FileError> = jobs
         .into_par_iter()
         .map(|(drive, setup, seed)| {
             let (name, instants_s) = DRIVES[drive];
@@ -372,8 +161,7 @@ pub fn drive_all(
             if failures.is_empty() {
                 return Ok(Vec::new());
             }
-            let own = setup.of_seed(seed)?;
-            let mut own = prepare(&own, seed)?.into_owned();
+            let mut own = prepare(&setup, seed)?.into_owned();
             let mut done = Vec::new();
             for at_s in instants_s.into_iter().take(instants) {
                 for failure in &failures {
@@ -393,7 +181,7 @@ fn one(
     (drive, seed): (usize, u64),
     at_s: f64,
     failure: Failure,
-) -> Result<Drive, FileError> {
+) -> Result<FaultDrive, FileError> {
     let mut run = Run::new(setup, [setup], seed)?;
     let mut named = None;
     let mut end_s = f64::INFINITY;
@@ -436,13 +224,11 @@ fn one(
         read = received.len();
     }
     let trace = run.trace();
-    let touch_s = trace
-        .samples
-        .iter()
-        .find(|sample| sample.touching && sample.t_s >= at_s);
+    let mut samples = trace.samples.iter();
+    let touch = samples.find(|sample| sample.touching && sample.t_s >= at_s);
+    let touch = touch.map(|sample| sample.t_s);
     let class = class(trace, at_s, failure);
-    let touch = touch_s.map(|sample| sample.t_s);
-    Ok(Drive {
+    Ok(FaultDrive {
         drive,
         seed,
         at_s,

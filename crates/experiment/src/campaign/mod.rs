@@ -4,6 +4,7 @@
 //! nothing is touched, and for random worlds the share of goals reached and the length of the paths relative to the
 //! shortest ones. `cargo xtask campaign` prints this for thousands of seeds; a test judges a sample in the same way.
 
+mod failure;
 pub mod faults;
 pub mod moving;
 
@@ -34,7 +35,7 @@ const BLOCKED: f64 = 0.7;
 
 /// A requirement on many runs, and its result.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
+pub struct Requirement {
     /// What is measured.
     pub what: String,
     /// The requirement; empty for figures that are only reported.
@@ -45,7 +46,7 @@ pub struct Finding {
     pub met: bool,
 }
 
-impl Finding {
+impl Requirement {
     fn new(
         what: impl Into<String>,
         required: impl Into<String>,
@@ -68,7 +69,7 @@ impl Finding {
 pub fn campaign(
     seeds: u64,
     only: &[String],
-    mut found: impl FnMut(Finding),
+    mut found: impl FnMut(Requirement),
 ) -> Result<(), FileError> {
     let library = Library::new();
     let names = if only.is_empty() {
@@ -96,16 +97,20 @@ pub fn campaign(
 
 /// Summary of the runs of a scenario.
 #[must_use]
-pub fn judge(setup: &Setup, results: &[RunResult]) -> Vec<Finding> {
+pub fn judge(setup: &Setup, results: &[RunResult]) -> Vec<Requirement> {
     if setup.scenario.mode == ModeId::Policy {
         vec![judge_policy(setup, results)]
     } else if setup.world.random.is_some() {
         let mut findings = vec![judge_limits(setup, results)];
         let metrics: Vec<&Metrics> = results.iter().map(|result| &result.metrics).collect();
-        findings.extend(judge_worlds(&metrics).into_iter().map(|finding| Finding {
-            what: format!("{}: {}", setup.scenario.name, finding.what),
-            ..finding
-        }));
+        findings.extend(
+            judge_worlds(&metrics)
+                .into_iter()
+                .map(|finding| Requirement {
+                    what: format!("{}: {}", setup.scenario.name, finding.what),
+                    ..finding
+                }),
+        );
         findings
     } else {
         vec![judge_limits(setup, results)]
@@ -113,14 +118,14 @@ pub fn judge(setup: &Setup, results: &[RunResult]) -> Vec<Finding> {
 }
 
 /// Share of the goals reached in time, without a hard contact or a fault.
-fn judge_policy(setup: &Setup, results: &[RunResult]) -> Finding {
+fn judge_policy(setup: &Setup, results: &[RunResult]) -> Requirement {
     let value = |result: &RunResult, name: &str| result.metrics.get(name).copied();
     let arrives = |result: &&RunResult| {
         value(result, "reached") == Some(1.0)
             && value(result, "contact_speed_m_s").is_some_and(|fastest| fastest <= CONTACT_M_S)
     };
     let arrived = results.iter().filter(arrives).count();
-    Finding::new(
+    Requirement::new(
         setup.scenario.name.clone(),
         format!(
             "{} reach the goal, no contact above {CONTACT_M_S} m/s",
@@ -132,7 +137,7 @@ fn judge_policy(setup: &Setup, results: &[RunResult]) -> Finding {
 }
 
 /// Limits of the file, and no touch in modes that have no obstacles to look for.
-fn judge_limits(setup: &Setup, results: &[RunResult]) -> Finding {
+fn judge_limits(setup: &Setup, results: &[RunResult]) -> Requirement {
     let passed = results.iter().filter(|result| result.pass).count();
     let touched = results
         .iter()
@@ -157,12 +162,12 @@ fn judge_limits(setup: &Setup, results: &[RunResult]) -> Finding {
         measured.extend(failed.failures.first().map(ToString::to_string));
     }
     let met = passed as f64 >= PASS * results.len() as f64 && !(untouched && touched > 0);
-    Finding::new(setup.scenario.name.clone(), required, measured, met)
+    Requirement::new(setup.scenario.name.clone(), required, measured, met)
 }
 
 /// Summary of runs in random worlds, by their metrics.
 #[must_use]
-pub fn judge_worlds(runs: &[&Metrics]) -> Vec<Finding> {
+pub fn judge_worlds(runs: &[&Metrics]) -> Vec<Requirement> {
     let value = |run: &Metrics, name: &str| run.get(name).copied().unwrap_or(f64::NAN);
     let is = |run: &Metrics, name: &str| value(run, name) == 1.0;
     let part = |of: &[&Metrics], name: &str| of.iter().filter(|run| is(run, name)).count();
@@ -187,34 +192,34 @@ pub fn judge_worlds(runs: &[&Metrics]) -> Vec<Finding> {
     let at_least = |share: f64| format!("at least {}", percent(share));
     let [median, high] = ways(&reachable);
     vec![
-        Finding::new(
+        Requirement::new(
             "worlds that block the straight line",
             at_least(BLOCKED),
             share_of(blocked, runs.len()),
             blocked as f64 >= BLOCKED * runs.len() as f64,
         ),
-        Finding::new(
+        Requirement::new(
             "goals reached of those that can be",
             at_least(REACHED),
             share_of(reached, reachable.len()),
             reached as f64 >= REACHED * reachable.len() as f64,
         ),
-        Finding::new("of the others: given up", "", given_up.to_string(), true),
+        Requirement::new("of the others: given up", "", given_up.to_string(), true),
         median,
         high,
-        Finding::new(
+        Requirement::new(
             "runs that touch something",
             format!("at most {}", percent(CONTACTS)),
             share_of(touched.len(), runs.len()),
             touched.len() as f64 <= CONTACTS * runs.len() as f64,
         ),
-        Finding::new(
+        Requirement::new(
             "fastest touch",
             format!("below {CONTACT_M_S} m/s"),
             format!("{fastest_m_s:.3} m/s"),
             fastest_m_s < CONTACT_M_S,
         ),
-        Finding::new(
+        Requirement::new(
             "unreachable goals given up within 180 s",
             "all",
             format!("{in_time} of {}", walled_in.len()),
@@ -224,7 +229,7 @@ pub fn judge_worlds(runs: &[&Metrics]) -> Vec<Finding> {
 }
 
 /// The way driven over the shortest one, of goals that can be reached but not straight on: median and 95th percentile.
-fn ways(reachable: &[&Metrics]) -> [Finding; 2] {
+fn ways(reachable: &[&Metrics]) -> [Requirement; 2] {
     let blocked = reachable
         .iter()
         .filter(|run| run.get("blocked") == Some(&1.0));
@@ -244,7 +249,7 @@ fn ways(reachable: &[&Metrics]) -> [Finding; 2] {
     .map(|(what, share, most)| {
         let ratio = quantile(&ratios, share);
         let required = format!("at most {most}");
-        Finding::new(what, required, format!("{ratio:.3}"), ratio <= most)
+        Requirement::new(what, required, format!("{ratio:.3}"), ratio <= most)
     })
 }
 

@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum MovingDraw {
     /// A goal 4 m ahead, across the way of the two people of the world `crossing`; the robot sets off at a drawn time.
     Crossing,
     /// A goal 4 m ahead, with two people of drawn places, sizes and speeds.
@@ -20,7 +20,7 @@ pub enum Place {
     Room(usize),
 }
 
-impl Place {
+impl MovingDraw {
     /// Those of the campaign.
     pub const ALL: [Self; 5] = [
         Self::Crossing,
@@ -42,7 +42,7 @@ impl Place {
     }
 }
 
-impl std::fmt::Display for Place {
+impl std::fmt::Display for MovingDraw {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Crossing => f.write_str("crossing"),
@@ -147,7 +147,7 @@ fn room(robots: usize, dice: &mut Dice) -> String {
 
 /// A touch that a robot felt.
 #[derive(Clone, Debug)]
-pub struct Touch {
+pub struct FeltTouch {
     /// The robot's number.
     pub robot: usize,
     /// When it began [s].
@@ -160,7 +160,7 @@ pub struct Touch {
 
 /// What became of a seed's robots.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct MovingOutcome {
     /// The seed.
     pub seed: u64,
     /// How many robots there were.
@@ -170,7 +170,7 @@ pub struct Outcome {
     /// Fastest touch of the run [m/s]; 0 without one.
     pub fastest_m_s: f64,
     /// Touches, in order of robots.
-    pub touches: Vec<Touch>,
+    pub touches: Vec<FeltTouch>,
 }
 
 /// Runs a place with these seeds, on all cores; in order of seeds.
@@ -178,10 +178,10 @@ pub struct Outcome {
 /// # Errors
 /// An arrangement that does not fit together.
 pub fn drive(
-    place: Place,
+    place: MovingDraw,
     seeds: std::ops::Range<u64>,
     overrides: &Overrides,
-) -> Result<Vec<Outcome>, FileError> {
+) -> Result<Vec<MovingOutcome>, FileError> {
     seeds
         .into_par_iter()
         .map(|seed| {
@@ -191,12 +191,12 @@ pub fn drive(
                 library = library.holding(Kind::World, "drawn", &world);
             }
             let result = run::run(&library.setup("moving", overrides)?, seed)?;
-            Ok(Outcome::of(seed, result))
+            Ok(MovingOutcome::of(seed, result))
         })
         .collect()
 }
 
-impl Outcome {
+impl MovingOutcome {
     fn of(seed: u64, result: RunResult) -> Self {
         let fastest_m_s = result.metrics.get("contact_speed_m_s").copied();
         let alone = result.robots.is_empty();
@@ -213,7 +213,7 @@ impl Outcome {
     }
 }
 
-fn touches((robot, result): (usize, &RunResult)) -> Vec<Touch> {
+fn touches((robot, result): (usize, &RunResult)) -> Vec<FeltTouch> {
     let trace = &result.trace;
     let begins = trace.samples.windows(2).filter_map(|pair| match pair {
         [before, now] if now.touching && !before.touching => Some((before, now)),
@@ -232,7 +232,7 @@ fn touches((robot, result): (usize, &RunResult)) -> Vec<Touch> {
                     _ => None,
                 });
             let way_m = (now.x_m - before.x_m).hypot(now.y_m - before.y_m);
-            Touch {
+            FeltTouch {
                 robot,
                 at_s: now.t_s,
                 state: state.unwrap_or_default(),
@@ -248,7 +248,7 @@ mod tests {
 
     #[test]
     fn every_place_can_be_drawn_and_seeds_differ() {
-        for place in Place::ALL {
+        for place in MovingDraw::ALL {
             let drawn = [1, 2].map(|seed| place.draw(seed));
             assert_ne!(drawn[0], drawn[1], "{place}");
             for (scenario, world) in drawn {
@@ -256,7 +256,7 @@ mod tests {
                     .holding(Kind::Scenario, "moving", &scenario)
                     .holding(Kind::World, "drawn", &world.unwrap_or_default());
                 let setup = library.setup("moving", &Overrides::default()).unwrap();
-                let robots = if let Place::Room(robots) = place {
+                let robots = if let MovingDraw::Room(robots) = place {
                     robots
                 } else {
                     1

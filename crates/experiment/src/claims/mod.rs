@@ -35,13 +35,13 @@
 mod read;
 mod steps;
 
-use crate::files::{Bounds, FileError, Library, Overrides, Setup};
+use crate::files::{FileError, Library, MetricBounds, Overrides, Setup};
 use std::path::PathBuf;
-pub use steps::{Broken, Verdict};
+pub use steps::{Broken, TestVerdict};
 
 /// What the program is.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Given {
+pub enum TestProgram {
     /// A sketch that is to be compiled: its path beside the file, or an example's name.
     Sketch(String),
     /// An image.
@@ -54,7 +54,7 @@ pub struct Suite {
     /// The path of its file.
     pub path: String,
     /// The program.
-    pub program: Given,
+    pub program: TestProgram,
     /// What it drives in.
     pub scenario: String,
     /// What of the scenario is replaced.
@@ -71,12 +71,12 @@ pub struct Test {
     /// Draws the robot and its noise.
     pub seed: u64,
     /// In order.
-    pub steps: Vec<Step>,
+    pub steps: Vec<TestStep>,
 }
 
 /// A step of a test, with its line in the file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Step {
+pub struct TestStep {
     /// Where it is.
     pub line: usize,
     act: Act,
@@ -99,7 +99,7 @@ enum Act {
     Apply(String, Option<f64>),
     Level(String, bool, f64),
     Judge(Pulses),
-    Truth(usize, Bounds, f64),
+    Truth(usize, MetricBounds, f64),
     Run(f64),
 }
 
@@ -108,10 +108,10 @@ enum Act {
 struct Pulses {
     pin: String,
     over_s: f64,
-    count: Option<Bounds>,
-    width_us: Option<Bounds>,
-    period_us: Option<Bounds>,
-    duty: Option<Bounds>,
+    count: Option<MetricBounds>,
+    width_us: Option<MetricBounds>,
+    period_us: Option<MetricBounds>,
+    duty: Option<MetricBounds>,
 }
 
 impl Suite {

@@ -1,10 +1,10 @@
 //! Reads a file of tests.
 
-use super::{Act, Given, Port, Pulses, Step, Suite, Test};
+use super::{Act, Port, Pulses, Suite, Test, TestProgram, TestStep};
 use crate::batch::TRUE;
 use crate::files::read::{Allowed, Placed, Source, Table};
 use crate::files::{
-    Bounds, FileError, Library, Overrides, bounded, did_you_mean, near_or_all, read_bounds,
+    FileError, Library, MetricBounds, Overrides, bounded, did_you_mean, near_or_all, read_bounds,
     read_value,
 };
 use rumbo_sim::mega::{ON_PINS, PARTS, USB};
@@ -53,15 +53,15 @@ impl Suite {
         };
         let (sketch, firmware) = (text("sketch"), text("firmware"));
         let program = match (sketch, firmware) {
-            (Some(sketch), None) => Given::Sketch(beside(sketch)),
-            (None, Some(image)) => Given::Image(beside(image).into()),
+            (Some(sketch), None) => TestProgram::Sketch(beside(sketch)),
+            (None, Some(image)) => TestProgram::Image(beside(image).into()),
             (given, _) => {
                 let what = match given {
                     None => "has no program: write sketch = \".\" or firmware = \"image.hex\"",
                     Some(_) => "has two programs: leave sketch or firmware out",
                 };
                 root.complain_here(what);
-                Given::Sketch(String::new())
+                TestProgram::Sketch(String::new())
             }
         };
         let overrides = Overrides {
@@ -109,7 +109,7 @@ fn read_test(table: &Table<'_, '_>, names: &mut BTreeSet<String>) -> Test {
     test
 }
 
-fn read_step(table: &Table<'_, '_>) -> Option<Step> {
+fn read_step(table: &Table<'_, '_>) -> Option<TestStep> {
     let given: Vec<&str> = ACTS.into_iter().filter(|key| table.has(key)).collect();
     let line = table.keys().first().map_or(0, |key| key.line);
     let act = match given[..] {
@@ -128,7 +128,7 @@ fn read_step(table: &Table<'_, '_>) -> Option<Step> {
     if given.len() == 1 {
         table.finish();
     }
-    act.map(|act| Step { line, act })
+    act.map(|act| TestStep { line, act })
 }
 
 fn read_act(table: &Table<'_, '_>, key: &str) -> Option<Act> {
@@ -160,43 +160,46 @@ fn read_act(table: &Table<'_, '_>, key: &str) -> Option<Act> {
             let pin = read_pin(table)?;
             Some(Act::Level(pin, table.flag(key)?.value, within()))
         }
-        "over_s" => {
-            let bounds = |key: &str| table.has(key).then(|| read_bounds(table, key));
-            let judged = Pulses {
-                pin: read_pin(table)?,
-                over_s: table.number(key, OVER)?,
-                count: bounds("pulses"),
-                width_us: bounds("width_us"),
-                period_us: bounds("period_us"),
-                duty: bounds("duty"),
-            };
-            let all = [judged.count, judged.width_us, judged.period_us, judged.duty];
-            if all.iter().all(Option::is_none) {
-                let what = "judges nothing: it needs one of pulses, width_us, period_us, duty";
-                table.complain_here(what);
-            }
-            Some(Act::Judge(judged))
-        }
-        "truth" => {
-            let name = table.required_text(key, "what is true of the robot, e.g. \"x_m\"");
-            let bounds = Bounds {
-                min: table.number("min", Allowed::new(-1e9, 1e9, "")),
-                max: table.number("max", Allowed::new(-1e9, 1e9, "")),
-            };
-            if bounds == Bounds::default() {
-                table.complain_here("has neither min nor max: write e.g. min = 0.5");
-            }
-            let column = TRUE.iter().position(|known| *known == name.value);
-            if column.is_none() && !name.value.is_empty() {
-                let remedy = did_you_mean(&near_or_all(&name.value, TRUE));
-                table.complain(key, name.line, &name.value, &remedy);
-            }
-            // Without a time it is judged as it is.
-            let within_s = table.number("within_s", WITHIN).unwrap_or(0.0);
-            column.map(|column| Act::Truth(column, bounds, within_s))
-        }
+        "over_s" => read_pulses(table, key).map(Act::Judge),
+        "truth" => read_truth(table, key),
         _ => table.number(key, OVER).map(Act::Run),
     }
+}
+
+fn read_pulses(table: &Table<'_, '_>, key: &str) -> Option<Pulses> {
+    let bounds = |key: &str| table.has(key).then(|| read_bounds(table, key));
+    let judged = Pulses {
+        pin: read_pin(table)?,
+        over_s: table.number(key, OVER)?,
+        count: bounds("pulses"),
+        width_us: bounds("width_us"),
+        period_us: bounds("period_us"),
+        duty: bounds("duty"),
+    };
+    let all = [judged.count, judged.width_us, judged.period_us, judged.duty];
+    if all.iter().all(Option::is_none) {
+        table.complain_here("judges nothing: it needs one of pulses, width_us, period_us, duty");
+    }
+    Some(judged)
+}
+
+fn read_truth(table: &Table<'_, '_>, key: &str) -> Option<Act> {
+    let name = table.required_text(key, "what is true of the robot, e.g. \"x_m\"");
+    let bounds = MetricBounds {
+        min: table.number("min", Allowed::new(-1e9, 1e9, "")),
+        max: table.number("max", Allowed::new(-1e9, 1e9, "")),
+    };
+    if bounds == MetricBounds::default() {
+        table.complain_here("has neither min nor max: write e.g. min = 0.5");
+    }
+    let column = TRUE.iter().position(|known| *known == name.value);
+    if column.is_none() && !name.value.is_empty() {
+        let remedy = did_you_mean(&near_or_all(&name.value, TRUE));
+        table.complain(key, name.line, &name.value, &remedy);
+    }
+    // Without a time it is judged as it is.
+    let within_s = table.number("within_s", WITHIN).unwrap_or(0.0);
+    column.map(|column| Act::Truth(column, bounds, within_s))
 }
 
 fn read_pin(table: &Table<'_, '_>) -> Option<String> {

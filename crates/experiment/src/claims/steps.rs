@@ -1,8 +1,8 @@
 //! Does the steps of a test.
 
-use super::{Act, Port, Pulses, Step, Suite, Test};
-use crate::batch::{Driver, Pulse, Robot, TRUE};
-use crate::files::{Bounds, FileError, Setup, takes, unknown};
+use super::{Act, Port, Pulses, Suite, Test, TestStep};
+use crate::batch::{DrivenBy, Pulse, Robot, TRUE};
+use crate::files::{FileError, MetricBounds, Setup, takes, unknown};
 use rumbo_emulator::devices::ports::Pin;
 use rumbo_sim::mega::firmware::Firmware;
 use rumbo_sim::mega::{CONSOLES, ON_PINS, PARTS};
@@ -16,7 +16,7 @@ const PRESSED_S: f64 = 0.2;
 const SHOWN: usize = 300;
 
 /// What came of a test.
-pub struct Verdict {
+pub struct TestVerdict {
     /// How long it took, in simulated time [s].
     pub took_s: f64,
     /// The step that failed, if one did, and the robot as it was then.
@@ -44,7 +44,7 @@ impl Suite {
             )));
         };
         let steps = self.tests.iter().flat_map(|test| &test.steps);
-        for Step { line, act } in steps {
+        for TestStep { line, act } in steps {
             let missing = match act {
                 Act::Apply(pin, _) | Act::Level(pin, ..) | Act::Judge(Pulses { pin, .. }) => {
                     let known: Vec<&str> = firmware.found().collect();
@@ -83,8 +83,8 @@ impl Test {
     ///
     /// # Errors
     /// The setup's values do not fit together.
-    pub fn drive(&self, setup: &Arc<Setup>, recorded: bool) -> Result<Verdict, FileError> {
-        let mut robot = Robot::new(setup, Driver::Scenario, self.seed)?;
+    pub fn drive(&self, setup: &Arc<Setup>, recorded: bool) -> Result<TestVerdict, FileError> {
+        let mut robot = Robot::new(setup, DrivenBy::Scenario, self.seed)?;
         if recorded {
             robot.record()?;
         }
@@ -94,14 +94,14 @@ impl Test {
             read: [0; CONSOLES as usize],
         };
         let mut broken = None;
-        for (number, Step { line, act }) in (1..).zip(&self.steps) {
+        for (number, TestStep { line, act }) in (1..).zip(&self.steps) {
             if let Err(why) = under.step(act) {
                 let line = *line;
                 broken = Some(Broken { number, line, why });
                 break;
             }
         }
-        Ok(Verdict {
+        Ok(TestVerdict {
             took_s: under.now_s(),
             broken: broken.map(|broken| (broken, Box::new(under.robot))),
         })
@@ -284,7 +284,7 @@ impl Under {
 
 /// Whether all values are within bounds, if there are any; the first that is not is named.
 fn within(
-    bounds: Option<Bounds>,
+    bounds: Option<MetricBounds>,
     what: &str,
     values: impl IntoIterator<Item = f64>,
 ) -> Result<(), String> {

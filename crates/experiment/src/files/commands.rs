@@ -28,9 +28,10 @@ use super::parameters;
 use super::read::{Allowed, Source, Table};
 use super::route::{self, GOAL, read_route};
 use super::typed::{self, TimedText, read_typed};
+use super::word::WordError;
 use rumbo_control::mode::{Description, ModeId, Movement, ReferenceKind, Takes};
 use rumbo_control::{Duty, Wheels};
-use rumbo_wire::message::{Command, Level};
+use rumbo_wire::message::{Command, MovementLevel};
 use std::f64::consts::PI;
 
 const DISTANCE: Allowed = Allowed::new(0.02, 2.5, "m");
@@ -201,33 +202,38 @@ fn read_command(
             .map(single)
             .unwrap_or_default(),
         _ => {
-            let known = [
-                &["at_s", "after_reached"][..],
-                &ACTIONS,
-                &COMPANIONS,
-                &route::COMPANIONS,
-                &typed::PORTS.map(|(key, _)| key),
-                &[typed::ENDING, typed::PRESS, typed::VALUE],
-            ]
-            .concat();
-            for key in &known {
-                table.value(key);
-            }
-            // An unknown key is probably the missing action, and is reported anyway.
-            let all_known = table.keys().iter().all(|key| known.contains(&key.value));
-            match given[..] {
-                [] if all_known => table.complain_here(&format!(
-                    "has no action: give one of {}",
-                    ACTIONS.join(", ")
-                )),
-                [] => {}
-                _ => table.complain_here(&format!(
-                    "has more than one action ({}): give each its own [[command]]",
-                    given.join(", ")
-                )),
-            }
+            complain_of_actions(table, &given);
             Vec::new()
         }
+    }
+}
+
+/// Complains of a command without an action, or with several.
+fn complain_of_actions(table: &Table<'_, '_>, given: &[&str]) {
+    let known = [
+        &["at_s", "after_reached"][..],
+        &ACTIONS,
+        &COMPANIONS,
+        &route::COMPANIONS,
+        &typed::PORTS.map(|(key, _)| key),
+        &[typed::ENDING, typed::PRESS, typed::VALUE],
+    ]
+    .concat();
+    for key in &known {
+        table.value(key);
+    }
+    // An unknown key is probably the missing action, and is reported anyway.
+    let all_known = table.keys().iter().all(|key| known.contains(&key.value));
+    match given {
+        [] if all_known => table.complain_here(&format!(
+            "has no action: give one of {}",
+            ACTIONS.join(", ")
+        )),
+        [] => {}
+        _ => table.complain_here(&format!(
+            "has more than one action ({}): give each its own [[command]]",
+            given.join(", ")
+        )),
     }
 }
 
@@ -235,12 +241,8 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut Option<ModeId>) -> O
     if let Some((_, command)) = FLAGS.into_iter().find(|(flag, _)| *flag == key) {
         let flag = table.flag(key)?;
         if !flag.value {
-            table.complain(
-                key,
-                flag.line,
-                "false",
-                "must be true, or leave the command out",
-            );
+            let remedy = "must be true, or leave the command out";
+            table.complain(key, flag.line, "false", remedy);
         }
         if command == Command::Lane {
             needs_mode(table, key, |mode| mode.takes == Some(Takes::Lane), *mode);
@@ -271,32 +273,20 @@ fn read_simple(table: &Table<'_, '_>, key: &str, mode: &mut Option<ModeId>) -> O
         }
         "left_rpm" => {
             needs_mode(table, key, takes(&[ReferenceKind::WheelSpeed]), *mode);
-            let (left, right) = (
-                table.number(key, SPEED),
-                table.required_number("right_rpm", SPEED),
-            );
-            Some(Command::WheelReference(Wheels {
-                left: rad_s(left?),
-                right: rad_s(right),
-            }))
+            let left = table.number(key, SPEED);
+            let right = rad_s(table.required_number("right_rpm", SPEED));
+            let left = rad_s(left?);
+            Some(Command::WheelReference(Wheels { left, right }))
         }
         "parameter" => {
             let name = table.text(key)?;
-            let id = parameters::find(&name.value)
-                .map_err(|remedy| {
-                    table.complain(
-                        key,
-                        name.line,
-                        &format!("{:?}", name.value),
-                        &remedy.to_string(),
-                    )
-                })
-                .ok()?;
+            let given = format!("{:?}", name.value);
+            let unknown =
+                |remedy: WordError| table.complain(key, name.line, &given, &remedy.to_string());
+            let id = parameters::find(&name.value).map_err(unknown).ok()?;
             let value = parameters::required(table, "value", id)?;
-            Some(Command::SetParam {
-                id: id as u8,
-                value,
-            })
+            let id = id as u8;
+            Some(Command::SetParam { id, value })
         }
         _ => None,
     }
@@ -343,8 +333,8 @@ fn read_move(table: &Table<'_, '_>, at_s: f64, duration_s: f64) -> Vec<TimedComm
         return read_ramp(table, at_s, duration_s, movement, duty.unwrap_or(0.0));
     }
     let level = match speed_rpm {
-        Some(rpm) => Level::Speed(rad_s(rpm)),
-        None => Level::Duty(duty.unwrap_or(0.0) as f32),
+        Some(rpm) => MovementLevel::Speed(rad_s(rpm)),
+        None => MovementLevel::Duty(duty.unwrap_or(0.0) as f32),
     };
     vec![TimedCommand {
         at_s,
@@ -375,7 +365,7 @@ fn read_ramp(
     (0..=steps as u32)
         .map(|step| {
             let part = f64::from(step) / steps.max(1.0);
-            let level = Level::Duty(((first + part * (last - first)) / full) as f32);
+            let level = MovementLevel::Duty(((first + part * (last - first)) / full) as f32);
             TimedCommand {
                 at_s: at_s + part * ramp_s,
                 command: Command::Move { movement, level },

@@ -5,7 +5,7 @@ use std::{fmt, io};
 
 /// One problem in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
+pub struct FileProblem {
     /// The file, as the user names it.
     pub file: String,
     /// Line, from 1; 0 for the file as a whole.
@@ -14,7 +14,7 @@ pub struct Problem {
     pub text: String,
 }
 
-impl fmt::Display for Problem {
+impl fmt::Display for FileProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.line {
             0 => write!(f, "{}: {}", self.file, self.text),
@@ -47,7 +47,7 @@ pub enum FileError {
         wanted: &'static str,
     },
     /// The file was read and is wrong; at least one problem, in the order of lines.
-    Invalid(Vec<Problem>),
+    Invalid(Vec<FileProblem>),
     /// A value given from outside the file, such as `--param`, is wrong.
     Setting(String),
 }

@@ -6,7 +6,7 @@ use rumbo_control::mode::ModeId;
 use rumbo_control::rig::Rigs;
 use rumbo_emulator::image::{Image, ImageError};
 use rumbo_sim::NETWORK_AT;
-use rumbo_sim::mega::firmware::{Firmware, Language, Opening, opening};
+use rumbo_sim::mega::firmware::{Firmware, LinkLanguage, Opening, opening};
 use rumbo_sim::mega::pins::link_usart;
 use rumbo_sim::wiring::Wiring;
 use std::io;
@@ -84,7 +84,7 @@ pub fn beside(firmware: Firmware, policy: Option<&PolicyFile>) -> Result<Firmwar
         let (name, policy) = (firmware.name(), &policy.name);
         FileError::Setting(format!("firmware {name}: takes no policy {policy}: {why}"))
     };
-    if firmware.language() != Language::Frames {
+    if firmware.language() != LinkLanguage::Frames {
         return Err(wrong("it is not Rumbo's own; leave the policy out"));
     }
     let placed = firmware.image().clone().with(NETWORK_AT, &policy.bytes);
@@ -134,7 +134,7 @@ fn default_wiring(opening: Opening, robot: &RobotFile, scenario: &ScenarioFile) 
         false => "modes_2_to_4",
     };
     let name = match (opening.language, scenario.rig.as_str(), scenario.mode) {
-        (Language::Frames, ..) => "final",
+        (LinkLanguage::Frames, ..) => "final",
         (_, "front_single", ModeId::FrontDistance) => "mode_1",
         (_, "front_pair", _) => of_pair("mode_2"),
         (_, "side_pair_left" | "side_pair_right", _) => of_pair("modes_3_and_4"),

@@ -1,7 +1,7 @@
 //! Whether a scenario, its world and its robot's rig fit together.
 
 use super::error::FileError;
-use super::{Port, ScenarioFile, TimedText, WorldFile};
+use super::{ScenarioFile, TimedText, TypedPort, WorldFile};
 use rumbo_control::SonarId;
 use rumbo_plant::plant::Mounts;
 use rumbo_sim::wire_fault::Wire;
@@ -26,7 +26,7 @@ pub(super) fn has_its_parts(
     parts: &[Part],
 ) -> Result<(), FileError> {
     let worked = || parts.iter().filter(|part| part.kind.is_worked());
-    let asked = texts.iter().filter(|timed| timed.port == Port::Parts);
+    let asked = texts.iter().filter(|timed| timed.port == TypedPort::Parts);
     let mut asked = asked.filter_map(|timed| timed.text.split_once('='));
     let missing = asked.find_map(|(name, value)| {
         let Some(part) = worked().find(|part| part.name == name) else {

@@ -17,7 +17,7 @@ use super::parts::is_free;
 use super::pin::read_pin;
 use super::read::{Allowed, Table};
 use super::value::PLACE;
-use rumbo_sim::floor::{Line, LineSensor, Reading, USUAL_V};
+use rumbo_sim::floor::{DarkLine, FloorReading, LineSensor, USUAL_V};
 use rumbo_sim::wiring::Wiring;
 
 /// Most lines of a world, and corners of one.
@@ -32,12 +32,12 @@ const SUPPLY: Allowed = Allowed::new(0.0, 5.0, "V");
 const TAPE_M: f64 = 0.019;
 
 /// The lines of a world.
-pub(super) fn read_lines(root: &Table<'_, '_>) -> Vec<Line> {
+pub(super) fn read_lines(root: &Table<'_, '_>) -> Vec<DarkLine> {
     let tables = root.tables("line", MOST_LINES);
     tables.iter().map(read_line).collect()
 }
 
-fn read_line(table: &Table<'_, '_>) -> Line {
+fn read_line(table: &Table<'_, '_>) -> DarkLine {
     let mut points_m = Vec::new();
     let what = "a list of points [x, y] in m, at least two";
     table.require("points_m", what);
@@ -70,7 +70,7 @@ fn read_line(table: &Table<'_, '_>) -> Line {
         points_m.extend(points_m.first().copied());
     }
     table.finish();
-    Line { points_m, width_m }
+    DarkLine { points_m, width_m }
 }
 
 /// Whether a key says `"high"`, not `"low"`.
@@ -96,7 +96,7 @@ pub(super) fn read_mounted(table: &Table<'_, '_>, wiring: &Wiring) -> (bool, Opt
 }
 
 /// What a sensor gives.
-fn read_reading(table: &Table<'_, '_>, analogue: bool) -> Reading {
+fn read_reading(table: &Table<'_, '_>, analogue: bool) -> FloorReading {
     let mut volts = USUAL_V;
     for (key, volts) in ["light_v", "dark_v"].into_iter().zip(&mut volts) {
         let Some(number) = table.placed_number(key, SUPPLY) else {
@@ -116,11 +116,11 @@ fn read_reading(table: &Table<'_, '_>, analogue: bool) -> Reading {
                 "true",
                 "or analogue = true: a sensor gives a time or a voltage",
             );
-            Reading::Discharge
+            FloorReading::Discharge
         }
-        (Some(_), false) => Reading::Discharge,
-        (None, true) => Reading::Volts(volts),
-        (None, false) => Reading::Level,
+        (Some(_), false) => FloorReading::Discharge,
+        (None, true) => FloorReading::Volts(volts),
+        (None, false) => FloorReading::Level,
     }
 }
 

@@ -5,6 +5,7 @@
 //! problem, with file, line, key, value and what is allowed. Angles are degrees and speeds rpm in the files, radians
 //! and rad/s in the result.
 
+mod assemble;
 pub mod bounded;
 pub mod commands;
 mod error;
@@ -37,7 +38,7 @@ mod world;
 
 pub use commands::TimedCommand;
 pub(crate) use error::did_you_mean;
-pub use error::{FileError, Problem};
+pub use error::{FileError, FileProblem};
 pub(crate) use fit::takes;
 pub(crate) use kept::Calibrated;
 pub use kept::Calibrations;
@@ -49,10 +50,10 @@ pub use near::unknown;
 pub use policy::PolicyFile;
 pub use robot::{FirmwareCaps, RobotFile};
 pub(crate) use scenario::read_bounds;
-pub use scenario::{Bounds, Member, NativeProgram, ScenarioFile, Spread, Start};
+pub use scenario::{Member, MetricBounds, NativeProgram, ScenarioFile, SeedSpread, StartPose};
 pub use setup::{Overrides, Setup, goal_seen_from};
 pub use start::fleet_around;
 pub(crate) use typed::read_value;
-pub use typed::{Port, TimedText, check_line, placed, pressed};
+pub use typed::{TimedText, TypedPort, check_line, placed, pressed};
 pub use word::WordError;
 pub use world::{Arena, WorldFile};

@@ -19,7 +19,7 @@
 use super::read::{Allowed, Table};
 use super::value::{ANGLE, PLACE, SIDE, shown};
 use rumbo_plant::contact::Pose;
-use rumbo_plant::moving::{Body, Course, Repeat, Route, Waypoint};
+use rumbo_plant::moving::{Body, Course, MoverRepeat, MoverRoute, TimedWaypoint};
 use rumbo_plant::world::{Point, ShapeError};
 
 /// Movers of a world; each costs every sonar and every step near it.
@@ -39,7 +39,7 @@ pub struct Mover {
     /// Corners in its own frame, counter-clockwise, in m.
     pub corners_m: Vec<Point>,
     /// Where it goes.
-    pub route: Route,
+    pub route: MoverRoute,
     /// It turns about a hinge, which may be in a wall.
     pub is_door: bool,
 }
@@ -76,10 +76,10 @@ pub(crate) fn read_mover(table: &Table<'_, '_>) -> Option<Mover> {
     let legs = if is_door {
         read_hinge(table)
     } else {
-        read_path(table, repeat == Repeat::Loop)
+        read_path(table, repeat == MoverRepeat::Loop)
     };
     table.finish();
-    let route = Route::new(timed(&legs?, pause_us), repeat, start_us);
+    let route = MoverRoute::new(timed(&legs?, pause_us), repeat, start_us);
     match route {
         Ok(route) => Some(Mover {
             name,
@@ -97,8 +97,8 @@ pub(crate) fn read_mover(table: &Table<'_, '_>) -> Option<Mover> {
 /// Poses, each with the time from the one before \[s\].
 type Legs = Vec<(Pose, f64)>;
 
-fn timed(legs: &Legs, pause_us: u64) -> Vec<Waypoint> {
-    let mut waypoints: Vec<Waypoint> = Vec::new();
+fn timed(legs: &Legs, pause_us: u64) -> Vec<TimedWaypoint> {
+    let mut waypoints: Vec<TimedWaypoint> = Vec::new();
     let mut at_us = 0;
     for &(pose, way_s) in legs {
         // Two waypoints at one instant are none.
@@ -107,10 +107,10 @@ fn timed(legs: &Legs, pause_us: u64) -> Vec<Waypoint> {
         } else {
             micros(way_s).max(1)
         };
-        waypoints.push(Waypoint { at_us, pose });
+        waypoints.push(TimedWaypoint { at_us, pose });
         if pause_us > 0 {
             at_us += pause_us;
-            waypoints.push(Waypoint { at_us, pose });
+            waypoints.push(TimedWaypoint { at_us, pose });
         }
     }
     waypoints
@@ -152,21 +152,21 @@ fn read_outline(table: &Table<'_, '_>, is_door: bool) -> Option<Vec<Point>> {
     Some(corners.to_vec())
 }
 
-fn read_repeat(table: &Table<'_, '_>, is_door: bool) -> Repeat {
+fn read_repeat(table: &Table<'_, '_>, is_door: bool) -> MoverRepeat {
     let Some(repeat) = table.text("repeat") else {
-        return Repeat::Once;
+        return MoverRepeat::Once;
     };
     match repeat.value.as_str() {
-        "once" => Repeat::Once,
-        "loop" if !is_door => Repeat::Loop,
-        "back_and_forth" => Repeat::BackAndForth,
+        "once" => MoverRepeat::Once,
+        "loop" if !is_door => MoverRepeat::Loop,
+        "back_and_forth" => MoverRepeat::BackAndForth,
         other => {
             let remedy = match is_door {
                 true => "write \"once\" or \"back_and_forth\"",
                 false => "write \"once\", \"loop\" or \"back_and_forth\"",
             };
             table.complain("repeat", repeat.line, &format!("{other:?}"), remedy);
-            Repeat::Once
+            MoverRepeat::Once
         }
     }
 }

@@ -20,7 +20,9 @@ use super::error::FileError;
 use super::near::near_or_all;
 use super::read::{Source, Table};
 use super::value::{Allowed, Placed, shown};
-use rumbo_control::policy::{MAGIC, MOST_LAYERS, MOST_SHIFT, MOST_VALUES, OBSERVED, ONE, Shape};
+use rumbo_control::policy::{
+    MAGIC, MOST_LAYERS, MOST_SHIFT, MOST_VALUES, NetworkShape, OBSERVED, ONE,
+};
 use rumbo_wire::crc16;
 use std::fmt::Write;
 use std::sync::Arc;
@@ -47,7 +49,7 @@ pub struct PolicyFile {
     /// The network as it lies beside the robot's program.
     pub bytes: Arc<[u8]>,
     /// How many inputs and neurons it has.
-    pub shape: Shape,
+    pub shape: NetworkShape,
 }
 
 /// The network in integers.
@@ -192,13 +194,13 @@ fn read_neuron(
 }
 
 impl Network {
-    fn shape(&self) -> Option<Shape> {
+    fn shape(&self) -> Option<NetworkShape> {
         let neurons: Vec<usize> = self.layers.iter().map(Vec::len).collect();
-        Shape::new(self.inputs.len(), &neurons).ok()
+        NetworkShape::new(self.inputs.len(), &neurons).ok()
     }
 
     /// As it lies beside the robot's program.
-    fn bytes(&self, shape: &Shape) -> Arc<[u8]> {
+    fn bytes(&self, shape: &NetworkShape) -> Arc<[u8]> {
         let mut bytes = MAGIC.to_vec();
         bytes.extend(shape.bytes().to_le_bytes());
         bytes.extend([self.inputs.len() as u8, self.layers.len() as u8]);

@@ -4,7 +4,7 @@
 //! remaining keys. A missing or wrong value is recorded and the loader continues with a placeholder, so that one pass
 //! reports everything that is wrong; [`Source::verdict`] turns the collection into an error.
 
-use super::error::{FileError, Problem};
+use super::error::{FileError, FileProblem};
 use super::near;
 pub(crate) use super::value::{Allowed, Placed};
 use super::value::{number_of, shown};
@@ -18,7 +18,7 @@ pub(crate) struct Source<'t> {
     text: &'t str,
     /// Where each line of the text ends.
     line_ends: Vec<usize>,
-    problems: RefCell<Vec<Problem>>,
+    problems: RefCell<Vec<FileProblem>>,
 }
 
 impl<'t> Source<'t> {
@@ -44,7 +44,7 @@ impl<'t> Source<'t> {
                 error.message().trim().replace('\n', "; "),
                 self.decimal_comma(line)
             );
-            FileError::Invalid(vec![Problem {
+            FileError::Invalid(vec![FileProblem {
                 file: self.file.clone(),
                 line,
                 text,
@@ -65,7 +65,7 @@ impl<'t> Source<'t> {
 
     /// Records a problem.
     pub(crate) fn complain(&self, line: usize, text: String) {
-        self.problems.borrow_mut().push(Problem {
+        self.problems.borrow_mut().push(FileProblem {
             file: self.file.clone(),
             line,
             text,

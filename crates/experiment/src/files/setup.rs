@@ -1,22 +1,22 @@
 //! A scenario with everything it names, and the overrides of the command line.
 
-use super::error::{FileError, did_you_mean};
-use super::fit::{has_its_goal, has_its_parts, has_its_sonars};
+use super::error::FileError;
 use super::kept::Calibrations;
 use super::near::{near, near_or_all};
+use super::parameters;
 use super::read::Allowed;
-use super::start::{pose, stand_apart, stands_free};
+use super::start::pose;
 use super::typed::TimedText;
 use super::{
-    Library, Member, NativeProgram, PolicyFile, RobotFile, ScenarioFile, Spread, Start, WorldFile,
-    firmware, parameters,
+    Library, Member, NativeProgram, PolicyFile, RobotFile, ScenarioFile, SeedSpread, StartPose,
+    WorldFile,
 };
 use crate::random_world::{Journey, Site, Size};
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::{Mount, Mounts};
 use rumbo_plant::world::Point;
-use rumbo_sim::mega::firmware::{Firmware, Language};
+use rumbo_sim::mega::firmware::{Firmware, LinkLanguage};
 use rumbo_sim::wiring::Divider;
 use rumbo_sim::{Config, Program, Sim};
 use rumbo_wire::Command;
@@ -52,7 +52,7 @@ pub struct Overrides {
 impl Overrides {
     /// Those of a robot of a scenario with several, whose paths are relative to `beside`: it has the scenario's program
     /// unless another is given here.
-    fn of_member(&self, member: &Member, beside: &Library) -> Self {
+    pub(super) fn of_member(&self, member: &Member, beside: &Library) -> Self {
         let mut own = self.clone();
         if self.program == NativeProgram::Rumbo && self.firmware.is_none() {
             own.program = member.program;
@@ -91,137 +91,6 @@ pub struct Setup {
     /// All robots in its world, if there are several. The fields above are then those of the first one, but for the
     /// scenario's name, path, text and limits, which are those of the whole.
     pub fleet: Vec<Setup>,
-}
-
-impl Library {
-    /// Reads a scenario and what it names, with overrides. Paths in the scenario are relative to its own file, paths
-    /// in the overrides to the current folder.
-    ///
-    /// # Errors
-    /// The problems of any of them.
-    pub fn setup(&self, name_or_path: &str, overrides: &Overrides) -> Result<Setup, FileError> {
-        let mut scenario = self.scenario(name_or_path)?;
-        let beside = self.beside(name_or_path);
-        let members = std::mem::take(&mut scenario.fleet);
-        if members.is_empty() {
-            return self.assemble(scenario, &beside, overrides, true);
-        }
-        let fleet = (0..).zip(members).map(|(number, member)| {
-            let own = overrides.of_member(&member, &beside);
-            let setup = self.assemble(member.scenario, &beside, &own, false)?;
-            Ok::<_, FileError>(Setup { number, ..setup })
-        });
-        let fleet = fleet.collect::<Result<Vec<_>, _>>()?;
-        stand_apart(&scenario.name, &fleet)?;
-        let mut first = fleet[0].clone();
-        (first.scenario.name, first.scenario.path) = (scenario.name, scenario.path);
-        (first.scenario.text, first.scenario.limits) = (scenario.text, scenario.limits);
-        Ok(Setup { fleet, ..first })
-    }
-
-    /// Puts a robot's scenario together, whose paths are relative to `beside`. The start of a world is for a robot that
-    /// is alone in it.
-    fn assemble(
-        &self,
-        mut scenario: ScenarioFile,
-        beside: &Self,
-        overrides: &Overrides,
-        alone: bool,
-    ) -> Result<Setup, FileError> {
-        let robot = match &overrides.robot {
-            Some(robot) => self.robot(robot)?,
-            None => beside.robot(&scenario.robot)?,
-        };
-        let world = match &overrides.world {
-            Some(world) => self.world(world)?,
-            None => beside.world(&scenario.world)?,
-        };
-        let policy = match (&overrides.policy, &scenario.policy) {
-            (Some(policy), _) => Some(self.policy(policy)?),
-            (None, Some(policy)) => Some(beside.policy(policy)?),
-            (None, None) => None,
-        };
-        scenario.robot.clone_from(&robot.name);
-        scenario.world.clone_from(&world.name);
-        if let Some(rig) = &overrides.rig {
-            scenario.rig.clone_from(rig);
-        }
-        for (index, (name, value)) in overrides.parameters.iter().enumerate() {
-            if overrides.parameters[..index]
-                .iter()
-                .any(|(other, _)| other == name)
-            {
-                return Err(FileError::Setting(format!(
-                    "parameter {name} is given twice; give it once, or compare both with `rumbo compare`"
-                )));
-            }
-            apply(&mut scenario, name, *value)?;
-        }
-        if let Some(start) = world.start.filter(|_| alone) {
-            scenario.start = start;
-        }
-        stands_free(&scenario, &robot, &world, alone)?;
-        has_its_goal(&scenario, &world)?;
-        let whose = match alone {
-            true => format!("scenario {}", scenario.name),
-            false => format!("robot {}", scenario.name),
-        };
-        // A robot of one's own in a scenario for another has its own sonars.
-        if overrides.rig.is_none()
-            && (scenario.rig.is_empty() || overrides.robot.is_some())
-            && !robot.rigs.contains_key(&scenario.rig)
-            && robot.rigs.len() < 2
-        {
-            scenario.rig = robot.rigs.keys().next().cloned().unwrap_or_default();
-        }
-        let sonarless = scenario.rig.is_empty() && robot.rigs.is_empty();
-        let rig = robot.rigs.get(&scenario.rig).copied();
-        let rig = rig.or(sonarless.then(Mounts::default)).ok_or_else(|| {
-            let near = near_or_all(&scenario.rig, robot.rigs.keys().map(String::as_str));
-            match &overrides.rig {
-                Some(name) => FileError::Unknown {
-                    kind: "rig",
-                    name: name.clone(),
-                    near,
-                },
-                None => FileError::Setting(format!(
-                    "{whose}: robot {} has no rig `{}`; {}",
-                    robot.name,
-                    scenario.rig,
-                    did_you_mean(&near)
-                )),
-            }
-        })?;
-        has_its_sonars(&whose, &scenario, &rig)?;
-        let wiring = overrides.wiring.as_deref();
-        let load = |path: &PathBuf| {
-            let firmware = firmware::load(path, wiring, &robot, &scenario)?;
-            firmware::beside(firmware, policy.as_ref()).map(Arc::new)
-        };
-        let firmware = overrides.firmware.as_ref().map(load).transpose()?;
-        let parts = firmware
-            .as_ref()
-            .map(|firmware| firmware.parts())
-            .unwrap_or_default();
-        has_its_parts(&whose, &scenario.texts, parts)?;
-        has_its_parts(&whose, &overrides.texts, parts)?;
-        let mut texts = [&scenario.texts[..], &overrides.texts].concat();
-        texts.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
-        Ok(Setup {
-            scenario,
-            robot,
-            rig,
-            world,
-            policy,
-            program: overrides.program,
-            firmware,
-            texts,
-            ground_truth: overrides.ground_truth,
-            calibrations: Calibrations::default(),
-            number: 0,
-            fleet: Vec::new(),
-        })
-    }
 }
 
 impl Setup {
@@ -287,7 +156,7 @@ impl Setup {
     }
 
     fn site(&self) -> Site<'_> {
-        let Start { x_m, y_m, .. } = self.scenario.start;
+        let StartPose { x_m, y_m, .. } = self.scenario.start;
         Site {
             from_m: self.world.arena.from_m,
             to_m: self.world.arena.to_m,
@@ -371,6 +240,19 @@ impl Setup {
         })
     }
 
+    /// The control core's parameters before the first command.
+    ///
+    /// # Errors
+    /// As for [`Setup::rig_parameters`].
+    pub(crate) fn params(&self) -> Result<rumbo_control::params::Params, FileError> {
+        let mut params = rumbo_control::params::Params::default();
+        for (id, value) in self.control_parameters()? {
+            // Checked when it was read.
+            let _ = params.set(id, value);
+        }
+        Ok(params)
+    }
+
     /// The network of its policy; empty without one.
     fn network(&self) -> Arc<[u8]> {
         let policy = self.policy.as_ref();
@@ -390,8 +272,8 @@ impl Setup {
     /// The robot file's parameters, drawn for the seed, with the scenario's own values on top.
     pub(crate) fn drawn_params(&self, seed: u64) -> Result<Params, FileError> {
         let mut params = match self.scenario.spread {
-            Spread::Drawn => self.robot.plant.draw(seed, self.number),
-            Spread::None => self.robot.plant,
+            SeedSpread::Drawn => self.robot.plant.draw(seed, self.number),
+            SeedSpread::None => self.robot.plant,
         };
         for (key, value) in &self.scenario.plant {
             params
@@ -404,7 +286,7 @@ impl Setup {
     /// Whether the program takes the control core's parameters: our own does, and an image that speaks its frames.
     pub fn takes_parameters(&self) -> bool {
         match &self.firmware {
-            Some(firmware) => !self.ground_truth && firmware.language() == Language::Frames,
+            Some(firmware) => !self.ground_truth && firmware.language() == LinkLanguage::Frames,
             None => self.program == NativeProgram::Rumbo,
         }
     }
@@ -484,7 +366,7 @@ impl Setup {
 
 /// The command to go to a point of the world, for a robot whose origin is the start.
 #[must_use]
-pub fn goal_seen_from(start: &Start, goal_m: Point) -> Command {
+pub fn goal_seen_from(start: &StartPose, goal_m: Point) -> Command {
     let (x_m, y_m) = (goal_m[0] - start.x_m, goal_m[1] - start.y_m);
     let (sin, cos) = (libm::sin(start.heading_rad), libm::cos(start.heading_rad));
     Command::Goal {
@@ -494,7 +376,7 @@ pub fn goal_seen_from(start: &Start, goal_m: Point) -> Command {
 }
 
 /// Sets one parameter, of the plant or of the control core, whichever has the name.
-fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), FileError> {
+pub(super) fn apply(scenario: &mut ScenarioFile, name: &str, value: f64) -> Result<(), FileError> {
     let wrong = |remedy: &str| FileError::Setting(format!("parameter {name} = {value}: {remedy}"));
     let limits = Params::limits();
     if let Some(limit) = limits.iter().find(|limit| limit.key == name) {

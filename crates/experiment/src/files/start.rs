@@ -1,6 +1,6 @@
 //! Where robots start: free of what is there, and of each other.
 
-use super::{FileError, RobotFile, ScenarioFile, Setup, Start, WorldFile};
+use super::{FileError, RobotFile, ScenarioFile, Setup, StartPose, WorldFile};
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::world::Obstacle;
 
@@ -14,7 +14,7 @@ pub(super) fn stands_free(
     let obstacles = world
         .world()
         .map_err(|error| FileError::Setting(format!("world {}: {error}", world.name)))?;
-    let Start { x_m, y_m, .. } = scenario.start;
+    let StartPose { x_m, y_m, .. } = scenario.start;
     if scenario.wheels_in_air {
         return Ok(());
     }
@@ -69,7 +69,7 @@ pub(super) fn stand_apart(scenario: &str, fleet: &[Setup]) -> Result<(), FileErr
     Ok(())
 }
 
-pub(super) fn pose(start: &Start) -> Pose {
+pub(super) fn pose(start: &StartPose) -> Pose {
     Pose {
         x_m: start.x_m,
         y_m: start.y_m,
@@ -92,7 +92,7 @@ pub fn fleet_around(setup: &Setup, robots: usize) -> Result<String, FileError> {
         world,
         ..
     } = setup;
-    let Start {
+    let StartPose {
         x_m,
         y_m,
         heading_rad,
@@ -116,24 +116,17 @@ pub fn fleet_around(setup: &Setup, robots: usize) -> Result<String, FileError> {
         y_m: y_m + GRID_M * f64::from(row),
         heading_rad,
     });
-    let bodies = obstacles
-        .bodies()
-        .iter()
-        .map(|body| body.outline(&body.at(0).pose));
-    let taken: Vec<Obstacle> = obstacles
-        .obstacles()
-        .iter()
-        .cloned()
-        .chain(bodies)
-        .collect();
+    let bodies = obstacles.bodies().iter();
+    let bodies = bodies.map(|body| body.outline(&body.at(0).pose));
+    let standing = obstacles.obstacles().iter().cloned();
+    let taken: Vec<Obstacle> = standing.chain(bodies).collect();
     let is_free = |at: &Pose| {
         let corners = footprint.corners(at);
-        let inside = corners
-            .iter()
-            .all(|[x_m, y_m]| (left_m..=right_m).contains(x_m) && (low_m..=high_m).contains(y_m));
-        inside
-            && Obstacle::convex(&corners)
-                .is_ok_and(|own| !taken.iter().any(|each| each.overlaps(&own)))
+        let inside = |[x_m, y_m]: &[f64; 2]| {
+            (left_m..=right_m).contains(x_m) && (low_m..=high_m).contains(y_m)
+        };
+        let alone = |own: Obstacle| !taken.iter().any(|each| each.overlaps(&own));
+        corners.iter().all(inside) && Obstacle::convex(&corners).is_ok_and(alone)
     };
     let free: Vec<Pose> = starts.filter(is_free).take(robots).collect();
     if free.len() < robots {

@@ -19,7 +19,7 @@ use rumbo_wire::LineEnding;
 
 /// Where a line of text goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Port {
+pub enum TypedPort {
     /// Over the robot's link.
     #[default]
     Link,
@@ -32,7 +32,8 @@ pub enum Port {
 }
 
 /// The keys of a scenario, each with where its line goes.
-pub(super) const PORTS: [(&str, Port); 2] = [("text", Port::Link), ("usb", Port::Usb)];
+pub(super) const PORTS: [(&str, TypedPort); 2] =
+    [("text", TypedPort::Link), ("usb", TypedPort::Usb)];
 /// The key that works a part, and that for its value: pressed for a moment without one.
 pub(super) const PRESS: &str = "press";
 pub(super) const VALUE: &str = "to";
@@ -53,7 +54,7 @@ pub struct TimedText {
     /// What is sent behind it.
     pub ending: LineEnding,
     /// Where it goes.
-    pub port: Port,
+    pub port: TypedPort,
 }
 
 impl TimedText {
@@ -82,7 +83,7 @@ pub fn pressed(name: &str, value: Option<&str>, at_s: f64) -> Vec<TimedText> {
         at_s,
         text: format!("{name}={value}"),
         ending: LineEnding::None,
-        port: Port::Parts,
+        port: TypedPort::Parts,
     };
     match value {
         Some(value) => vec![put(at_s, value)],
@@ -97,7 +98,7 @@ pub fn placed([x_m, y_m, heading_deg]: [f64; 3], at_s: f64) -> TimedText {
         at_s,
         text: format!("robot={x_m} {y_m} {}", heading_deg.to_radians()),
         ending: LineEnding::None,
-        port: Port::Hand,
+        port: TypedPort::Hand,
     }
 }
 
@@ -147,7 +148,7 @@ pub(super) fn read_press(table: &Table<'_, '_>, at_s: f64) -> Vec<TimedText> {
 pub(super) fn read_typed(
     table: &Table<'_, '_>,
     at_s: f64,
-    (key, port): (&str, Port),
+    (key, port): (&str, TypedPort),
 ) -> Option<TimedText> {
     let text = table.text(key)?;
     if let Err(remedy) = check_line(&text.value) {

@@ -33,11 +33,11 @@ use super::error::FileError;
 use super::line::read_lines;
 use super::mover::{MOST_MOVERS, Mover, read_mover};
 use super::read::{Allowed, Source, Table};
-use super::scenario::{Start, read_start};
+use super::scenario::{StartPose, read_start};
 use super::value::{ANGLE, PLACE, SIDE};
 use crate::random_world::{Journey, RandomWorld};
 use rumbo_plant::world::{Block, Point, ShapeError, Wall, World};
-use rumbo_sim::floor::Line;
+use rumbo_sim::floor::DarkLine;
 
 /// Each ray of a sonar meets all of them.
 const MOST_SHAPES: usize = 1_000;
@@ -62,11 +62,11 @@ pub struct WorldFile {
     /// Boxes, solid.
     pub boxes: Vec<Block>,
     /// Dark lines on the floor.
-    pub lines: Vec<Line>,
+    pub lines: Vec<DarkLine>,
     /// What moves.
     pub movers: Vec<Mover>,
     /// Where the robot starts, in place of the scenario's start.
-    pub start: Option<Start>,
+    pub start: Option<StartPose>,
     /// The goal, for scenarios whose goal is that of the world, in m.
     pub goal_m: Option<Point>,
     /// What every seed adds at random.

@@ -35,7 +35,7 @@ use std::path::{Path, PathBuf};
 
 /// A text in both languages.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Words {
+pub struct Bilingual {
     /// As written in the file.
     pub text: String,
     /// In Spanish, if the file has it.
@@ -48,9 +48,9 @@ pub struct Assignment {
     /// The file's name without `.toml`.
     pub name: String,
     /// One line.
-    pub title: Words,
+    pub title: Bilingual,
     /// What the students read, in Markdown.
-    pub statement: Words,
+    pub statement: Bilingual,
     /// The full mark.
     pub points: f64,
     /// The least that passes.
@@ -66,18 +66,18 @@ pub struct Assignment {
     /// How long a hand-in may take to compile [s].
     pub compile_s: f64,
     /// The tests.
-    pub tests: Vec<Test>,
+    pub tests: Vec<GradedTest>,
     /// The rubric.
     pub criteria: Vec<Criterion>,
 }
 
 /// A scenario with its seeds.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Test {
+pub struct GradedTest {
     /// Its name.
     pub name: String,
     /// One line.
-    pub title: Words,
+    pub title: Bilingual,
     /// What is driven, without a program.
     pub setup: Setup,
     /// Wiring of the Mega; without it, the scenario's own.
@@ -92,7 +92,7 @@ pub struct Test {
     pub hidden: Vec<u64>,
 }
 
-impl Test {
+impl GradedTest {
     /// All its seeds, the public ones first.
     pub fn seeds(&self) -> impl Iterator<Item = u64> {
         self.public.iter().chain(&self.hidden).copied()
@@ -103,9 +103,9 @@ impl Test {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Criterion {
     /// What is asked.
-    pub title: Words,
+    pub title: Bilingual,
     /// Advice where it is missed.
-    pub advice: Words,
+    pub advice: Bilingual,
     /// What is measured.
     pub metric: String,
     /// The test it is measured in, by its place; all of them if none is named.
@@ -164,7 +164,7 @@ impl Assignment {
         let root = source.root(&parsed);
         let spanish = root.table("es");
         let library = Library::new().beside(path);
-        let tests: Vec<Test> = root
+        let tests: Vec<GradedTest> = root
             .tables("scenario", MOST_TESTS)
             .into_iter()
             .filter_map(|table| read_test(&table, &library))
@@ -208,7 +208,7 @@ impl Assignment {
 
     /// When students see a line: as its criterion says, else its test.
     #[must_use]
-    pub fn visibility(&self, line: &super::Line) -> Visibility {
+    pub fn visibility(&self, line: &super::RubricLine) -> Visibility {
         let own = self.criteria[line.criterion].visibility;
         own.or(self.tests[line.test].visibility).unwrap_or_default()
     }
@@ -220,7 +220,7 @@ impl Assignment {
 }
 
 /// A hand-in is compiled once, for the board that all robots of the scenarios have.
-fn check_board(root: &Table<'_, '_>, tests: &[Test]) {
+fn check_board(root: &Table<'_, '_>, tests: &[GradedTest]) {
     let mut boards = tests.iter().map(|test| test.setup.robot.board.name);
     let named = root.text("board");
     let Some(board) = boards.next() else {
@@ -266,7 +266,7 @@ fn read_given(root: &Table<'_, '_>, library: &Library) -> Vec<PathBuf> {
 }
 
 /// A text and its Spanish.
-fn words(table: &Table<'_, '_>, spanish: &Table<'_, '_>, key: &str, needed: bool) -> Words {
+fn words(table: &Table<'_, '_>, spanish: &Table<'_, '_>, key: &str, needed: bool) -> Bilingual {
     let text = match needed {
         true => table.required_text(key, "text in quotes").value,
         false => table
@@ -274,13 +274,13 @@ fn words(table: &Table<'_, '_>, spanish: &Table<'_, '_>, key: &str, needed: bool
             .map(|placed| placed.value)
             .unwrap_or_default(),
     };
-    Words {
+    Bilingual {
         text,
         spanish: spanish.text(key).map(|placed| placed.value),
     }
 }
 
-fn read_test(table: &Table<'_, '_>, library: &Library) -> Option<Test> {
+fn read_test(table: &Table<'_, '_>, library: &Library) -> Option<GradedTest> {
     let spanish = table.table("es");
     let named = table.required_text("scenario", "name of a scenario, or the path of its file");
     let title = words(table, &spanish, "title", false);
@@ -317,10 +317,10 @@ fn read_test(table: &Table<'_, '_>, library: &Library) -> Option<Test> {
         let known: Vec<String> = setup.robot.wirings.keys().cloned().collect();
         table.complain("wiring", *line, value, &did_you_mean(&known));
     }
-    Some(Test {
+    Some(GradedTest {
         name: setup.scenario.name.clone(),
         title: match title.text.is_empty() {
-            true => Words {
+            true => Bilingual {
                 text: setup.scenario.title.clone(),
                 ..title
             },
@@ -357,14 +357,14 @@ fn seeds(table: &Table<'_, '_>, key: &str) -> Vec<u64> {
 }
 
 /// The metrics that a run of a test yields; none if it cannot be run, which its hand-ins will report.
-fn measurable(test: &Test) -> Metrics {
+fn measurable(test: &GradedTest) -> Metrics {
     let seed = test.seeds().next().unwrap_or(1);
     run(&test.setup, seed)
         .map(|result| result.metrics)
         .unwrap_or_default()
 }
 
-fn read_criterion(table: &Table<'_, '_>, tests: &[Test], known: &[Metrics]) -> Criterion {
+fn read_criterion(table: &Table<'_, '_>, tests: &[GradedTest], known: &[Metrics]) -> Criterion {
     let spanish = table.table("es");
     let metric = table.required_text("metric", "name of a metric, e.g. \"step1.settling_s\"");
     let of = table.text("scenario");
@@ -427,8 +427,8 @@ mod tests {
     #[test]
     fn points_fall_from_full_to_none_whichever_is_larger_and_never_earns_none() {
         let criterion = |full, none| Criterion {
-            title: Words::default(),
-            advice: Words::default(),
+            title: Bilingual::default(),
+            advice: Bilingual::default(),
             metric: "m".into(),
             test: None,
             points: 1.0,

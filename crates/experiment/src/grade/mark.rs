@@ -22,7 +22,7 @@ pub struct Mark {
     /// Why nothing of it was driven, a line each.
     pub refused: Vec<String>,
     /// The rubric's lines, for each test that they are about.
-    pub lines: Vec<Line>,
+    pub lines: Vec<RubricLine>,
     /// Points lost for contact.
     pub penalty: f64,
     /// Runs that touched something.
@@ -40,7 +40,7 @@ pub struct Mark {
 
 /// A line of the rubric in one test.
 #[derive(Clone, Debug, Serialize)]
-pub struct Line {
+pub struct RubricLine {
     /// The criterion, by its place.
     pub criterion: usize,
     /// The test, by its place.
@@ -56,7 +56,7 @@ pub struct Line {
     pub of: f64,
 }
 
-impl Line {
+impl RubricLine {
     /// The value in the middle, `None` where most seeds have none. What never happened is worse than any value.
     pub fn median(&self, assignment: &Assignment) -> Option<f64> {
         let criterion = &assignment.criteria[self.criterion];
@@ -162,7 +162,7 @@ impl Mark {
 }
 
 /// The lines of the rubric, their points scaled to the full mark.
-fn lines(assignment: &Assignment, runs: &[GradedRun]) -> Vec<Line> {
+fn lines(assignment: &Assignment, runs: &[GradedRun]) -> Vec<RubricLine> {
     let worth = |test: usize| {
         let tests = assignment.tests.iter();
         let all: f64 = tests.map(|test| test.weight).sum();
@@ -187,7 +187,7 @@ fn lines(assignment: &Assignment, runs: &[GradedRun]) -> Vec<Line> {
             values.resize(if watched { 1 } else { about.seeds().count() }, None);
             let shares: f64 = values.iter().map(|value| criterion.share(*value)).sum();
             let points = of * shares / values.len().max(1) as f64;
-            lines.push(Line {
+            lines.push(RubricLine {
                 criterion: number,
                 test,
                 values,

@@ -15,7 +15,7 @@ mod program;
 mod runs;
 mod visibility;
 
-pub use assignment::{Assignment, Criterion, Test, Words};
-pub use mark::{Line, Mark};
+pub use assignment::{Assignment, Bilingual, Criterion, GradedTest};
+pub use mark::{Mark, RubricLine};
 pub use runs::{HandIn, grade};
 pub use visibility::Visibility;

@@ -9,7 +9,7 @@ use super::step::{DISTANCE_BAND, STEADY_SHARE, sound_scale, steps};
 use crate::files::Setup;
 use rumbo_plant::world::World;
 use rumbo_sim::Sim;
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_sim::trace::{Trace, TruthSample};
 
 /// Band of a step of the distance, beside the one that is a share of the step [m].
 const BAND_M: f64 = 0.02;
@@ -32,7 +32,7 @@ impl Ahead {
         })
     }
 
-    fn middle(&self, sample: &Sample) -> [f64; 2] {
+    fn middle(&self, sample: &TruthSample) -> [f64; 2] {
         let (sin, cos) = sample.heading_rad.sin_cos();
         [
             sample.x_m + cos * self.ahead_m,
@@ -47,12 +47,12 @@ impl Ahead {
             .fold(f64::INFINITY, f64::min)
     }
 
-    fn distance_m(&self, sample: &Sample) -> f64 {
+    fn distance_m(&self, sample: &TruthSample) -> f64 {
         self.distance_from_m(self.middle(sample)) * self.scale
     }
 
     /// Direction to the nearest point, from straight ahead.
-    fn angle_rad(&self, sample: &Sample) -> f64 {
+    fn angle_rad(&self, sample: &TruthSample) -> f64 {
         let [x, y] = self.middle(sample);
         let away_x =
             self.distance_from_m([x + PROBE_M, y]) - self.distance_from_m([x - PROBE_M, y]);

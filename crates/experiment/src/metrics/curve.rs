@@ -2,8 +2,8 @@
 
 use super::Metrics;
 use crate::files::Setup;
-use rumbo_control::mode::Level;
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_control::mode::MovementLevel;
+use rumbo_sim::trace::{Trace, TruthSample};
 use rumbo_wire::Command;
 
 /// Duties at which the curve is read [% of full PWM].
@@ -19,7 +19,7 @@ pub(super) fn curve(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
         .iter()
         .filter_map(|timed| match timed.command {
             Command::Move {
-                level: Level::Duty(duty),
+                level: MovementLevel::Duty(duty),
                 ..
             } => Some(duty),
             _ => None,
@@ -32,7 +32,7 @@ pub(super) fn curve(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
         return;
     }
     for (wheel, side) in [(0, "left"), (1, "right")] {
-        let duty = |sample: &Sample| sample.duty[wheel].abs();
+        let duty = |sample: &TruthSample| sample.duty[wheel].abs();
         let Some(top) = trace.samples.iter().map(duty).max().filter(|top| *top > 0) else {
             continue;
         };
@@ -54,8 +54,9 @@ pub(super) fn curve(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
                 }
             }
         }
-        let still =
-            |sample: &&Sample| duty(sample) > 0 && sample.wheel_rad_s[wheel].abs() < STANDING_RAD_S;
+        let still = |sample: &&TruthSample| {
+            duty(sample) > 0 && sample.wheel_rad_s[wheel].abs() < STANDING_RAD_S
+        };
         if let Some(stop) = down.iter().find(still) {
             metrics.insert(format!("{side}_stop_duty"), f64::from(duty(stop)) / 255.0);
         }

@@ -3,7 +3,7 @@
 use super::Metrics;
 use crate::files::Setup;
 use rumbo_plant::contact::Pose;
-use rumbo_sim::floor::{Line, Nearest, nearest};
+use rumbo_sim::floor::{DarkLine, Nearest, nearest};
 use rumbo_sim::trace::Trace;
 
 /// A robot that drives to its line has this long [s].
@@ -59,10 +59,10 @@ pub(super) fn following(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
 }
 
 /// How far it came along its line, either way.
-fn way_m(lines: &[Line], places: &[Nearest]) -> f64 {
+fn way_m(lines: &[DarkLine], places: &[Nearest]) -> f64 {
     let steps = places.windows(2).map(|pair| {
         let step_m = pair[1].along_m - pair[0].along_m;
-        let lap_m = lines.get(pair[1].line).and_then(Line::lap_m);
+        let lap_m = lines.get(pair[1].line).and_then(DarkLine::lap_m);
         // Over the first point of a closed line.
         let step_m = lap_m.map_or(step_m, |lap_m| step_m - lap_m * (step_m / lap_m).round());
         let is_on = pair.iter().all(|place| place.distance_m <= LOST_M);

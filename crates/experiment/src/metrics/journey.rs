@@ -105,15 +105,15 @@ pub(super) fn journey(setup: &Setup, worst_contact_m_s: f64, trace: &Trace, metr
 mod tests {
     use super::*;
     use crate::files::{Library, Overrides};
-    use rumbo_sim::trace::Sample;
     use rumbo_sim::trace::TimedMessage;
+    use rumbo_sim::trace::TruthSample;
     use rumbo_wire::Event;
 
     /// Metrics of a robot that drives straight from the start to a point of a world, in 10 s, and then says something.
     fn metrics(setup: &Setup, to_m: [f64; 2], says: EventKind) -> Metrics {
         let at = |step: u32| {
             let part = f64::from(step) / 1000.0;
-            Sample {
+            TruthSample {
                 t_s: 0.5 + 10.0 * part,
                 x_m: part * to_m[0],
                 y_m: part * to_m[1],

@@ -3,7 +3,7 @@
 use super::Metrics;
 use crate::files::Setup;
 use rumbo_plant::world::World;
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_sim::trace::{Trace, TruthSample};
 use rumbo_wire::Command;
 use std::f64::consts::FRAC_PI_2;
 
@@ -22,13 +22,13 @@ const OUTLINE_M: f64 = 0.005;
 /// its end.
 struct Straight {
     quarter: f64,
-    begin: Sample,
+    begin: TruthSample,
     end_s: f64,
     way_m: f64,
 }
 
 /// The straights of a run: the robot drives along a multiple of a quarter turn from its first heading until it stands.
-fn straights(samples: &[Sample]) -> Vec<Straight> {
+fn straights(samples: &[TruthSample]) -> Vec<Straight> {
     let mut found: Vec<Straight> = Vec::new();
     let Some(first) = samples.first() else {
         return found;
@@ -94,7 +94,7 @@ fn outline(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
 }
 
 /// Least distance of the body from any box [m].
-fn clearance_m(world: &World, body: &[[f64; 2]], samples: &[Sample]) -> f64 {
+fn clearance_m(world: &World, body: &[[f64; 2]], samples: &[TruthSample]) -> f64 {
     let mut least_m = f64::INFINITY;
     for sample in samples.iter().step_by(5) {
         let (sin, cos) = sample.heading_rad.sin_cos();
@@ -154,9 +154,9 @@ mod tests {
 
     /// A robot that drives each piece, a way [m] along its heading or a turn on the spot [rad], and stands for a moment
     /// after it.
-    fn driven(pieces: &[(f64, f64)]) -> Vec<Sample> {
+    fn driven(pieces: &[(f64, f64)]) -> Vec<TruthSample> {
         const STEPS: i32 = 50;
-        let mut sample = Sample {
+        let mut sample = TruthSample {
             t_s: 0.0,
             x_m: 0.0,
             y_m: 0.0,
@@ -231,7 +231,7 @@ mod tests {
         };
         let world = World::new(&[], &[block]).unwrap();
         let body = outline([-0.07, -0.075], [0.13, 0.075]);
-        let sample = Sample {
+        let sample = TruthSample {
             x_m: 1.0,
             heading_rad: 0.0,
             ..driven(&[])[0]

@@ -3,7 +3,7 @@
 use super::Metrics;
 use crate::files::Setup;
 use rumbo_control::params::ParamId;
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_sim::trace::{Trace, TruthSample};
 use rumbo_wire::{Command, EventKind, FromRobot};
 
 /// A goal may be missed by 4 cm and 2 % of the way to it.
@@ -21,7 +21,7 @@ fn said(trace: &Trace, what: EventKind) -> impl Iterator<Item = f64> + '_ {
         .map(|message| message.t_s)
 }
 
-pub(super) fn way_m(samples: &[Sample]) -> f64 {
+pub(super) fn way_m(samples: &[TruthSample]) -> f64 {
     let steps = samples.windows(2);
     steps
         .map(|two| (two[1].x_m - two[0].x_m).hypot(two[1].y_m - two[0].y_m))
@@ -86,7 +86,7 @@ pub(super) fn mission(setup: &Setup, worst_contact_m_s: f64, trace: &Trace, metr
 }
 
 /// How far from a goal, seen from an origin, the robot is.
-fn error_m(origin: &Sample, goal_m: [f64; 2], end: &Sample) -> f64 {
+fn error_m(origin: &TruthSample, goal_m: [f64; 2], end: &TruthSample) -> f64 {
     let (sin, cos) = origin.heading_rad.sin_cos();
     let x_m = origin.x_m + cos * goal_m[0] - sin * goal_m[1];
     let y_m = origin.y_m + sin * goal_m[0] + cos * goal_m[1];

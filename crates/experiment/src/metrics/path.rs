@@ -2,7 +2,7 @@
 
 use super::Metrics;
 use crate::files::Setup;
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_sim::trace::{Trace, TruthSample};
 use rumbo_wire::Command;
 
 /// Shortest path that has a radius [m]; turning on the spot has none.
@@ -44,7 +44,7 @@ pub(super) fn movement(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
         }
     }
     // The last third of the movement, up to its end: start and stop left out.
-    let moving: Vec<&Sample> = samples
+    let moving: Vec<&TruthSample> = samples
         .iter()
         .filter(|sample| sample.duty != [0; 2])
         .collect();

@@ -6,7 +6,7 @@
 use super::Metrics;
 use crate::files::Setup;
 use rumbo_control::mode::waypoints::{Route, Waypoint};
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_sim::trace::{Trace, TruthSample};
 use rumbo_wire::{Command, EventKind, FromRobot};
 use std::f64::consts::TAU;
 
@@ -26,7 +26,7 @@ impl Frame {
     };
 
     /// Where the robot truly is.
-    fn of(sample: &Sample) -> Self {
+    fn of(sample: &TruthSample) -> Self {
         Self {
             x_m: sample.x_m,
             y_m: sample.y_m,
@@ -197,7 +197,7 @@ pub(super) fn route(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
 fn end(
     asked: &Asked,
     trace: &Trace,
-    samples: &[Sample],
+    samples: &[TruthSample],
     origin: Frame,
     polyline: &[[f64; 2]],
     metrics: &mut Metrics,

@@ -10,7 +10,7 @@ use super::Metrics;
 use crate::files::{Setup, TimedCommand};
 use rumbo_control::SonarId;
 use rumbo_sim::Sim;
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_sim::trace::{Trace, TruthSample};
 use rumbo_wire::Command;
 
 /// Band in which a wheel's speed counts as settled [rad/s]: 3.2 rpm.
@@ -36,7 +36,7 @@ impl Step {
         trace: &Trace,
         wheel: usize,
         band: f64,
-        signal: impl Fn(&Sample) -> f64,
+        signal: impl Fn(&TruthSample) -> f64,
     ) -> Option<Response> {
         let samples = trace.between(self.from_s, self.until_s);
         let start = signal(samples.first()?);
@@ -120,12 +120,12 @@ impl Response {
 /// that rests elsewhere has neither settled nor overshot, nor is it steady. A signal at its reference from the start
 /// does not respond.
 fn response(
-    samples: &[Sample],
+    samples: &[TruthSample],
     from_s: f64,
     start: f64,
     reference: f64,
     band: f64,
-    signal: impl Fn(&Sample) -> f64,
+    signal: impl Fn(&TruthSample) -> f64,
 ) -> Response {
     if !start.is_finite() {
         return Response::NONE;
@@ -193,7 +193,7 @@ pub(super) fn sound_scale(sim: &Sim) -> f64 {
 /// it.
 pub(super) fn distance_steps(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Metrics) {
     let scale = sound_scale(sim);
-    let distance = |sample: &Sample| trace.range_m(sample, SonarId::Front as usize) * scale;
+    let distance = |sample: &TruthSample| trace.range_m(sample, SonarId::Front as usize) * scale;
     for (index, step) in steps(&setup.scenario.commands, setup.scenario.duration_s)
         .iter()
         .enumerate()
@@ -258,10 +258,10 @@ pub(super) fn speed_steps(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
 mod tests {
     use super::*;
 
-    fn samples(signal: impl Fn(f64) -> f64) -> Vec<Sample> {
+    fn samples(signal: impl Fn(f64) -> f64) -> Vec<TruthSample> {
         (1..=400)
             .map(|n| f64::from(n) * 0.01)
-            .map(|t_s| Sample {
+            .map(|t_s| TruthSample {
                 t_s,
                 x_m: 0.0,
                 y_m: 0.0,

@@ -1,7 +1,7 @@
 //! How straight a straight line is: true drift to the side and of the heading, after 3 m and at the end.
 
 use super::Metrics;
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_sim::trace::{Trace, TruthSample};
 
 /// Way after which the drift is judged [m].
 const JUDGED_M: f64 = 3.0;
@@ -14,8 +14,9 @@ pub(super) fn drift(trace: &Trace, metrics: &mut Metrics) {
         return;
     };
     let (sin, cos) = first.heading_rad.sin_cos();
-    let ahead_m = |sample: &Sample| (sample.x_m - first.x_m) * cos + (sample.y_m - first.y_m) * sin;
-    let mut put = |name: &str, sample: &Sample| {
+    let ahead_m =
+        |sample: &TruthSample| (sample.x_m - first.x_m) * cos + (sample.y_m - first.y_m) * sin;
+    let mut put = |name: &str, sample: &TruthSample| {
         let left_m = (sample.y_m - first.y_m) * cos - (sample.x_m - first.x_m) * sin;
         let turned_rad = sample.heading_rad - first.heading_rad;
         metrics.insert(format!("{name}.sideways_m"), left_m.abs());
@@ -31,7 +32,7 @@ pub(super) fn drift(trace: &Trace, metrics: &mut Metrics) {
     put("end", last);
     metrics.insert("forward_m".into(), ahead_m(last));
     // The last third of the drive: start and stop left out.
-    let moving: Vec<&Sample> = trace
+    let moving: Vec<&TruthSample> = trace
         .samples
         .iter()
         .filter(|sample| ahead_m(sample).abs() > MOVED_M && sample.duty != [0; 2])

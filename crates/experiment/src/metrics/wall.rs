@@ -9,7 +9,7 @@ use super::step::{sound_scale, steps};
 use crate::files::Setup;
 use rumbo_plant::world::World;
 use rumbo_sim::Sim;
-use rumbo_sim::trace::{Sample, Trace};
+use rumbo_sim::trace::{Trace, TruthSample};
 use rumbo_wire::Command;
 
 /// Time from arming in which the robot may still gather speed [s].
@@ -43,7 +43,7 @@ impl Beside {
         })
     }
 
-    fn distance_m(&self, sample: &Sample) -> f64 {
+    fn distance_m(&self, sample: &TruthSample) -> f64 {
         let (sin, cos) = sample.heading_rad.sin_cos();
         self.points_m
             .iter()
@@ -100,7 +100,7 @@ pub(super) fn following(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut M
 }
 
 /// The slowest way over the floor in any half second, as a speed.
-fn slowest_m_s(samples: &[Sample], from_s: f64) -> f64 {
+fn slowest_m_s(samples: &[TruthSample], from_s: f64) -> f64 {
     let samples = &samples[samples.partition_point(|sample| sample.t_s < from_s)..];
     let mut way_m = vec![0.0];
     for two in samples.windows(2) {

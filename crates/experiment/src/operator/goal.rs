@@ -3,7 +3,7 @@
 //! A goal counts as reached when the robot comes to rest within [`NEAR_M`] of it and stays there; the metrics give the
 //! actual distance.
 
-use rumbo_plant::plant::Truth;
+use rumbo_plant::plant::GroundTruth;
 
 /// Distance within which a goal counts as reached [m]: the report's 5 cm, and as much again for its odometry.
 const NEAR_M: f64 = 0.10;
@@ -31,7 +31,7 @@ pub(super) struct GoalWatch {
 
 impl GoalWatch {
     /// The robot, now here, is sent to a point of the world.
-    pub(super) fn send(&mut self, at_m: [f64; 2], truth: &Truth) {
+    pub(super) fn send(&mut self, at_m: [f64; 2], truth: &GroundTruth) {
         self.goal = Some(Goal {
             at_m,
             sent_from_m: [truth.pose.x_m, truth.pose.y_m],
@@ -46,7 +46,7 @@ impl GoalWatch {
     }
 
     /// When it came to rest at its goal [us]; returned once.
-    pub(super) fn reached(&mut self, truth: &Truth) -> Option<u64> {
+    pub(super) fn reached(&mut self, truth: &GroundTruth) -> Option<u64> {
         let goal = self.goal.as_mut()?;
         let from_m = |[x_m, y_m]: [f64; 2]| (truth.pose.x_m - x_m).hypot(truth.pose.y_m - y_m);
         goal.left |= from_m(goal.sent_from_m) > LEFT_M;

@@ -12,14 +12,16 @@
 mod goal;
 mod text;
 
-use crate::files::{FileError, Port, Setup};
+use crate::files::{FileError, Setup, TypedPort};
 use crate::note::Note;
 use rumbo_control::mode::ModeId;
 use rumbo_sim::Sim;
 use rumbo_sim::mega::{PARTS, USB};
 use rumbo_sim::trace::TimedMessage;
 use rumbo_wire::text::TextCommand;
-use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
+use rumbo_wire::{
+    Command, Decoder, EventKind, FrameMessage, FromRobot, Received, RobotTime, ToRobot,
+};
 use std::ops::Deref;
 use text::Terminal;
 
@@ -207,7 +209,7 @@ impl<S: Deref<Target = Setup>> Operator<S> {
         {
             self.next_text += 1;
             let to = match timed.port {
-                Port::Hand => {
+                TypedPort::Hand => {
                     if !crate::hand::act(sim, timed.text.as_bytes()) {
                         let odd = "the hand finds no room there, and leaves everything as it is";
                         let odd = format!("at {} s `{}`: {odd}", timed.at_s, timed.text);
@@ -215,9 +217,9 @@ impl<S: Deref<Target = Setup>> Operator<S> {
                     }
                     continue;
                 }
-                Port::Link => None,
-                Port::Usb => Some(USB),
-                Port::Parts => Some(PARTS),
+                TypedPort::Link => None,
+                TypedPort::Usb => Some(USB),
+                TypedPort::Parts => Some(PARTS),
             };
             if let (Some(to), Some(mega)) = (to, sim.mega_mut()) {
                 mega.type_in(to, &timed.bytes());
@@ -225,17 +227,17 @@ impl<S: Deref<Target = Setup>> Operator<S> {
             }
             // An image may have commands of its own.
             let odd = match (timed.port, TextCommand::parse(&timed.text)) {
-                (Port::Usb | Port::Parts, _) => {
+                (TypedPort::Usb | TypedPort::Parts, _) => {
                     Some("without a sketch or an image there is no USB port".into())
                 }
-                (Port::Link, Err(error)) if self.setup.firmware.is_none() => {
+                (TypedPort::Link, Err(error)) if self.setup.firmware.is_none() => {
                     Some(error.to_string())
                 }
-                (Port::Link | Port::Hand, _) => None,
+                (TypedPort::Link | TypedPort::Hand, _) => None,
             };
             let odd = odd.map(|odd: String| format!("at {} s `{}`: {odd}", timed.at_s, timed.text));
             self.notes.extend(odd.map(Note::from));
-            if timed.port == Port::Link {
+            if timed.port == TypedPort::Link {
                 sim.send(&timed.bytes());
             }
         }

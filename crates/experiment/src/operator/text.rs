@@ -7,7 +7,7 @@ use rumbo_plant::contact;
 use rumbo_sim::Sim;
 use rumbo_sim::trace::TimedMessage;
 use rumbo_wire::message::Event;
-use rumbo_wire::text::{self, Row};
+use rumbo_wire::text::{self, TextRow};
 use rumbo_wire::{Command, EventKind, FromRobot, Telemetry};
 
 /// A line longer than this is none.
@@ -134,13 +134,13 @@ impl Terminal {
             }
             let line = std::mem::take(&mut self.line);
             let row = str::from_utf8(&line).ok().map(str::trim);
-            if let Some(Ok(row)) = row.map(Row::parse) {
+            if let Some(Ok(row)) = row.map(TextRow::parse) {
                 match &row {
-                    Row::Mission(row) => {
+                    TextRow::Mission(row) => {
                         self.reported |= row.state == 0 && self.state != 0 && self.goal.is_set();
                         self.state = row.state;
                     }
-                    Row::Waypoints(row) => self.reported |= self.route.passes(row.x_m, row.y_m),
+                    TextRow::Waypoints(row) => self.reported |= self.route.passes(row.x_m, row.y_m),
                     _ => {}
                 }
                 let telemetry = self.telemetry(&row, now_us);
@@ -153,7 +153,7 @@ impl Terminal {
     }
 
     /// A row as a telemetry frame; one without a time was made now.
-    fn telemetry(&mut self, row: &Row, now_us: u64) -> Telemetry {
+    fn telemetry(&mut self, row: &TextRow, now_us: u64) -> Telemetry {
         self.clock_ms = match row.dt_ms() {
             0 => (now_us / 1_000) as u32,
             dt_ms => self.clock_ms.wrapping_add(dt_ms),

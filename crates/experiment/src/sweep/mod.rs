@@ -10,7 +10,7 @@ mod axis;
 mod outcome;
 
 pub use axis::{Axis, AxisError, Values};
-pub use outcome::{Row, Spread, Sweep};
+pub use outcome::{MetricSpread, RunRow, SweepOutcome};
 
 use crate::files::{FileError, Setup};
 use crate::run::{RunResult, run_each};
@@ -40,7 +40,7 @@ pub enum Design {
 
 /// What is run.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct SweepPlan {
     /// The parameters that vary.
     pub axes: Vec<Axis>,
     /// How the points were chosen.
@@ -97,7 +97,7 @@ impl fmt::Display for PlanError {
 
 impl std::error::Error for PlanError {}
 
-impl Plan {
+impl SweepPlan {
     /// The points of these axes; `seed` is the first run's and draws the points of a random design.
     ///
     /// # Errors
@@ -181,13 +181,13 @@ impl Plan {
         first: usize,
         threads: usize,
         go_on: impl Fn() -> Result<(), E>,
-        mut handle: impl FnMut(Row) -> Result<(), E>,
+        mut handle: impl FnMut(RunRow) -> Result<(), E>,
     ) -> Result<(), E> {
         let job = |index: usize| {
             let (point, seed) = self.job(first + index);
             Ok((Cow::Owned(self.setup(setup, point)?), seed))
         };
-        let row = |index: usize, result: RunResult| Row::of(self.job(first + index).0, &result);
+        let row = |index: usize, result: RunResult| RunRow::of(self.job(first + index).0, &result);
         let count = self.len() - first;
         run_each(threads, count, job, row, go_on, |_, row| handle(row))
     }

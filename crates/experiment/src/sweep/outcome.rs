@@ -1,6 +1,6 @@
 //! What the runs of a sweep were like.
 
-use super::Plan;
+use super::SweepPlan;
 use crate::compare::median;
 use crate::files::ScenarioFile;
 use crate::metrics::{self, Metrics, bare, more_is_better};
@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// One run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Row {
+pub struct RunRow {
     /// Index of its point.
     pub point: usize,
     /// Its seed.
@@ -31,7 +31,7 @@ fn with_never<'de, D: Deserializer<'de>>(from: D) -> Result<Metrics, D::Error> {
     Ok(metrics.into_iter().map(value).collect())
 }
 
-impl Row {
+impl RunRow {
     pub(super) fn of(point: usize, result: &RunResult) -> Self {
         Self {
             point,
@@ -44,7 +44,7 @@ impl Row {
 
 /// The values of a metric at one point, over the seeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
+pub struct MetricSpread {
     /// The middle value; not a number where the measured event never happened in half of the runs.
     pub median: f64,
     /// One run in twenty is below.
@@ -53,7 +53,7 @@ pub struct Spread {
     pub high: f64,
 }
 
-impl Spread {
+impl MetricSpread {
     /// Of these values; one that never happened is worse than all others. `None` of none.
     fn of(mut values: Vec<f64>, more_is_better: bool) -> Option<Self> {
         let never = match more_is_better {
@@ -88,14 +88,14 @@ fn badness(metric: &str, value: f64) -> f64 {
 
 /// A sweep, or what is done of it.
 #[derive(Clone, Debug)]
-pub struct Sweep {
+pub struct SweepOutcome {
     /// What was to be run.
-    pub plan: Plan,
+    pub plan: SweepPlan,
     /// What was run: from the first on, without gaps.
-    pub rows: Vec<Row>,
+    pub rows: Vec<RunRow>,
 }
 
-impl Sweep {
+impl SweepOutcome {
     /// Names of the metrics, without their step or goal: those with a limit first.
     #[must_use]
     pub fn metrics(&self, scenario: &ScenarioFile) -> Vec<&str> {
@@ -113,7 +113,7 @@ impl Sweep {
     }
 
     /// The runs of a point that are done.
-    pub fn of_point(&self, point: usize) -> &[Row] {
+    pub fn of_point(&self, point: usize) -> &[RunRow] {
         let runs = self.plan.runs as usize;
         let from = (point * runs).min(self.rows.len());
         &self.rows[from..(from + runs).min(self.rows.len())]
@@ -127,16 +127,16 @@ impl Sweep {
 
     /// A metric over the runs of a point; of a bare name the worst step or goal of each run.
     #[must_use]
-    pub fn spread(&self, point: usize, metric: &str) -> Option<Spread> {
+    pub fn spread(&self, point: usize, metric: &str) -> Option<MetricSpread> {
         self.spread_over(&[point], metric)
     }
 
     /// The same over the runs of several points.
     #[must_use]
-    pub fn spread_over(&self, points: &[usize], metric: &str) -> Option<Spread> {
+    pub fn spread_over(&self, points: &[usize], metric: &str) -> Option<MetricSpread> {
         let rows = points.iter().flat_map(|point| self.of_point(*point));
         let values = rows.filter_map(|row| metrics::worst(&row.metrics, metric));
-        Spread::of(values.collect(), more_is_better(metric))
+        MetricSpread::of(values.collect(), more_is_better(metric))
     }
 
     /// The share of a point's runs that pass.
@@ -165,12 +165,12 @@ impl Sweep {
 
     /// The run of a point that is best or worst by a metric: one that does not pass is worse than one that does.
     #[must_use]
-    pub fn extreme(&self, point: usize, metric: &str, worst: bool) -> Option<&Row> {
-        let key = |row: &Row| {
+    pub fn extreme(&self, point: usize, metric: &str, worst: bool) -> Option<&RunRow> {
+        let key = |row: &RunRow| {
             let value = metrics::worst(&row.metrics, metric).unwrap_or(f64::NAN);
             (!row.pass, badness(metric, value))
         };
-        let order = |one: &&Row, other: &&Row| {
+        let order = |one: &&RunRow, other: &&RunRow| {
             let (one, other) = (key(one), key(other));
             one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
         };

@@ -13,7 +13,7 @@ fn setup() -> Setup {
 
 #[test]
 fn a_grid_has_every_combination_with_the_last_axis_fastest() {
-    let plan = Plan::new(
+    let plan = SweepPlan::new(
         axes(&["kv=0.02,0.03", "battery.open_circuit_v=7:8:3"]),
         Design::Grid,
         7,
@@ -31,7 +31,11 @@ fn a_grid_has_every_combination_with_the_last_axis_fastest() {
 #[test]
 fn a_sobol_sequence_fills_each_axis_evenly_and_a_seed_repeats() {
     let texts = ["front_kp=1:20:log", "battery.open_circuit_v=7:8"];
-    let plan = |design, seed| Plan::new(axes(&texts), design, seed, 1).unwrap().points;
+    let plan = |design, seed| {
+        SweepPlan::new(axes(&texts), design, seed, 1)
+            .unwrap()
+            .points
+    };
     let sobol = plan(Design::Sobol(64), 1);
     for (dimension, middle) in [(0, 20f64.sqrt()), (1, 7.5)] {
         let below = sobol.iter().filter(|point| point[dimension] < middle);
@@ -48,7 +52,7 @@ fn a_sobol_sequence_fills_each_axis_evenly_and_a_seed_repeats() {
 #[test]
 fn a_plan_without_sense_is_refused_before_anything_runs() {
     let refused = |texts: &[&str], design| {
-        let plan = Plan::new(axes(texts), design, 1, 50);
+        let plan = SweepPlan::new(axes(texts), design, 1, 50);
         let Err(error) = plan.and_then(|plan| {
             plan.check(&setup())
                 .map_err(|error| PlanError::Count(error.to_string()))
@@ -79,7 +83,7 @@ fn a_plan_without_sense_is_refused_before_anything_runs() {
 fn each_run_is_that_of_its_point_and_seed_and_can_go_on_anywhere() {
     let setup = setup();
     let axes = axes(&["kv=0.02:0.04:3"]);
-    let plan = Plan::new(axes, Design::Grid, 3, 2).unwrap();
+    let plan = SweepPlan::new(axes, Design::Grid, 3, 2).unwrap();
     let rows = |first: usize| {
         let mut rows = Vec::new();
         plan.run(
@@ -105,7 +109,7 @@ fn each_run_is_that_of_its_point_and_seed_and_can_go_on_anywhere() {
         format!("{:?}", all[3].metrics),
         format!("{:?}", result.metrics)
     );
-    let sweep = Sweep { plan, rows: all };
+    let sweep = SweepOutcome { plan, rows: all };
     // Half the feedforward and more of it are worse than about the right one.
     assert_eq!(sweep.ranked("rms_rad_s").len(), 3);
     let spread = sweep.spread(1, "rms_rad_s").unwrap();
@@ -119,14 +123,14 @@ fn a_row_survives_its_text_with_what_never_happened() {
     let mut metrics = crate::metrics::Metrics::new();
     metrics.insert("step1.settling_s".into(), f64::NAN);
     metrics.insert("step2.settling_s".into(), 0.1 + 0.2);
-    let row = Row {
+    let row = RunRow {
         point: 3,
         seed: u64::MAX,
         pass: false,
         metrics,
     };
     let text = serde_json::to_string(&row).unwrap();
-    let again: Row = serde_json::from_str(&text).unwrap();
+    let again: RunRow = serde_json::from_str(&text).unwrap();
     assert_eq!(serde_json::to_string(&again).unwrap(), text);
     assert!(again.metrics["step1.settling_s"].is_nan());
     assert!(

@@ -9,13 +9,15 @@
 //! quarter of them. A limit that is nearly missed costs too, so that other robots keep it as well. The result depends on
 //! the seed and the budget alone, not on threads or time.
 
+mod error;
 mod objective;
 mod over;
 mod plan;
 
+pub use error::TuneError;
 pub use objective::{Objective, ObjectiveError};
 pub use over::{Over, Tunable, tunable};
-pub use plan::{Outcome, Plan, Request};
+pub use plan::{TuningOutcome, TuningPlan, TuningRequest};
 
 use crate::files::parameters::exact;
 use crate::files::{FileError, Setup};
@@ -23,9 +25,8 @@ use crate::run::{prepare, run};
 use crate::sweep::Values;
 use nalgebra::DVector;
 use rayon::prelude::*;
-use rumbo_control::params::{ParamId, ParamKind, Params};
+use rumbo_control::params::{ParamId, ParamKind};
 use rumbo_plant::rewrite::{RewriteError, RobotText};
-use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A range without a given one goes from the start's value divided by this to its multiple.
@@ -63,70 +64,6 @@ pub struct Tuned {
     log: bool,
 }
 
-/// Why nothing is tuned.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum TuneError {
-    /// A parameter is given twice.
-    Twice(String),
-    /// A switch or a choice.
-    NoNumber(ParamId),
-    /// The range is not within the parameter's limits.
-    Range(ParamId),
-    /// A list or a count, where a range is needed.
-    Form(String),
-    /// Fewer runs than a search needs.
-    Budget(usize),
-    /// A scenario without limits, and no aim.
-    NoAim(String),
-    /// The search drives the robot of a seed on which its values are to be checked.
-    Seen(u64),
-    /// It was ended before it was done.
-    Ended,
-}
-
-impl fmt::Display for TuneError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Twice(name) => write!(f, "{name} is given twice; give it once"),
-            Self::NoNumber(id) => write!(
-                f,
-                "{}: is a switch or a choice; compare its values with `rumbo compare`",
-                id.name()
-            ),
-            Self::Range(id) => write!(
-                f,
-                "{}: its range must lie within {}..{} {}",
-                id.name(),
-                limits(*id)[0],
-                limits(*id)[1],
-                id.unit()
-            ),
-            Self::Form(name) => write!(
-                f,
-                "{name}: is searched in a range; write {name} or {name}=FROM:TO"
-            ),
-            Self::Budget(least) => write!(f, "a search needs at least {least} runs"),
-            Self::Seen(seed) => write!(
-                f,
-                "seed {seed}: the search drives that robot; check on consecutive seeds, or on fewer that are near each other"
-            ),
-            Self::NoAim(scenario) => write!(
-                f,
-                "scenario {scenario} has no limits; give an aim, such as `settling_s`"
-            ),
-            Self::Ended => f.write_str("the search was ended"),
-        }
-    }
-}
-
-impl std::error::Error for TuneError {}
-
-impl From<TuneError> for FileError {
-    fn from(error: TuneError) -> Self {
-        Self::Setting(error.to_string())
-    }
-}
-
 fn limits(id: ParamId) -> [f64; 2] {
     let limits = id.limits();
     [exact(limits.min), exact(limits.max)]
@@ -155,22 +92,12 @@ pub fn is_tuned(text: &str) -> bool {
     text.lines().any(|line| line.starts_with(MARK))
 }
 
-/// The parameters of a setup as they are.
-fn present(setup: &Setup) -> Result<Params, FileError> {
-    let mut now = Params::default();
-    for (id, value) in setup.control_parameters()? {
-        // Checked when it was read.
-        let _ = now.set(id, value);
-    }
-    Ok(now)
-}
-
 /// The parameters to tune, with their starts and ranges.
 ///
 /// # Errors
 /// [`TuneError`], as text, or a setup whose values do not fit together.
 pub fn tuned(setup: &Setup, over: &[Over]) -> Result<Vec<Tuned>, FileError> {
-    let now = present(setup)?;
+    let now = setup.params()?;
     let mut all: Vec<Tuned> = Vec::new();
     for one in over {
         let id = one.id();

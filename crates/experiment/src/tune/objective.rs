@@ -1,6 +1,6 @@
 //! What a tuning is for: `settling_s, overshoot_m < 0.01`.
 
-use crate::files::{Bounds, ScenarioFile};
+use crate::files::{MetricBounds, ScenarioFile};
 use crate::metrics::{self, Metrics, more_is_better};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -20,7 +20,7 @@ pub struct Objective {
     /// Metrics; of a bare name the worst step or goal.
     pub aims: Vec<String>,
     /// Limits besides those of the scenario.
-    pub limits: BTreeMap<String, Bounds>,
+    pub limits: BTreeMap<String, MetricBounds>,
 }
 
 /// A text that is no objective.
@@ -133,7 +133,7 @@ impl Objective {
 }
 
 /// How much of what a limit allows a value uses: 1 at the limit, at most [`NEVER`].
-fn use_of(bounds: &Bounds, value: f64) -> f64 {
+fn use_of(bounds: &MetricBounds, value: f64) -> f64 {
     if value.is_nan() {
         return NEVER;
     }

@@ -1,6 +1,5 @@
 //! What to search over: `front_kp`, or within a range `front_kp=1:20`; and what there is to choose from.
 
-use super::present;
 use crate::files::parameters::exact;
 use crate::files::{FileError, ScenarioFile, Setup, unknown};
 use crate::sweep::Axis;
@@ -74,7 +73,7 @@ pub struct Tunable {
 /// # Errors
 /// A setup whose values do not fit together.
 pub fn tunable(setup: &Setup, own: &ScenarioFile) -> Result<Vec<Tunable>, FileError> {
-    let now = present(setup)?;
+    let now = setup.params()?;
     let groups = setup.scenario.mode.description().parameters.iter();
     let groups = groups.map(|group| {
         let numbers = group.parameters.iter();

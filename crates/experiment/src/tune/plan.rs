@@ -9,7 +9,7 @@ use rumbo_plant::rewrite::RewriteError;
 
 /// What is asked for.
 #[derive(Clone, Debug)]
-pub struct Request {
+pub struct TuningRequest {
     /// What to search over.
     pub over: Vec<Over>,
     /// What for.
@@ -24,7 +24,7 @@ pub struct Request {
 
 /// A tuning that is ready to begin.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct TuningPlan {
     setup: Setup,
     over: Vec<Tuned>,
     objective: Objective,
@@ -35,7 +35,7 @@ pub struct Plan {
 
 /// What a tuning bought.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct TuningOutcome {
     /// What the search found.
     pub found: Found,
     /// The runs that the search has not seen: with the values now, and tuned.
@@ -44,7 +44,7 @@ pub struct Outcome {
     pub passes: [usize; 2],
 }
 
-impl Outcome {
+impl TuningOutcome {
     /// Whether the values are worth keeping: no more of the unseen robots fail than before.
     #[must_use]
     pub fn is_kept(&self) -> bool {
@@ -52,13 +52,17 @@ impl Outcome {
     }
 }
 
-impl Plan {
+impl TuningPlan {
     /// Checks a request for a setup; `own` is its scenario as its file has it.
     ///
     /// # Errors
     /// A parameter that cannot be tuned there, or nothing to tune it for.
-    pub fn new(setup: Setup, own: &ScenarioFile, request: Request) -> Result<Self, FileError> {
-        let Request {
+    pub fn new(
+        setup: Setup,
+        own: &ScenarioFile,
+        request: TuningRequest,
+    ) -> Result<Self, FileError> {
+        let TuningRequest {
             over,
             objective,
             seed,
@@ -125,7 +129,7 @@ impl Plan {
         &self,
         progress: &(dyn Fn(f64) + Sync),
         goes_on: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Outcome, FileError> {
+    ) -> Result<TuningOutcome, FileError> {
         check_metrics(self.objective.names(), &self.setup, self.seed)?;
         let search = self.search();
         let (budget, check) = (self.budget as f64, 2.0 * self.held_out.len() as f64);
@@ -149,7 +153,7 @@ impl Plan {
         )?;
         let runs = <[Variant; 2]>::try_from(runs).map_err(|_| TuneError::Ended)?;
         let passes = [self.passes(&runs[0]), self.passes(&runs[1])];
-        Ok(Outcome {
+        Ok(TuningOutcome {
             found,
             runs,
             passes,

@@ -119,14 +119,14 @@ fn what_can_be_tuned_are_the_numbers_of_the_mode_that_the_scenario_leaves_open()
 fn a_search_ends_when_it_is_told_to_and_without_limits_needs_an_aim() {
     let own = Library::new().scenario("mode1").unwrap();
     let plan = |setup: Setup, aims: Objective| {
-        let request = Request {
+        let request = TuningRequest {
             over: over(&["front_kp"]),
             objective: aims,
             seed: 1,
             runs: None,
             held_out: Search::held_out(1, 2),
         };
-        Plan::new(setup, &own, request)
+        TuningPlan::new(setup, &own, request)
     };
     let whole = plan(setup("mode1", &[]), Objective::default()).unwrap();
     let asked = AtomicUsize::new(0);

@@ -5,11 +5,11 @@
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_control::{ServoAngle, Wheels};
-use rumbo_experiment::batch::{Batch, Driver, OBSERVED, Robot, TRUE};
+use rumbo_experiment::batch::{Batch, DrivenBy, OBSERVED, Robot, TRUE};
 use rumbo_experiment::files::{Kind, Library, NativeProgram, Overrides, Setup};
 use rumbo_experiment::run;
-use rumbo_sim::trace::{Sample, Trace};
-use rumbo_wire::{Command, Decoder, FromRobot, Message, Received, Refusal, ToRobot};
+use rumbo_sim::trace::{Trace, TruthSample};
+use rumbo_wire::{Command, Decoder, FrameMessage, FromRobot, Received, Refusal, ToRobot};
 
 const SEEDS: [u64; 3] = [1, 7, 1_000_003];
 /// Between two looks [ticks].
@@ -26,7 +26,7 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 }
 
 /// What a sample of a trace and a row of a batch both have.
-fn of_sample(trace: &Trace, sample: &Sample) -> [u64; 8] {
+fn of_sample(trace: &Trace, sample: &TruthSample) -> [u64; 8] {
     let [left, right, front] = [0, 1, 2].map(|sonar| trace.range_m(sample, sonar));
     let [left_rad_s, right_rad_s] = sample.wheel_rad_s;
     [
@@ -65,7 +65,7 @@ fn each_robot_of_a_batch_is_bit_for_bit_that_of_a_run() {
         let runs = SEEDS.map(|seed| run::run(&setup, seed).unwrap());
         for threads in [1, 2] {
             on_threads(threads, || {
-                let mut batch = Batch::new(&setup, Driver::Scenario, &SEEDS).unwrap();
+                let mut batch = Batch::new(&setup, DrivenBy::Scenario, &SEEDS).unwrap();
                 // Uneven steps: where a caller looks changes nothing.
                 let ticks = runs[0].trace.samples.len();
                 for at in (0..ticks - STEP).step_by(STEP) {
@@ -122,7 +122,7 @@ fn driven(batch: &mut Batch, steps: u32) -> Vec<(Vec<u32>, Vec<u64>)> {
 fn a_driven_robot_is_the_same_alone_and_among_others_on_any_threads() {
     let mut setup = setup("mode8-random");
     setup.scenario.mode = ModeId::WheelSpeed;
-    let make = |seeds: &[u64]| Batch::new(&setup, Driver::Caller, seeds).unwrap();
+    let make = |seeds: &[u64]| Batch::new(&setup, DrivenBy::Caller, seeds).unwrap();
     let together = [1, 2].map(|threads| on_threads(threads, || driven(&mut make(&SEEDS), 60)));
     assert!(together[0] == together[1]);
     for (index, seed) in SEEDS.into_iter().enumerate() {
@@ -137,7 +137,7 @@ fn a_driven_robot_is_the_same_alone_and_among_others_on_any_threads() {
 #[test]
 fn a_driven_robot_turns_its_wheels_and_its_servo_as_commanded_and_knows_it() {
     let setup = setup("mode5");
-    let mut batch = Batch::new(&setup, Driver::Caller, &[3]).unwrap();
+    let mut batch = Batch::new(&setup, DrivenBy::Caller, &[3]).unwrap();
     let robot = batch.robot_mut(0).unwrap();
     robot.command(&Command::Arm).unwrap();
     let wheels = Wheels {
@@ -159,9 +159,9 @@ fn a_driven_robot_turns_its_wheels_and_its_servo_as_commanded_and_knows_it() {
 
 #[test]
 fn a_snapshot_continues_bit_for_bit_the_same() {
-    for driver in [Driver::Scenario, Driver::Caller] {
+    for driver in [DrivenBy::Scenario, DrivenBy::Caller] {
         let mut batch = Batch::new(&setup("mode4-final"), driver, &SEEDS).unwrap();
-        if driver == Driver::Caller {
+        if driver == DrivenBy::Caller {
             for index in 0..SEEDS.len() {
                 let robot = batch.robot_mut(index).unwrap();
                 robot.command(&Command::Mode(ModeId::WheelSpeed)).unwrap();
@@ -196,7 +196,7 @@ fn a_snapshot_continues_bit_for_bit_the_same() {
 
 #[test]
 fn wheels_are_driven_open_loop_by_shares_of_the_pwm_while_armed() {
-    let mut batch = Batch::new(&setup("mode5"), Driver::Caller, &[3]).unwrap();
+    let mut batch = Batch::new(&setup("mode5"), DrivenBy::Caller, &[3]).unwrap();
     let robot = batch.robot_mut(0).unwrap();
     let duty = Wheels {
         left: 0.8,
@@ -219,8 +219,8 @@ fn wheels_are_driven_open_loop_by_shares_of_the_pwm_while_armed() {
 
 #[test]
 fn a_renewed_robot_is_that_of_its_seed_and_the_others_go_on() {
-    let mut batch = Batch::new(&setup("mode1"), Driver::Scenario, &[1, 2]).unwrap();
-    let mut fresh = Batch::new(&setup("mode1"), Driver::Scenario, &[9]).unwrap();
+    let mut batch = Batch::new(&setup("mode1"), DrivenBy::Scenario, &[1, 2]).unwrap();
+    let mut fresh = Batch::new(&setup("mode1"), DrivenBy::Scenario, &[9]).unwrap();
     batch.advance(100);
     let second = of_robot(batch.robots().nth(1).unwrap());
     batch.renew(&[(0, 9)], &|| Ok(())).unwrap();
@@ -235,7 +235,7 @@ fn a_renewed_robot_is_that_of_its_seed_and_the_others_go_on() {
 
 #[test]
 fn a_command_in_words_is_checked_as_in_a_scenario() {
-    let mut batch = Batch::new(&setup("mode1"), Driver::Caller, &[1]).unwrap();
+    let mut batch = Batch::new(&setup("mode1"), DrivenBy::Caller, &[1]).unwrap();
     batch.advance(50);
     let robot = batch.robot_mut(0).unwrap();
     robot.instruct("reference_m = 0.4").unwrap();
@@ -248,7 +248,7 @@ fn a_command_in_words_is_checked_as_in_a_scenario() {
     assert!(said(robot.instruct("mode = \"mission\"")).contains("refused"));
     assert!(said(robot.instruct("goal = \"world\"")).contains("mode"));
     assert!(said(robot.instruct("arm = true\nat_s = 3")).contains("at_s"));
-    let mut scenario = Batch::new(&setup("mode1"), Driver::Scenario, &[1]).unwrap();
+    let mut scenario = Batch::new(&setup("mode1"), DrivenBy::Scenario, &[1]).unwrap();
     assert!(said(scenario.robot_mut(0).unwrap().instruct("arm = true")).contains("scenario"));
 }
 
@@ -266,7 +266,7 @@ fn a_recorded_robot_has_the_trace_of_its_run() {
         };
         let setup = Library::new().setup(scenario, &overrides).unwrap();
         let run = run::run(&setup, 7).unwrap();
-        let mut batch = Batch::new(&setup, Driver::Scenario, &[7]).unwrap();
+        let mut batch = Batch::new(&setup, DrivenBy::Scenario, &[7]).unwrap();
         batch.robot_mut(0).unwrap().record().unwrap();
         batch.advance(run.trace.samples.len() as u32);
         assert_eq!(
@@ -283,7 +283,7 @@ fn recording_changes_no_bit_of_a_driven_robot() {
     setup.scenario.mode = ModeId::WheelSpeed;
     for seeds in [&[1][..], &[1, 2, 3]] {
         on_threads(1, || {
-            let make = || Batch::new(&setup, Driver::Caller, seeds).unwrap();
+            let make = || Batch::new(&setup, DrivenBy::Caller, seeds).unwrap();
             let unrecorded = driven(&mut make(), 60);
             let mut batch = make();
             batch.robot_mut(0).unwrap().record().unwrap();
@@ -306,7 +306,7 @@ fn recording_changes_no_bit_of_a_driven_robot() {
 
 #[test]
 fn a_driven_robot_says_to_the_tap_what_it_knows_and_what_it_was_commanded() {
-    let mut batch = Batch::new(&setup("mode5"), Driver::Caller, &[3]).unwrap();
+    let mut batch = Batch::new(&setup("mode5"), DrivenBy::Caller, &[3]).unwrap();
     let robot = batch.robot_mut(0).unwrap();
     robot
         .instruct("parameter = \"front_kp\"\nvalue = 5")

@@ -6,7 +6,7 @@ use rumbo_experiment::files::{
     Kind, Library, Overrides, PolicyFile, RobotFile, ScenarioFile, WorldFile,
 };
 use rumbo_experiment::note::Note;
-use rumbo_wire::message::{Command, Level};
+use rumbo_wire::message::{Command, MovementLevel};
 
 #[test]
 fn every_built_in_file_can_be_set_up() {
@@ -44,7 +44,7 @@ fn a_ramp_is_one_command_per_count_of_pwm() {
         .filter_map(|timed| match timed.command {
             Command::Move {
                 movement: Movement::PivotRightForward,
-                level: Level::Duty(duty),
+                level: MovementLevel::Duty(duty),
             } => Some(duty * 255.0),
             _ => None,
         })
@@ -156,7 +156,7 @@ fn a_wiring_may_have_a_divider_for_the_battery() {
 
 #[test]
 fn a_line_sensor_gives_a_level_a_voltage_or_a_time_and_only_one_of_them() {
-    use rumbo_sim::floor::Reading;
+    use rumbo_sim::floor::FloorReading;
     let parsed = |sensor: &str| {
         let text = format!(
             "title = \"t\"\nboard = \"uno\"\n[rig.a.front]\nx_m = 0.1\n[wiring.own.line]\nleft = {{ x_m = 0.08, {sensor} }}\n"
@@ -164,13 +164,16 @@ fn a_line_sensor_gives_a_level_a_voltage_or_a_time_and_only_one_of_them() {
         RobotFile::parse("x", "x.toml", &text)
     };
     for (sensor, reading) in [
-        ("pin = 2", Reading::Level),
-        ("pin = \"A1\", analogue = true", Reading::Volts([0.4, 4.4])),
+        ("pin = 2", FloorReading::Level),
+        (
+            "pin = \"A1\", analogue = true",
+            FloorReading::Volts([0.4, 4.4]),
+        ),
         (
             "pin = \"A1\", analogue = true, dark_v = 4.8",
-            Reading::Volts([0.4, 4.8]),
+            FloorReading::Volts([0.4, 4.8]),
         ),
-        ("pin = \"A1\", rc = true", Reading::Discharge),
+        ("pin = \"A1\", rc = true", FloorReading::Discharge),
     ] {
         let robot = parsed(sensor).unwrap();
         assert_eq!(robot.wirings["own"].line_sensors[0].reading, reading);

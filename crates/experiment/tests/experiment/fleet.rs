@@ -1,8 +1,8 @@
 //! Scenarios with several robots.
 
-use rumbo_experiment::batch::{Batch, Driver};
+use rumbo_experiment::batch::{Batch, DrivenBy};
 use rumbo_experiment::files::{
-    FileError, Kind, Library, NativeProgram, Overrides, Setup, Start, fleet_around,
+    FileError, Kind, Library, NativeProgram, Overrides, Setup, StartPose, fleet_around,
 };
 use rumbo_experiment::run::{RunResult, run, run_all_on};
 
@@ -187,7 +187,8 @@ fn copies_of_a_robot_stand_free_on_a_grid_around_it() {
     let starts: Vec<_> = fleet.iter().map(|robot| robot.scenario.start).collect();
     assert_eq!(starts[0], setup.scenario.start);
     assert_eq!(fleet[5].scenario.name, "robot6");
-    let apart = |one: &Start, other: &Start| (one.x_m - other.x_m).hypot(one.y_m - other.y_m);
+    let apart =
+        |one: &StartPose, other: &StartPose| (one.x_m - other.x_m).hypot(one.y_m - other.y_m);
     for (index, start) in starts.iter().enumerate() {
         assert!(
             starts[..index]
@@ -217,11 +218,11 @@ fn where_one_robot_is_driven_a_fleet_is_refused() {
 fn stepped_by_a_caller_each_robot_is_that_of_the_run_and_again_by_what_was_done_to_it() {
     let setup = setup_of(&format!("{TO_THE_WALL}{THREE}")).unwrap();
     let result = run(&setup, 3).unwrap();
-    let mut batch = Batch::new(&setup, Driver::Scenario, &[2, 3]).unwrap();
+    let mut batch = Batch::new(&setup, DrivenBy::Scenario, &[2, 3]).unwrap();
     batch.robot_mut(4).unwrap().record().unwrap();
     batch.advance(100);
     batch.advance(150);
-    let drivers = vec![Driver::Scenario; 3];
+    let drivers = vec![DrivenBy::Scenario; 3];
     let again = Batch::of_lives(&setup, drivers, &batch.lives(), &|| Ok(())).unwrap();
     for batch in [batch, again] {
         for (robot, run) in batch.robots().skip(3).zip(&result.robots) {

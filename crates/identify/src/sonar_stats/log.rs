@@ -81,20 +81,16 @@ impl SonarLog {
         if damaged.len() > t_s.len() / DAMAGED_IN {
             return Err(damaged.swap_remove(0));
         }
-        let name = path
-            .file_name()
-            .map_or_else(|| "log".into(), |name| name.to_string_lossy().into_owned());
-        // Mode 1 has one sonar and writes its reading twice.
-        let range_m = if left_m == right_m {
-            vec![left_m]
-        } else {
-            vec![left_m, right_m]
-        };
+        let name = path.file_name();
         Ok(Self {
-            name,
+            name: name.map_or_else(|| "log".into(), |name| name.to_string_lossy().into_owned()),
             t_s,
             driven,
-            range_m,
+            // Mode 1 has one sonar and writes its reading twice.
+            range_m: match left_m == right_m {
+                true => vec![left_m],
+                false => vec![left_m, right_m],
+            },
         })
     }
 }

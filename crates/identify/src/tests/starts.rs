@@ -2,7 +2,7 @@
 
 use super::{exercise, log, recorded};
 use crate::problem::{Problem, UNKNOWNS};
-use crate::{Identified, Progress, identify};
+use crate::{FitProgress, Identified, identify};
 use rumbo_plant::params::Params;
 
 #[test]
@@ -15,7 +15,7 @@ fn two_fits_from_far_apart_end_at_the_same_values() {
     far.motor.inertia_kg_m2 *= 0.7;
     far.floor.rolling_n_m *= 0.7;
     let fitted = |start: &Params| {
-        identify(&run, start, 0, &Progress::none())
+        identify(&run, start, 0, &FitProgress::none())
             .unwrap()
             .parameters
     };

@@ -10,7 +10,7 @@ impl SimulatedRobot {
     /// Acts on the simulation, also where a debugger holds it.
     pub(crate) fn act<T: Default>(&mut self, act: impl FnOnce(&mut Sim) -> T) -> T {
         let Some(in_hand) = &mut self.in_hand else {
-            return act(&mut self.sim);
+            return self.sim(act);
         };
         let done = in_hand.act(act).unwrap_or_default();
         self.look();
@@ -20,7 +20,7 @@ impl SimulatedRobot {
     /// Copies what the debugger holds.
     pub(crate) fn look(&mut self) {
         if let Some(sim) = self.in_hand.as_ref().and_then(InHand::sim) {
-            self.sim.clone_from(sim);
+            self.sim(|own| own.clone_from(sim));
         }
     }
 
@@ -28,7 +28,7 @@ impl SimulatedRobot {
     pub(crate) fn pass_to_debugger(&mut self, request: &Value) -> Result<(), TargetError> {
         let in_hand = self.in_hand.as_mut().ok_or(TargetError::NotDebugged)?;
         if request["command"] == "disconnect" {
-            let again = self.start_again(self.scene.choice.clone());
+            let again = self.start_again(&self.choice());
             again.map_err(|error| TargetError::Setup(error.to_string()))?;
             self.news.push_back(LinkNews::Renewed);
             return Ok(());

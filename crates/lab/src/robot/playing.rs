@@ -13,9 +13,9 @@ impl SimulatedRobot {
     /// Starts again, commanded by its scenario, with these parameters of the robot as it was where they are not the
     /// scenario's.
     pub(crate) fn begin_experiment(&mut self, values: &[(u8, f32)]) -> Result<(), FileError> {
-        let choice = self.scene.choice.clone();
+        let choice = self.choice();
         let (setup, _) = set_up(&self.library, &self.overrides, self.held.as_ref(), &choice)?;
-        let own = parameters(&*prepare(&*setup.of_seed(choice.seed)?, choice.seed)?)?;
+        let own = parameters(&*prepare(&setup, choice.seed)?)?;
         let changed = values.iter().filter_map(|(number, value)| {
             let id = ParamId::from_number(*number)?;
             let other = own.as_ref().is_some_and(|own| own.get(id) != *value);
@@ -29,7 +29,8 @@ impl SimulatedRobot {
         manifest.remember(&[]);
         let (sim, player) = Player::new(&Arc::new(setup), choice.seed)?;
         let experiment = Experiment::new(player, changed)?;
-        self.start_with(sim, manifest);
+        self.prepared(|robot| (robot.sim, robot.manifest) = (sim, manifest));
+        self.forget();
         self.experiment = Some(experiment);
         Ok(())
     }

@@ -12,6 +12,7 @@ use rumbo_log::{
     ProgramProfile, ProgramState,
 };
 use rumbo_session::{GivenProgram, LinkNews, ShownSketch, TargetError};
+use rumbo_sim::Sim;
 use rumbo_sim::boards::Board;
 use rumbo_sim::bus::BusDevice;
 use rumbo_sim::wiring::Part;
@@ -83,6 +84,10 @@ fn device_state(device: &BusDevice) -> PartState {
 impl SimulatedRobot {
     /// For the page; there is no chip yet while its first program is made.
     pub(crate) fn program_state(&self) -> Option<ProgramState> {
+        let robots = self.robots.lock();
+        let [only] = &robots.all[..] else {
+            return None;
+        };
         let state = match &self.program {
             Some(program) => ProgramState {
                 name: program.name.clone(),
@@ -92,11 +97,11 @@ impl SimulatedRobot {
                 ..ProgramState::default()
             },
             None => ProgramState {
-                name: self.sim.mega()?.firmware().name().to_owned(),
+                name: only.sim.mega()?.firmware().name().to_owned(),
                 ..ProgramState::default()
             },
         };
-        let Some(mega) = self.sim.mega() else {
+        let Some(mega) = only.sim.mega() else {
             return Some(state);
         };
         let devices = mega.firmware().bus().iter().map(device_state);
@@ -110,18 +115,20 @@ impl SimulatedRobot {
     }
 
     /// Counts the cycles of the program at the pins from zero, if they are to be counted.
-    pub(crate) fn begin_profile(&mut self) {
-        let Some(mega) = self.sim.mega_mut() else {
-            return;
-        };
-        let counts = self
-            .profiling
-            .then(|| Profile::new(mega.firmware().image()));
-        let observers = mega.chip_mut().observers_mut();
-        match counts {
-            Some(counts) => observers.profile(counts),
-            None => observers.end_profile(),
-        }
+    pub(crate) fn begin_profile(&self) {
+        self.sim(|sim| {
+            let Some(mega) = sim.mega_mut() else {
+                return;
+            };
+            let counts = self
+                .profiling
+                .then(|| Profile::new(mega.firmware().image()));
+            let observers = mega.chip_mut().observers_mut();
+            match counts {
+                Some(counts) => observers.profile(counts),
+                None => observers.end_profile(),
+            }
+        });
     }
 
     /// Takes what the workshop has made.
@@ -178,10 +185,10 @@ impl SimulatedRobot {
         self.library = self.library.clone().holding(Kind::Robot, WIRED, text);
         self.overrides.robot = Some(WIRED.into());
         self.overrides.wiring = None;
-        let before = &self.scene.choice;
+        let before = self.choice();
         Choice {
             scenario: FREE.into(),
-            world: before.world.clone().filter(|_| before.scenario == FREE),
+            world: before.world.filter(|_| before.scenario == FREE),
             rig: None,
             seed: before.seed,
         }
@@ -192,7 +199,7 @@ impl SimulatedRobot {
         if let Some(board) = self.chip_board() {
             return Ok(board);
         }
-        let setup = set_up(&self.library, &self.overrides, None, &self.scene.choice);
+        let setup = set_up(&self.library, &self.overrides, None, &self.choice());
         let (setup, _) = setup.map_err(|error| TargetError::Setup(error.to_string()))?;
         Ok(setup.robot.board)
     }
@@ -224,7 +231,7 @@ impl SimulatedRobot {
         let wrong = |error: FileError| TargetError::Setup(error.to_string());
         let held = Held::new(name, bytes).map_err(wrong)?;
         let before = self.held.replace(held);
-        if let Err(error) = self.start_again(self.scene.choice.clone()) {
+        if let Err(error) = self.start_again(&self.choice()) {
             self.held = before;
             return Err(wrong(error));
         }
@@ -249,12 +256,13 @@ impl SimulatedRobot {
             .and_then(|program| program.robot.take());
         let choice = match robot {
             Some(text) => self.with_robot(&text),
-            None => self.scene.choice.clone(),
+            None => self.choice(),
         };
-        match self.start_again(choice) {
+        match self.start_again(&choice) {
             Ok(()) => {
                 self.enter(ProgramPhase::Running, Vec::new());
-                self.in_hand = attach.and_then(|attach| InHand::new(attach, self.sim.clone()));
+                self.in_hand =
+                    attach.and_then(|attach| InHand::new(attach, self.sim(|sim| sim.clone())));
                 self.news.push_back(LinkNews::Renewed);
             }
             Err(error) => {
@@ -268,7 +276,7 @@ impl SimulatedRobot {
     }
 
     fn reject(&mut self, complaints: Vec<Complaint>) {
-        self.sim.switch_off();
+        self.sim(Sim::switch_off);
         let text = "the changed program does not compile: the robot is switched off until it does";
         self.news
             .push_back(LinkNews::Program(Level::Fault, text.into()));

@@ -3,7 +3,7 @@
 use rumbo_experiment::files::Overrides;
 use rumbo_lab::SimulatedRobot;
 use rumbo_log::{Choice, Entry, Level, Manifest, State};
-use rumbo_session::{Driver, Event, Extras, Host, Order, SLICE_US, Target};
+use rumbo_session::{Event, Extras, Host, Order, SLICE_US, SessionDriver, Target};
 
 #[derive(Default)]
 struct Told {
@@ -31,7 +31,7 @@ impl Host for Told {
 }
 
 pub(crate) struct Bench {
-    driver: Driver<Told, SimulatedRobot>,
+    driver: SessionDriver<Told, SimulatedRobot>,
     wall_us: u64,
 }
 
@@ -49,7 +49,8 @@ impl Bench {
 
     pub(crate) fn new(choice: Choice) -> Self {
         let robot = SimulatedRobot::new(Overrides::default(), choice).unwrap();
-        let mut driver = Driver::new(Box::new(robot), Told::default(), 1.0, Extras::default());
+        let mut driver =
+            SessionDriver::new(Box::new(robot), Told::default(), 1.0, Extras::default());
         driver.begin(0);
         Self { driver, wall_us: 0 }
     }

@@ -4,7 +4,7 @@
 use rumbo_experiment::files::Overrides;
 use rumbo_lab::SimulatedRobot;
 use rumbo_log::{CalibrationPhase, Choice, Entry, Level, Manifest};
-use rumbo_session::{Driver, Event, Extras, Host, Order, SLICE_US};
+use rumbo_session::{Event, Extras, Host, Order, SLICE_US, SessionDriver};
 use rumbo_wire::GUEST_SESSION;
 
 /// Draws the session of the calibration itself, and keeps what is shown of it.
@@ -42,7 +42,7 @@ fn a_robot_calibrates_itself_whatever_session_the_station_draws() {
         calibration: Some(rumbo_lab::calibration),
         ..Extras::default()
     };
-    let mut driver = Driver::new(Box::new(robot), Unlucky::default(), 1.0, extras);
+    let mut driver = SessionDriver::new(Box::new(robot), Unlucky::default(), 1.0, extras);
     driver.begin(0);
     // The session has read all parameters when it begins.
     for slice in 0..180_000_000 / SLICE_US {

@@ -5,7 +5,7 @@ use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::run;
 use rumbo_lab::run_log::RunSource;
 use rumbo_log::{Log, LogKind};
-use rumbo_session::explain::{Cause, Kind, explain};
+use rumbo_session::explain::{Cause, CauseKind, explain};
 use rumbo_session::headless::record_run;
 use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
 use rumbo_sim::wire_fault::{TimedWireFault, Wire, WireFault};
@@ -85,36 +85,44 @@ fn log(scenario: &str, planted: Planted, seed: u64) -> Log {
 #[test]
 fn of_thirty_planted_causes_at_least_27_are_named_first_and_nothing_else_is() {
     let cases = [
-        ("mode1", Planted::Sonar(SonarFault::Stuck, 1.2), Kind::Sonar),
+        (
+            "mode1",
+            Planted::Sonar(SonarFault::Stuck, 1.2),
+            CauseKind::Sonar,
+        ),
         (
             "mode1",
             Planted::Sonar(SonarFault::Spiking(0.6), 0.8),
-            Kind::Outliers,
+            CauseKind::Outliers,
         ),
         (
             "mode5",
             Planted::Encoder(WireFault::Losing(0.5), 1.0),
-            Kind::Encoder,
+            CauseKind::Encoder,
         ),
-        ("mode1", Planted::Silence(1.0, 1.6), Kind::Silence),
+        ("mode1", Planted::Silence(1.0, 1.6), CauseKind::Silence),
         (
             "mode1",
             Planted::Set(&[("front_brake_m_s2", 2.0), ("front_kp", 15.0)]),
-            Kind::Braking,
+            CauseKind::Braking,
         ),
         (
             "mode1",
             Planted::Set(&[("battery.open_circuit_v", 5.2)]),
-            Kind::Saturation,
+            CauseKind::Saturation,
         ),
-        ("mode5", Planted::Set(&[("kv", 0.001)]), Kind::Feedforward),
+        (
+            "mode5",
+            Planted::Set(&[("kv", 0.001)]),
+            CauseKind::Feedforward,
+        ),
         (
             "manual-deadzone-floor-forward",
             Planted::Set(&[]),
-            Kind::DeadZone,
+            CauseKind::DeadZone,
         ),
-        ("mode7", Planted::Set(&[("base_m", 0.11)]), Kind::Drift),
-        ("mode1", Planted::Slip(0.75), Kind::Slip),
+        ("mode7", Planted::Set(&[("base_m", 0.11)]), CauseKind::Drift),
+        ("mode1", Planted::Slip(0.75), CauseKind::Slip),
     ];
     let (mut named, mut silent, mut wrong) = (0, 0, Vec::new());
     for (scenario, planted, kind) in cases {
@@ -124,10 +132,10 @@ fn of_thirty_planted_causes_at_least_27_are_named_first_and_nothing_else_is() {
                 Some(first) if first.kind == kind => named += 1,
                 // The robot found it itself.
                 Some(Cause {
-                    kind: Kind::Fault,
+                    kind: CauseKind::Fault,
                     text,
                     ..
-                }) if kind == Kind::Encoder && text.contains("left encoder") => {
+                }) if kind == CauseKind::Encoder && text.contains("left encoder") => {
                     named += 1;
                 }
                 None => silent += 1,
@@ -148,7 +156,7 @@ fn of_runs_without_a_cause_nothing_is_said_that_is_none() {
         for seed in 1..=5 {
             let found = explain(&log(scenario, Planted::Set(&[]), seed), 0.0, f64::INFINITY);
             // Robots differ from what their parameters believe; OFF ends some scenarios.
-            let usual = [Kind::Feedforward, Kind::Stopped, Kind::Drift];
+            let usual = [CauseKind::Feedforward, CauseKind::Stopped, CauseKind::Drift];
             let said: Vec<_> = found
                 .iter()
                 .filter(|cause| !usual.contains(&cause.kind))

@@ -4,9 +4,11 @@
 use rumbo_control::Velocity;
 use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::{Kind, Library, Overrides};
-use rumbo_lab::{FleetRobot, fleet};
+use rumbo_lab::SimulatedRobot;
 use rumbo_log::{Choice, Level, Manifest};
-use rumbo_session::{Driver, Event, Extras, Host, LinkNews, Order, SLICE_US, Target, TargetError};
+use rumbo_session::{
+    Event, Extras, Host, LinkNews, Order, SLICE_US, SessionDriver, Target, TargetError,
+};
 use rumbo_wire::Command;
 
 const THREE: &str = "title = \"t\"\nrobot = \"memoria\"\nrig = \"final\"\nworld = \"open\"\nmode = \"wheel_speed\"\nduration_s = 10\n\
@@ -23,9 +25,9 @@ fn choice() -> Choice {
     }
 }
 
-fn robots() -> Vec<FleetRobot> {
+fn robots() -> Vec<SimulatedRobot> {
     let library = Library::new().holding(Kind::Scenario, "three", THREE);
-    fleet(library, Overrides::default(), &choice(), 1).unwrap()
+    SimulatedRobot::all(library, Overrides::default(), &choice(), 1).unwrap()
 }
 
 struct Quiet;
@@ -44,14 +46,14 @@ impl Host for Quiet {
 
 /// The sessions; the first one has the time.
 struct Bench {
-    drivers: Vec<Driver<Quiet, FleetRobot>>,
+    drivers: Vec<SessionDriver<Quiet, SimulatedRobot>>,
     wall_us: u64,
 }
 
 impl Bench {
     fn new() -> Self {
         let drivers = robots().into_iter().map(|robot| {
-            let mut driver = Driver::new(Box::new(robot), Quiet, 1.0, Extras::default());
+            let mut driver = SessionDriver::new(Box::new(robot), Quiet, 1.0, Extras::default());
             driver.begin(0);
             driver
         });
@@ -186,6 +188,6 @@ fn only_the_first_passes_the_time() {
     assert_eq!(times, [5_000; 3]);
     let leads: Vec<bool> = robots.iter().map(|robot| robot.abilities().pace).collect();
     assert_eq!(leads, [true, false, false]);
-    let names: Vec<String> = robots.iter().map(FleetRobot::name).collect();
+    let names: Vec<String> = robots.iter().map(SimulatedRobot::name).collect();
     assert_eq!(names, ["a", "b", "c"]);
 }

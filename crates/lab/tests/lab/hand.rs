@@ -2,7 +2,7 @@
 
 use rumbo_experiment::files::{Library, Overrides};
 use rumbo_lab::{HAND, SimulatedRobot, type_to};
-use rumbo_log::{Choice, Source};
+use rumbo_log::{Choice, ReadingSource};
 use rumbo_session::Target;
 
 #[test]
@@ -55,7 +55,7 @@ fn a_wall_that_is_moved_is_where_sonars_see_it_and_logs_have_it() {
     let moved = robot
         .shown()
         .into_iter()
-        .find(|(source, _)| *source == Source::Others);
+        .find(|(source, _)| *source == ReadingSource::Others);
     let (_, signals) = moved.unwrap();
     assert_eq!(signals[0], ("thing0_x_m".into(), 0.4));
     // Onto the robot, beyond reach, what there is not, and what is no place.

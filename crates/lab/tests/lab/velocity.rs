@@ -7,7 +7,7 @@ use rumbo_control::mode::ModeId;
 use rumbo_experiment::files::Overrides;
 use rumbo_lab::SimulatedRobot;
 use rumbo_log::{Choice, Level, Manifest};
-use rumbo_session::{Driver, Event, Extras, Host, Order, SLICE_US, Target};
+use rumbo_session::{Event, Extras, Host, Order, SLICE_US, SessionDriver, Target};
 use rumbo_wire::Command;
 
 struct Quiet;
@@ -25,7 +25,7 @@ impl Host for Quiet {
 }
 
 struct Bench {
-    driver: Driver<Quiet, SimulatedRobot>,
+    driver: SessionDriver<Quiet, SimulatedRobot>,
     wall_us: u64,
 }
 
@@ -40,7 +40,7 @@ impl Bench {
         };
         let robot = SimulatedRobot::new(Overrides::default(), choice).unwrap();
         assert_eq!(robot.baud(), 9_600);
-        let mut driver = Driver::new(Box::new(robot), Quiet, 1.0, Extras::default());
+        let mut driver = SessionDriver::new(Box::new(robot), Quiet, 1.0, Extras::default());
         driver.begin(0);
         let mut bench = Self { driver, wall_us: 0 };
         bench.pass(200);

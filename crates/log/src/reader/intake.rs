@@ -12,7 +12,7 @@ use crate::entry::{Burst, Said};
 use crate::event::{Level, LoggedEvent};
 use crate::frames::Frames;
 use crate::log::{Log, Place};
-use crate::reading::{Reading, Source};
+use crate::reading::{Reading, ReadingSource};
 use crate::scene::Scene;
 use crate::schema::Topic;
 use crate::signals::Row;
@@ -309,9 +309,9 @@ impl Intake {
             }
             Topic::Truth | Topic::Loops | Topic::Others => {
                 let source = match topic {
-                    Topic::Loops => Source::Loops,
-                    Topic::Others => Source::Others,
-                    _ => Source::Truth,
+                    Topic::Loops => ReadingSource::Loops,
+                    Topic::Others => ReadingSource::Others,
+                    _ => ReadingSource::Truth,
                 };
                 log.readings.push(self.readings.shown(t_ms, source, data)?);
                 self.filled += size_of::<Reading>() + data.len() / 4;

@@ -1,6 +1,6 @@
 //! Readings as a log has them.
 
-use crate::reading::{Names, Reading, Source};
+use crate::reading::{Names, Reading, ReadingSource};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// Makes readings of messages; those in a row share their names.
 #[derive(Default)]
 pub(super) struct Readings {
-    names: BTreeMap<Source, Names>,
+    names: BTreeMap<ReadingSource, Names>,
 }
 
 #[derive(Deserialize)]
@@ -22,7 +22,7 @@ impl Readings {
     pub(super) fn shown(
         &mut self,
         t_ms: i64,
-        source: Source,
+        source: ReadingSource,
         data: &[u8],
     ) -> serde_json::Result<Reading> {
         let values = serde_json::from_slice(data)?;
@@ -32,10 +32,15 @@ impl Readings {
     /// Numbers that a program printed.
     pub(super) fn printed(&mut self, t_ms: i64, data: &[u8]) -> serde_json::Result<Reading> {
         let Printed { usart, values } = serde_json::from_slice(data)?;
-        Ok(self.reading(t_ms, Source::Usart(usart), values))
+        Ok(self.reading(t_ms, ReadingSource::Usart(usart), values))
     }
 
-    fn reading(&mut self, t_ms: i64, source: Source, values: BTreeMap<String, Value>) -> Reading {
+    fn reading(
+        &mut self,
+        t_ms: i64,
+        source: ReadingSource,
+        values: BTreeMap<String, Value>,
+    ) -> Reading {
         let signals = values.into_iter().filter_map(|(name, value)| {
             Some(match (value.as_f64(), name.strip_suffix("_clear")) {
                 (Some(value), _) => (name, value),

@@ -7,7 +7,7 @@ use serde::Serialize;
 /// One value of a row as the page gets it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Cell {
+pub enum RowValue {
     /// Its value.
     Number(f64),
     /// A range in which there is nothing: no gap in the measurement, but no number either.
@@ -16,7 +16,7 @@ pub enum Cell {
     Unknown(Option<()>),
 }
 
-impl Cell {
+impl RowValue {
     /// Of a value that is not a number where unknown, infinite where a range is clear.
     pub(crate) fn of(value: f64) -> Self {
         match value {
@@ -139,9 +139,9 @@ impl Row {
 
     /// As the page gets it.
     #[must_use]
-    pub fn cells(&self) -> Vec<Cell> {
+    pub fn cells(&self) -> Vec<RowValue> {
         (0..SIGNALS.len())
-            .map(|column| Cell::of(self.get(column).unwrap_or(f64::NAN)))
+            .map(|column| RowValue::of(self.get(column).unwrap_or(f64::NAN)))
             .collect()
     }
 }

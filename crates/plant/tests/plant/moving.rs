@@ -6,8 +6,10 @@ use proptest::prelude::*;
 use rumbo_plant::cone::{Cone, Hearing, nearest};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
-use rumbo_plant::moving::{Body, BodyMotion, Course, Repeat, Route, Velocity, Waypoint};
-use rumbo_plant::plant::{Event, Mount, Mounts, Plant, Setup};
+use rumbo_plant::moving::{
+    Body, BodyMotion, BodyVelocity, Course, MoverRepeat, MoverRoute, TimedWaypoint,
+};
+use rumbo_plant::plant::{Event, Mount, Mounts, Plant, PlantSetup};
 use rumbo_plant::sonar::{Ping, SonarId};
 use rumbo_plant::world::{Block, Point, ShapeError, Wall, World};
 
@@ -21,12 +23,12 @@ fn at(x_m: f64, y_m: f64) -> Pose {
     }
 }
 
-fn route(points: &[(u64, Pose)], repeat: Repeat, start_us: u64) -> Route {
+fn route(points: &[(u64, Pose)], repeat: MoverRepeat, start_us: u64) -> MoverRoute {
     let waypoints = points
         .iter()
-        .map(|&(at_us, pose)| Waypoint { at_us, pose })
+        .map(|&(at_us, pose)| TimedWaypoint { at_us, pose })
         .collect();
-    Route::new(waypoints, repeat, start_us).unwrap()
+    MoverRoute::new(waypoints, repeat, start_us).unwrap()
 }
 
 fn square(half_m: f64) -> Vec<Point> {
@@ -52,7 +54,7 @@ fn goes(from: Point, to: Point, start_us: u64) -> Body {
     ];
     Body::new(
         square(0.1),
-        Course::Route(route(&points, Repeat::Once, start_us)),
+        Course::Route(route(&points, MoverRepeat::Once, start_us)),
     )
     .unwrap()
 }
@@ -62,14 +64,14 @@ fn plant(world: World) -> Plant {
         x_m: 0.11,
         ..Mount::default()
     });
-    Plant::new(Setup {
+    Plant::new(PlantSetup {
         rig: Mounts {
             front,
             ..Mounts::default()
         },
         world,
         seed: 3,
-        ..Setup::default()
+        ..PlantSetup::default()
     })
 }
 
@@ -92,16 +94,16 @@ fn a_route_is_gone_once_around_or_back_and_forth() {
         let BodyMotion { pose, velocity } = body.at(t_us);
         ([pose.x_m, pose.y_m], velocity.m_s)
     };
-    let once = body(&there, Repeat::Once);
+    let once = body(&there, MoverRepeat::Once);
     assert_eq!(where_is(&once, S / 2), ([0.0, 0.0], [0.0, 0.0]), "not yet");
     assert_eq!(where_is(&once, 2 * S), ([1.0, 0.0], [1.0, 0.0]));
     assert_eq!(where_is(&once, 7 * S / 2), ([2.0, 1.5], [0.0, 3.0]));
     assert_eq!(where_is(&once, 9 * S), ([2.0, 3.0], [0.0, 0.0]), "it stays");
-    let back = body(&there, Repeat::BackAndForth);
+    let back = body(&there, MoverRepeat::BackAndForth);
     assert_eq!(where_is(&back, 9 * S / 2), ([2.0, 1.5], [0.0, -3.0]));
     assert_eq!(where_is(&back, 6 * S), ([1.0, 0.0], [-1.0, 0.0]));
     assert_eq!(where_is(&back, 8 * S), ([1.0, 0.0], [1.0, 0.0]));
-    let loops = body(&round, Repeat::Loop);
+    let loops = body(&round, MoverRepeat::Loop);
     assert_eq!(where_is(&loops, 4 * S), ([1.0, 0.0], [-1.0, 0.0]));
     assert_eq!(where_is(&loops, 6 * S), ([1.0, 0.0], [1.0, 0.0]));
     assert_eq!(once.fastest_m_s(), 3.0);
@@ -110,22 +112,22 @@ fn a_route_is_gone_once_around_or_back_and_forth() {
 #[test]
 fn what_is_no_route_is_refused() {
     let refused = |points: &[(u64, f64)], repeat| {
-        let waypoints = points.iter().map(|&(at_us, x_m)| Waypoint {
+        let waypoints = points.iter().map(|&(at_us, x_m)| TimedWaypoint {
             at_us,
             pose: at(x_m, 0.0),
         });
-        Route::new(waypoints.collect(), repeat, 0).unwrap_err()
+        MoverRoute::new(waypoints.collect(), repeat, 0).unwrap_err()
     };
     for (points, repeat) in [
-        (&[(0, 0.0)][..], Repeat::Once),
-        (&[(0, 0.0), (0, 1.0)], Repeat::Once),
-        (&[(1, 0.0), (2, 1.0)], Repeat::Once),
-        (&[(0, 0.0), (9, 1.0)], Repeat::Loop),
+        (&[(0, 0.0)][..], MoverRepeat::Once),
+        (&[(0, 0.0), (0, 1.0)], MoverRepeat::Once),
+        (&[(1, 0.0), (2, 1.0)], MoverRepeat::Once),
+        (&[(0, 0.0), (9, 1.0)], MoverRepeat::Loop),
     ] {
         assert_eq!(refused(points, repeat), ShapeError::NoRoute, "{points:?}");
     }
     let endless = [(0, 0.0), (1, f64::INFINITY)];
-    assert_eq!(refused(&endless, Repeat::Once), ShapeError::NotFinite);
+    assert_eq!(refused(&endless, MoverRepeat::Once), ShapeError::NotFinite);
     let mut world = World::empty();
     let body = goes([0.0, 0.0], [1.0, 0.0], 0);
     for _ in 0..63 {
@@ -151,7 +153,7 @@ proptest! {
         for (place, speed) in boxes {
             let from = BodyMotion {
                 pose: Pose { x_m: place[0], y_m: place[1], heading_rad: place[2] },
-                velocity: Velocity { m_s: [speed[0], speed[1]], yaw_rad_s: speed[2] },
+                velocity: BodyVelocity { m_s: [speed[0], speed[1]], yaw_rad_s: speed[2] },
             };
             let body = Body::new(square(0.15), Course::Straight { at_us: 0, from }).unwrap();
             let Pose { x_m, y_m, heading_rad } = body.at(now_us).pose;
@@ -232,7 +234,7 @@ fn what_goes_away_as_fast_as_the_robot_comes_is_met_softly() {
     let meets = |speed_m_s: f64| {
         let from = BodyMotion {
             pose: at(0.5, 0.0),
-            velocity: Velocity {
+            velocity: BodyVelocity {
                 m_s: [speed_m_s, 0.0],
                 yaw_rad_s: 0.0,
             },

@@ -7,7 +7,7 @@ use std::thread;
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::{Event, Mount, Mounts, Plant, Setup, State, Truth};
+use rumbo_plant::plant::{Event, GroundTruth, Mount, Mounts, Plant, PlantSetup, State};
 use rumbo_plant::sonar::SonarId;
 use rumbo_plant::world::{Block, Wall, World};
 
@@ -51,11 +51,11 @@ fn wall_at(x_m: f64) -> World {
 }
 
 fn plant(world: World, seed: u64) -> Plant {
-    Plant::new(Setup {
+    Plant::new(PlantSetup {
         rig: final_rig(),
         world,
         seed,
-        ..Setup::default()
+        ..PlantSetup::default()
     })
 }
 
@@ -99,13 +99,13 @@ fn room() -> World {
 }
 
 /// A drive about a cluttered room: the bits of everything that happened.
-fn eventful_run(seed: u64) -> (Vec<Event>, Truth) {
-    let plant = Plant::new(Setup {
+fn eventful_run(seed: u64) -> (Vec<Event>, GroundTruth) {
+    let plant = Plant::new(PlantSetup {
         params: Params::default().draw(seed, 0),
         rig: final_rig(),
         world: room(),
         seed,
-        ..Setup::default()
+        ..PlantSetup::default()
     });
     let mut state = plant.start(Pose::default());
     let mut events = Vec::new();
@@ -218,7 +218,7 @@ fn stopping_more_often_on_the_way_changes_little() {
 }
 
 /// Drives at a wall with full duty, from `angle_rad` off its normal; checks every step that no corner is beyond it.
-fn crash(angle_rad: f64, duty: f64) -> (Truth, Vec<f64>) {
+fn crash(angle_rad: f64, duty: f64) -> (GroundTruth, Vec<f64>) {
     let plant = plant(wall_at(1.0), 6);
     let pose = Pose {
         heading_rad: angle_rad,
@@ -343,9 +343,9 @@ fn a_robot_backs_off_a_wall_it_hit() {
 
 #[test]
 fn with_the_wheels_in_the_air_they_turn_and_the_body_stays() {
-    let plant = Plant::new(Setup {
+    let plant = Plant::new(PlantSetup {
         wheels_in_air: true,
-        ..Setup::default()
+        ..PlantSetup::default()
     });
     let mut state = plant.start(Pose::default());
     drive(&plant, &mut state, 0.5, -0.5);
@@ -420,10 +420,10 @@ fn a_weak_robot_that_stalled_at_a_wall_backs_off() {
     let mut params = Params::default();
     params.motor.resistance_ohm = 12.0;
     params.battery.open_circuit_v = 6.0;
-    let plant = Plant::new(Setup {
+    let plant = Plant::new(PlantSetup {
         params,
         world: wall_at(0.3),
-        ..Setup::default()
+        ..PlantSetup::default()
     });
     let mut state = plant.start(Pose::default());
     let both = |state: &mut State, bridge| {

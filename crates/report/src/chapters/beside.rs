@@ -5,26 +5,26 @@ use super::parts::{self, DISTANCE, REFERENCE};
 use crate::data::Data;
 use crate::judge;
 use crate::places::Places;
-use crate::real::Recording;
+use crate::real::RealRun;
 use crate::respond::{Kind, Response, responses};
-use crate::signals::{CM, Outcome, unwrapped};
+use crate::signals::{CM, ReportedRun, unwrapped};
 use crate::table::{Cell, table};
 use crate::text::{Language, Text, word};
 use rumbo_plot::{Curve, Ink, Panel, Points};
-use rumbo_wire::text::Row;
+use rumbo_wire::text::TextRow;
 
 const OURS: Text = word("rumbo-simulated-robot");
 const REAL: Text = word("recorded-robot-original-program");
 const REAL_OURS: Text = word("recorded-robot-rumbo");
 
-const fn real(recording: &Recording) -> Text {
+const fn real(recording: &RealRun) -> Text {
     if recording.ours { REAL_OURS } else { REAL }
 }
 
 /// A curve of ours and one of the recorded robot, overlaid.
 pub(super) fn both(
     language: Language,
-    recording: &Recording,
+    recording: &RealRun,
     ours: Points,
     theirs: Points,
 ) -> Vec<Curve> {
@@ -39,7 +39,7 @@ const QUANTITY: Text = word("quantity");
 /// A table of our values beside those of the recorded robot, already formatted.
 pub(super) fn values(
     language: Language,
-    recording: &Recording,
+    recording: &RealRun,
     rows: &[(String, String, String)],
 ) -> String {
     let header = [QUANTITY, OURS, real(recording)].map(|text| text.of(language));
@@ -56,7 +56,7 @@ pub(super) fn recorded<'a>(
     places: &mut Places,
     data: &'a Data,
     scenario: &str,
-) -> Option<(&'a Outcome, &'a Recording)> {
+) -> Option<(&'a ReportedRun, &'a RealRun)> {
     let found = data.beside(scenario);
     places.section("recorded", found.is_some());
     if let Some((_, recording)) = found {
@@ -68,7 +68,7 @@ pub(super) fn recorded<'a>(
 /// Panels of x, y and heading over time, ours and those of the recorded robot.
 pub(super) fn poses(
     language: Language,
-    recording: &Recording,
+    recording: &RealRun,
     ours: [Points; 3],
     theirs: [Points; 3],
 ) -> Vec<Panel> {
@@ -102,7 +102,7 @@ const RIPPLE: Text = word("ripple-standard-deviation");
 /// A table of each step's response, beside a recorded run's.
 pub(super) fn steps(
     places: &mut Places,
-    recording: &Recording,
+    recording: &RealRun,
     kind: Kind,
     ours: &[Response],
     real: &[Response],
@@ -148,9 +148,9 @@ fn step_rows(
 }
 
 /// The mean of a recorded run's two ranges \[cm\].
-pub(super) fn recorded_mean_cm(recording: &Recording) -> Points {
+pub(super) fn recorded_mean_cm(recording: &RealRun) -> Points {
     recording.signal(|row| match row {
-        Row::Distance(row) => Some(0.5 * f64::from(row.left_cm + row.right_cm)),
+        TextRow::Distance(row) => Some(0.5 * f64::from(row.left_cm + row.right_cm)),
         _ => None,
     })
 }

@@ -10,7 +10,7 @@ use crate::data::Data;
 use crate::drawing::scheme::{Part, Scheme};
 use crate::judge;
 use crate::places::Places;
-use crate::signals::{Outcome, RPM};
+use crate::signals::{RPM, ReportedRun};
 use crate::text::{Language, Text, same, word};
 use rumbo_plot::{Curve, Ink, Map, Panel, Plot, Points};
 
@@ -206,7 +206,7 @@ fn asymmetry(places: &mut Places, data: &Data) {
 }
 
 /// True speeds of both wheels.
-fn speeds(language: Language, outcome: &Outcome, axis: Text) -> Panel {
+fn speeds(language: Language, outcome: &ReportedRun, axis: Text) -> Panel {
     let curve = |name: Text, ink, wheel: Channel| {
         Curve::new(
             name.of(language),

@@ -1,7 +1,7 @@
 //! Maps that several chapters show: trajectories, walls and boxes, routes.
 
 use crate::places::Places;
-use crate::signals::Outcome;
+use crate::signals::ReportedRun;
 use crate::text::{Language, Text, same, word};
 use rumbo_plot::{Curve, Ink, Map, Points, Shape};
 use rumbo_wire::Command;
@@ -24,7 +24,7 @@ pub(crate) fn map(language: Language) -> Map {
 }
 
 /// The ideal path, the trajectory by odometry, and the true one.
-pub(super) fn trajectories(language: Language, outcome: &Outcome, ideal: Points) -> Vec<Curve> {
+pub(super) fn trajectories(language: Language, outcome: &ReportedRun, ideal: Points) -> Vec<Curve> {
     let mut curves = vec![Curve::new(IDEAL.of(language), Ink::Reference, ideal)];
     let estimated = outcome.estimated_trajectory();
     if !estimated.is_empty() {
@@ -39,7 +39,7 @@ pub(super) fn trajectories(language: Language, outcome: &Outcome, ideal: Points)
 }
 
 /// The walls and boxes of a run's world.
-pub(crate) fn shapes(outcome: &Outcome) -> Vec<Shape> {
+pub(crate) fn shapes(outcome: &ReportedRun) -> Vec<Shape> {
     let Ok(world) = outcome.setup.world.world() else {
         return Vec::new();
     };
@@ -54,7 +54,7 @@ pub(crate) fn shapes(outcome: &Outcome) -> Vec<Shape> {
 }
 
 /// The route of a run's commands in the world, from its start.
-pub(super) fn route(outcome: &Outcome) -> Points {
+pub(super) fn route(outcome: &ReportedRun) -> Points {
     let start = outcome.setup.scenario.start;
     let (sin, cos) = start.heading_rad.sin_cos();
     let mut route = vec![(start.x_m, start.y_m)];
@@ -83,7 +83,7 @@ pub(super) fn off_route(route: &Points, (x, y): (f64, f64)) -> f64 {
 }
 
 /// Paths between boxes, and where the robot started.
-pub(super) fn path_map(places: &Places, outcome: &Outcome, ideal: Points) -> Map {
+pub(super) fn path_map(places: &Places, outcome: &ReportedRun, ideal: Points) -> Map {
     let language = places.language;
     let mut curves = trajectories(language, outcome, ideal);
     if curves[0].points.is_empty() {

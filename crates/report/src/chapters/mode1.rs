@@ -8,7 +8,7 @@ use crate::channel::Channel;
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
-use crate::signals::{CM, Outcome, difference};
+use crate::signals::{CM, ReportedRun, difference};
 use crate::text::{Language, Text, same, word};
 use rumbo_plot::{Curve, Ink, Panel, Plot};
 
@@ -125,7 +125,7 @@ fn law(language: Language) -> String {
     .svg(language)
 }
 
-fn distance_panel(language: Language, outcome: &Outcome) -> Panel {
+fn distance_panel(language: Language, outcome: &ReportedRun) -> Panel {
     let curves = vec![
         Curve::steps(
             REFERENCE.of(language),

@@ -8,7 +8,7 @@ use crate::channel::Channel;
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
-use crate::signals::{CM, DEG, Outcome, difference};
+use crate::signals::{CM, DEG, ReportedRun, difference};
 use crate::text::{Text, same, word};
 use rumbo_plot::{Curve, Ink, Panel};
 
@@ -80,7 +80,7 @@ fn fill(places: &mut Places, data: &Data) {
     beside::distance(places, data, "mode2");
 }
 
-fn angle_panel(places: &Places, outcome: &Outcome) -> Panel {
+fn angle_panel(places: &Places, outcome: &ReportedRun) -> Panel {
     let gap_m = match (outcome.setup.rig.left, outcome.setup.rig.right) {
         (Some(left), Some(right)) => left.y_m - right.y_m,
         _ => return Panel::default(),

@@ -9,10 +9,10 @@ use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
 use crate::respond::{self, Kind};
-use crate::signals::{Outcome, RPM, difference};
+use crate::signals::{RPM, ReportedRun, difference};
 use crate::text::{Language, Text, same, word};
 use rumbo_plot::{Curve, Ink, Panel};
-use rumbo_wire::text::Row;
+use rumbo_wire::text::TextRow;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
     name: "mode5",
@@ -84,7 +84,7 @@ fn fill(places: &mut Places, data: &Data) {
 }
 
 /// Speeds of both wheels with the reference of the commands.
-pub(super) fn speed_panel(language: Language, outcome: &Outcome) -> Panel {
+pub(super) fn speed_panel(language: Language, outcome: &ReportedRun) -> Panel {
     let curve =
         |name: Text, ink, wheel| Curve::new(name.of(language), ink, outcome.speed_rpm(wheel));
     Panel::new(
@@ -101,7 +101,7 @@ pub(super) fn speed_panel(language: Language, outcome: &Outcome) -> Panel {
     )
 }
 
-fn errors(language: Language, outcome: &Outcome) -> Vec<Curve> {
+fn errors(language: Language, outcome: &ReportedRun) -> Vec<Curve> {
     let reference = outcome.reference(RPM);
     [
         (LEFT, Ink::First, Channel::Left),
@@ -125,8 +125,8 @@ fn beside(places: &mut Places, data: &Data) {
     let language = places.language;
     let real = |wheel| {
         recording.signal(|row| match row {
-            Row::Speed(row) if wheel == Channel::Left => Some(f64::from(row.wheel_rpm.left)),
-            Row::Speed(row) => Some(f64::from(row.wheel_rpm.right)),
+            TextRow::Speed(row) if wheel == Channel::Left => Some(f64::from(row.wheel_rpm.left)),
+            TextRow::Speed(row) => Some(f64::from(row.wheel_rpm.right)),
             _ => None,
         })
     };

@@ -10,10 +10,10 @@ use crate::channel::Channel;
 use crate::data::Data;
 use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
-use crate::signals::{CM, DEG, Outcome, RPM};
+use crate::signals::{CM, DEG, RPM, ReportedRun};
 use crate::text::{Language, Text, same, word};
 use rumbo_plot::{Curve, Ink, Map, Panel};
-use rumbo_wire::text::Row;
+use rumbo_wire::text::TextRow;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
     name: "mode6",
@@ -68,7 +68,7 @@ fn fill(places: &mut Places, data: &Data) {
     beside(places, data);
 }
 
-fn results(places: &mut Places, outcome: &Outcome) {
+fn results(places: &mut Places, outcome: &ReportedRun) {
     let language = places.language;
     let speeds = || mode5::speed_panel(language, outcome);
     let panels = vec![speeds(), panels::pwm_panel(language, outcome)];
@@ -119,7 +119,13 @@ fn results(places: &mut Places, outcome: &Outcome) {
     places.figure("mode6-way", Some(svg));
 }
 
-fn variable(language: Language, outcome: &Outcome, axis: Text, ink: Ink, wheel: Channel) -> Panel {
+fn variable(
+    language: Language,
+    outcome: &ReportedRun,
+    axis: Text,
+    ink: Ink,
+    wheel: Channel,
+) -> Panel {
     let curves = vec![
         Curve::new(MEASURED.of(language), ink, outcome.speed_rpm(wheel)),
         Curve::new(
@@ -141,7 +147,7 @@ fn beside(places: &mut Places, data: &Data) {
         return;
     };
     let real = recording.signal(|row| match row {
-        Row::Speed(row) => Some(f64::from(row.wheel_rpm.left)),
+        TextRow::Speed(row) => Some(f64::from(row.wheel_rpm.left)),
         _ => None,
     });
     let mut curves = vec![Curve::steps(

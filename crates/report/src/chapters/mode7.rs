@@ -10,10 +10,10 @@ use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::judge;
 use crate::places::Places;
 use crate::respond::rms_and_worst;
-use crate::signals::{CM, Outcome};
+use crate::signals::{CM, ReportedRun};
 use crate::text::{Language, Text, capital, same, word};
 use rumbo_plot::{Curve, Ink, Map, Panel, Points};
-use rumbo_wire::text::Row;
+use rumbo_wire::text::TextRow;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
     name: "mode7",
@@ -85,7 +85,7 @@ fn fill(places: &mut Places, data: &Data) {
 }
 
 /// x and y, and the heading.
-pub(super) fn pose_panels(language: Language, outcome: &Outcome) -> Vec<Panel> {
+pub(super) fn pose_panels(language: Language, outcome: &ReportedRun) -> Vec<Panel> {
     let [x, y, heading] = outcome.pose();
     vec![
         Panel::new(
@@ -113,7 +113,7 @@ fn beside(places: &mut Places, data: &Data) {
     let language = places.language;
     let real = |of: fn(&rumbo_wire::text::WaypointsRow) -> f32| {
         recording.signal(|row| match row {
-            Row::Waypoints(row) => Some(f64::from(of(row))),
+            TextRow::Waypoints(row) => Some(f64::from(of(row))),
             _ => None,
         })
     };

@@ -8,7 +8,7 @@ use super::parts;
 use super::{Experiment, Highlight};
 use crate::data::Data;
 use crate::places::Places;
-use crate::signals::{Outcome, unwrapped};
+use crate::signals::{ReportedRun, unwrapped};
 use crate::text::{Language, Text, word};
 use rumbo_plot::{Curve, Ink, Map, Panel, Points};
 
@@ -65,7 +65,7 @@ fn fill(places: &mut Places, data: &Data) {
 }
 
 /// Panels until a little after the end of what the run is about: the last goal reached, or the end of the lane.
-fn until(places: &mut Places, outcome: &Outcome, id: &str, panels: Vec<Panel>) {
+fn until(places: &mut Places, outcome: &ReportedRun, id: &str, panels: Vec<Panel>) {
     let end_s = outcome
         .end_s()
         .map_or(outcome.duration_s(), |end_s| end_s + 2.0);
@@ -159,7 +159,7 @@ fn obstacles(places: &mut Places, data: &Data) {
 }
 
 /// Coordinates, with those of the goal, and heading with its reference.
-fn pose_panels(language: Language, outcome: &Outcome, goal: bool) -> Vec<Panel> {
+fn pose_panels(language: Language, outcome: &ReportedRun, goal: bool) -> Vec<Panel> {
     let [x, y, heading] = outcome.pose();
     let mut position = Vec::new();
     if goal {

@@ -6,10 +6,10 @@ use super::parts;
 use crate::data::Data;
 use crate::judge;
 use crate::places::Places;
-use crate::real::Recording;
+use crate::real::RealRun;
 use crate::text::{Text, word};
 use rumbo_plot::{Map, Points};
-use rumbo_wire::text::{MissionRow, Row};
+use rumbo_wire::text::{MissionRow, TextRow};
 
 const TIME: Text = word("duration");
 const PATH: Text = word("way-by-odometry");
@@ -67,9 +67,9 @@ pub(super) fn fill(places: &mut Places, data: &Data, scenario: &str) {
     places.block(&format!("recorded-values-{name}"), table);
 }
 
-fn recorded(recording: &Recording, of: fn(&MissionRow) -> f32) -> Points {
+fn recorded(recording: &RealRun, of: fn(&MissionRow) -> f32) -> Points {
     recording.signal(|row| match row {
-        Row::Mission(row) => Some(f64::from(of(row))),
+        TextRow::Mission(row) => Some(f64::from(of(row))),
         _ => None,
     })
 }

@@ -3,12 +3,12 @@
 use super::parts::{self, DISTANCE, ERROR_CM, LEFT, MEASURED, PWM, REFERENCE, RIGHT};
 use crate::channel::Channel;
 use crate::places::Places;
-use crate::signals::{Outcome, difference};
+use crate::signals::{ReportedRun, difference};
 use crate::text::{Language, Text, word};
 use rumbo_plot::{Curve, Ink, Panel, Points};
 
 /// PWM of both wheels.
-pub(crate) fn pwm_panel(language: Language, outcome: &Outcome) -> Panel {
+pub(crate) fn pwm_panel(language: Language, outcome: &ReportedRun) -> Panel {
     let curve = |name: Text, ink, wheel| Curve::steps(name.of(language), ink, outcome.pwm(wheel));
     Panel::new(
         PWM.of(language),
@@ -32,7 +32,7 @@ pub(super) struct Pair {
 
 impl Pair {
     /// Both distances with the reference over the PWM, and how far both are from it.
-    pub(super) fn fill(&self, places: &mut Places, id: &str, outcome: &Outcome) {
+    pub(super) fn fill(&self, places: &mut Places, id: &str, outcome: &ReportedRun) {
         let language = places.language;
         let [from, to] = self.distances_cm;
         let distances = self.distances(language, outcome).at_least(from, to);
@@ -44,7 +44,7 @@ impl Pair {
         parts::timed(places, &format!("{id}-error"), vec![errors]);
     }
 
-    fn distances(&self, language: Language, outcome: &Outcome) -> Panel {
+    fn distances(&self, language: Language, outcome: &ReportedRun) -> Panel {
         let reference = REFERENCE.of(language);
         let mut curves = vec![Curve::steps(
             reference,
@@ -55,7 +55,7 @@ impl Pair {
         Panel::new(DISTANCE.of(language), curves)
     }
 
-    fn errors(&self, language: Language, outcome: &Outcome) -> Vec<Curve> {
+    fn errors(&self, language: Language, outcome: &ReportedRun) -> Vec<Curve> {
         each(language, outcome, |sonar| {
             difference(&outcome.range_cm(sonar), &self.reference)
         })
@@ -63,7 +63,11 @@ impl Pair {
 }
 
 /// A curve for each of a pair.
-fn each(language: Language, outcome: &Outcome, points: impl Fn(Channel) -> Points) -> Vec<Curve> {
+fn each(
+    language: Language,
+    outcome: &ReportedRun,
+    points: impl Fn(Channel) -> Points,
+) -> Vec<Curve> {
     let places = [(Ink::First, Channel::Left), (Ink::Second, Channel::Right)];
     let named = pair_names(outcome).into_iter().zip(places);
     named
@@ -77,7 +81,7 @@ const LEFT_SONAR: Text = word("left-sonar");
 const RIGHT_SONAR: Text = word("right-sonar");
 
 /// What the two of a pair are called: beside the robot they are one behind the other.
-fn pair_names(outcome: &Outcome) -> [Text; 2] {
+fn pair_names(outcome: &ReportedRun) -> [Text; 2] {
     let beside = outcome
         .setup
         .rig
@@ -91,7 +95,7 @@ fn pair_names(outcome: &Outcome) -> [Text; 2] {
 }
 
 /// The mean of a pair's ranges \[cm\], or the front sonar's.
-pub(super) fn mean_cm(outcome: &Outcome) -> Points {
+pub(super) fn mean_cm(outcome: &ReportedRun) -> Points {
     if outcome.setup.rig.front.is_some() {
         return outcome.range_cm(Channel::Front);
     }
@@ -108,7 +112,7 @@ const RIGHT_AXIS: Text = word("right-wheel-rpm");
 const REFERENCES_AXIS: Text = word("references-rpm");
 
 /// Speed references of both wheels.
-pub(super) fn references_panel(language: Language, outcome: &Outcome) -> Panel {
+pub(super) fn references_panel(language: Language, outcome: &ReportedRun) -> Panel {
     let curve = |name: Text, ink, wheel| {
         Curve::steps(name.of(language), ink, outcome.speed_reference_rpm(wheel))
     };
@@ -122,7 +126,7 @@ pub(super) fn references_panel(language: Language, outcome: &Outcome) -> Panel {
 }
 
 /// Reference and speed of each wheel, one above the other, and the PWM of both.
-pub(super) fn wheel_panels(language: Language, outcome: &Outcome) -> Vec<Panel> {
+pub(super) fn wheel_panels(language: Language, outcome: &ReportedRun) -> Vec<Panel> {
     let panel = |axis: Text, ink, wheel| {
         let curves = vec![
             Curve::new(MEASURED.of(language), ink, outcome.speed_rpm(wheel)),
@@ -147,7 +151,7 @@ const FRONT_RANGE: Text = word("front");
 const RANGE_AXIS: Text = word("range-cm");
 
 /// The ranges of the three sonars.
-pub(super) fn range_panels(language: Language, outcome: &Outcome) -> Vec<Panel> {
+pub(super) fn range_panels(language: Language, outcome: &ReportedRun) -> Vec<Panel> {
     let panel = |name: Text, ink, sonar| {
         let curve = Curve::new(name.of(language), ink, outcome.range_cm(sonar));
         Panel::new(RANGE_AXIS.of(language), vec![curve]).at_least(0.0, 60.0)
@@ -162,7 +166,7 @@ pub(super) fn range_panels(language: Language, outcome: &Outcome) -> Vec<Panel> 
 const STATE_AXIS: Text = word("state");
 
 /// The states of a mode over time; those that never occur are left out. Their names come in the order of their numbers.
-pub(super) fn state_panel(language: Language, outcome: &Outcome, names: &[Text]) -> Panel {
+pub(super) fn state_panel(language: Language, outcome: &ReportedRun, names: &[Text]) -> Panel {
     let states = outcome.states();
     let used: Vec<usize> = (0..names.len())
         .filter(|state| states.iter().any(|(_, value)| *value as usize == *state))

@@ -5,7 +5,7 @@ use crate::drawing::scheme::Scheme;
 use crate::drawing::{rig, wiring};
 use crate::judge;
 use crate::places::Places;
-use crate::signals::Outcome;
+use crate::signals::ReportedRun;
 use crate::text::{Text, word};
 use rumbo_plot::{Panel, Plot};
 
@@ -57,7 +57,7 @@ pub(super) fn scheme(places: &mut Places, id: &str, scheme: &Scheme) {
 }
 
 /// The metrics of runs against their limits.
-pub(super) fn limits(places: &mut Places, outcomes: &[&Outcome]) {
+pub(super) fn limits(places: &mut Places, outcomes: &[&ReportedRun]) {
     let tables = judge::limits(places.language, outcomes);
     places.block("limits", tables);
 }

@@ -5,7 +5,7 @@ use super::parts;
 use super::{Experiment, Highlight};
 use crate::data::Data;
 use crate::places::Places;
-use crate::signals::{CM, Outcome};
+use crate::signals::{CM, ReportedRun};
 use crate::text::{Text, word};
 use rumbo_plot::{Curve, Ink, Map, Panel, Points};
 
@@ -61,7 +61,7 @@ fn fill(places: &mut Places, data: &Data) {
     parts::limits(places, &data.of(&EXPERIMENT));
 }
 
-fn off_path_cm(outcome: &Outcome, route: &Points) -> Points {
+fn off_path_cm(outcome: &ReportedRun, route: &Points) -> Points {
     let [x, ..] = outcome.pose();
     let times = x.iter().map(|(t_s, _)| *t_s).filter(|t_s| *t_s >= 0.0);
     times

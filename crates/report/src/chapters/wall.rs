@@ -10,7 +10,7 @@ use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::judge;
 use crate::places::Places;
 use crate::respond::rms_and_worst;
-use crate::signals::{CM, Outcome, between, difference};
+use crate::signals::{CM, ReportedRun, between, difference};
 use crate::text::{Text, capital, same, word};
 use rumbo_plot::{Curve, Ink, Panel, Points};
 
@@ -129,7 +129,7 @@ fn fill_mode4(places: &mut Places, data: &Data) {
 }
 
 /// The distance that mode 3 holds: what both sonars read while the robot was still standing.
-fn held(outcome: &Outcome) -> Points {
+fn held(outcome: &ReportedRun) -> Points {
     let mean = panels::mean_cm(outcome);
     let standing = between(&mean, -0.5, 0.3);
     let values: Vec<f64> = standing

@@ -4,11 +4,11 @@ use crate::channel::Channel;
 use crate::chapters::maps;
 use crate::chapters::panels::pwm_panel;
 use crate::chapters::parts::{DISTANCE, LEFT, REFERENCE, RIGHT, SPEED, TIME};
-use crate::signals::{CM, Outcome, RPM};
+use crate::signals::{CM, RPM, ReportedRun};
 use crate::text::{Language, Text, word};
 use rumbo_control::mode::ReferenceKind;
 use rumbo_control::rig::Rig;
-use rumbo_experiment::grade::Test;
+use rumbo_experiment::grade::GradedTest;
 use rumbo_plot::{Curve, Ink, Panel, Plot};
 use rumbo_wire::Command;
 
@@ -18,8 +18,8 @@ const FRONT: Text = word("front-sonar");
 const DRIVEN: Text = word("driven");
 
 /// The quantity plotted for a run of this mode, from ground truth.
-pub(super) fn figures(language: Language, test: &Test, outcome: &Outcome) -> Vec<String> {
-    let truth = |name: Text, ink, signal: &dyn Fn(&rumbo_sim::trace::Sample) -> f64| {
+pub(super) fn figures(language: Language, test: &GradedTest, outcome: &ReportedRun) -> Vec<String> {
+    let truth = |name: Text, ink, signal: &dyn Fn(&rumbo_sim::trace::TruthSample) -> f64| {
         Curve::new(name.of(language), ink, outcome.truth(signal))
     };
     let range = |name, ink, sonar: Channel| {
@@ -91,7 +91,7 @@ pub(super) fn figures(language: Language, test: &Test, outcome: &Outcome) -> Vec
 }
 
 /// The robot's goals, in the world.
-fn goals(outcome: &Outcome) -> Vec<(f64, f64, String)> {
+fn goals(outcome: &ReportedRun) -> Vec<(f64, f64, String)> {
     let start = outcome.setup.scenario.start;
     let (sin, cos) = start.heading_rad.sin_cos();
     let commands = outcome.setup.scenario.commands.iter();

@@ -1,10 +1,10 @@
 //! Reads the recordings of a folder.
 
-use super::{FromLog, NotShown, Real, RealError, Recording, Skipped};
+use super::{FromLog, NotShown, Real, RealError, RealRun, Skipped};
 use rumbo_experiment::files::bounded::{LONGEST_RECORDING, read_at_most};
 use rumbo_identify::dialect;
 use rumbo_wire::csv;
-use rumbo_wire::text::{Row, RowKind};
+use rumbo_wire::text::{RowKind, TextRow};
 use std::path::{Path, PathBuf};
 
 /// Reads all CSVs of a folder, and its logs through `log`, which returns the run in a log or why it is not shown.
@@ -54,7 +54,7 @@ pub fn read(
                 real.skipped.push(skip(NotShown::Another))
             }
             Some(scenario) => {
-                real.runs.insert(scenario, Recording { file, rows, ours });
+                real.runs.insert(scenario, RealRun { file, rows, ours });
             }
         }
     }
@@ -101,15 +101,15 @@ fn csv_of(path: &Path) -> Result<FromLog, RealError> {
 }
 
 /// The rows with their times; the first row's period is the wait before the run and does not count.
-fn rows(path: &Path, kind: RowKind, text: &str) -> Result<Vec<(f64, Row)>, RealError> {
-    let mut rows: Vec<(f64, Row)> = Vec::new();
+fn rows(path: &Path, kind: RowKind, text: &str) -> Result<Vec<(f64, TextRow)>, RealError> {
+    let mut rows: Vec<(f64, TextRow)> = Vec::new();
     let mut t_s = 0.0;
     for (index, line) in text.lines().enumerate().skip(1) {
         let line = line.trim();
         if line.is_empty() {
             continue;
         }
-        let row = Row::parse_as(kind, line).map_err(|_| {
+        let row = TextRow::parse_as(kind, line).map_err(|_| {
             let due = kind.columns().len();
             RealError(format!(
                 "{}:{}: `{line}` is no row of {due} numbers; correct it, or take the log that `rumbo import` makes of the other rows",
@@ -125,32 +125,32 @@ fn rows(path: &Path, kind: RowKind, text: &str) -> Result<Vec<(f64, Row)>, RealE
     Ok(rows)
 }
 
-fn period_ms(row: &Row) -> u32 {
+fn period_ms(row: &TextRow) -> u32 {
     match row {
-        Row::Distance(row) => row.dt_ms,
-        Row::Speed(row) => row.dt_ms,
-        Row::Waypoints(row) => row.dt_ms,
-        Row::Mission(row) => row.dt_ms,
+        TextRow::Distance(row) => row.dt_ms,
+        TextRow::Speed(row) => row.dt_ms,
+        TextRow::Waypoints(row) => row.dt_ms,
+        TextRow::Mission(row) => row.dt_ms,
     }
 }
 
 /// The experiment to which these rows belong.
-fn scenario(rows: &[(f64, Row)]) -> Option<&'static str> {
+fn scenario(rows: &[(f64, TextRow)]) -> Option<&'static str> {
     let (_, first) = rows.first()?;
     match first {
-        Row::Distance(row) => ["mode1", "mode2", "mode3", "mode4"]
+        TextRow::Distance(row) => ["mode1", "mode2", "mode3", "mode4"]
             .get(usize::from(row.mode).wrapping_sub(1))
             .copied(),
-        Row::Speed(row) => match row.mode {
+        TextRow::Speed(row) => match row.mode {
             5 => Some("mode5"),
             6 => Some("mode6"),
             _ => None,
         },
-        Row::Waypoints(_) => Some("mode7"),
-        Row::Mission(_) => {
+        TextRow::Waypoints(_) => Some("mode7"),
+        TextRow::Mission(_) => {
             let missions = || {
                 rows.iter().filter_map(|(_, row)| {
-                    if let Row::Mission(row) = row {
+                    if let TextRow::Mission(row) = row {
                         Some(row)
                     } else {
                         None

@@ -2,7 +2,7 @@
 
 use crate::support;
 use proptest::prelude::*;
-use rumbo_control::mode::{Level, ModeId, Movement};
+use rumbo_control::mode::{ModeId, Movement, MovementLevel};
 use rumbo_control::params::ParamId;
 use rumbo_control::{Micros, Wheels};
 use rumbo_wire::{
@@ -120,7 +120,7 @@ fn a_command_belongs_to_its_mode() {
     );
     let forward = Command::Move {
         movement: Movement::Forward,
-        level: Level::Duty(0.5),
+        level: MovementLevel::Duty(0.5),
     };
     assert_eq!(bench.command(forward), Ok(0.5));
     bench.command(Command::Mode(ModeId::FrontDistance)).unwrap();
@@ -166,7 +166,7 @@ fn a_basic_movement_drives_the_wheels_by_its_duty() {
     bench
         .command(Command::Move {
             movement: Movement::TurnLeft,
-            level: Level::Duty(0.4),
+            level: MovementLevel::Duty(0.4),
         })
         .unwrap();
     let counts = bench.outputs.drive.map(|duty| duty.counts());
@@ -274,7 +274,7 @@ const TIMED: [Command; 3] = [
     Command::Mode(ModeId::Manual),
     Command::Move {
         movement: Movement::Forward,
-        level: Level::Duty(0.5),
+        level: MovementLevel::Duty(0.5),
     },
 ];
 

@@ -4,7 +4,7 @@ use crate::support;
 use rumbo_control::Micros;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::SCHEMA;
-use rumbo_wire::text::Row;
+use rumbo_wire::text::TextRow;
 use rumbo_wire::{Command, FromRobot, Hello, PROTOCOL_VERSION, ResetCause, ToRobot};
 use support::Bench;
 
@@ -86,7 +86,7 @@ fn answers_in_the_language_in_which_it_was_addressed() {
     bench.ticks(100);
     assert_eq!(bench.received.len(), frames, "no frames for a terminal");
     assert!(bench.lines.len() >= 8);
-    let Ok(Row::Speed(row)) = Row::parse(bench.lines.last().unwrap()) else {
+    let Ok(TextRow::Speed(row)) = TextRow::parse(bench.lines.last().unwrap()) else {
         panic!("{:?}", bench.lines.last())
     };
     assert_eq!((row.mode, row.dt_ms), (5, 100));
@@ -105,7 +105,7 @@ fn the_original_commands_drive_it_for_10_s_after_the_last_line_and_off_clears_th
     }
     bench.ticks(900);
     assert!(bench.is_driven());
-    let Ok(Row::Speed(row)) = Row::parse(bench.lines.last().unwrap()) else {
+    let Ok(TextRow::Speed(row)) = TextRow::parse(bench.lines.last().unwrap()) else {
         panic!("{:?}", bench.lines.last())
     };
     assert_eq!(row.reference_rpm, 40.0);
@@ -132,7 +132,7 @@ fn text_references_are_in_the_units_of_the_mode_and_off_stops() {
     bench.line("MODE 1");
     bench.line("REF 45");
     bench.ticks(60);
-    let Ok(Row::Distance(row)) = Row::parse(bench.lines.last().unwrap()) else {
+    let Ok(TextRow::Distance(row)) = TextRow::parse(bench.lines.last().unwrap()) else {
         panic!("{:?}", bench.lines.last())
     };
     assert_eq!((row.reference_cm, row.mode), (45.0, 1));
@@ -185,7 +185,7 @@ fn in_mode_7_the_text_shows_speeds_references_pose_and_pwm_as_the_original_did()
         bench.ticks(5);
     }
     bench.ticks(100);
-    let Ok(Row::Waypoints(row)) = Row::parse(bench.lines.last().unwrap()) else {
+    let Ok(TextRow::Waypoints(row)) = TextRow::parse(bench.lines.last().unwrap()) else {
         panic!("{:?}", bench.lines.last())
     };
     assert!(row.x_m > 0.05 && row.y_m.abs() < 0.05, "{row:?}");

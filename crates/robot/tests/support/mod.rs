@@ -5,10 +5,10 @@
 use std::collections::VecDeque;
 
 use rumbo_control::{Echo, Edges, Inputs, Micros, Outputs, SIDES, SonarId, TICK_US, Wheels};
-use rumbo_robot::{Config, Robot};
+use rumbo_robot::{Robot, RobotConfig};
 use rumbo_wire::{
-    Ack, Command, Decoder, EventKind, Frame, FromRobot, Message, Received, Refusal, ResetCause,
-    RobotTime, Status, Telemetry, ToRobot,
+    Ack, Command, Decoder, EventKind, Frame, FrameMessage, FromRobot, Received, Refusal,
+    ResetCause, RobotTime, StatusReport, Telemetry, ToRobot,
 };
 
 /// Bytes that 9600 baud carry in 100 ticks.
@@ -88,7 +88,7 @@ impl Bench {
     /// A robot just started, its clock at `start`.
     pub(crate) fn at(start: Micros) -> Bench {
         Bench {
-            robot: Robot::new(Config {
+            robot: Robot::new(RobotConfig {
                 image: 0,
                 reset: ResetCause::PowerOn,
                 start: 0,
@@ -309,7 +309,7 @@ impl Bench {
     }
 
     /// The last status.
-    pub(crate) fn status(&self) -> Status {
+    pub(crate) fn status(&self) -> StatusReport {
         self.received
             .iter()
             .rev()

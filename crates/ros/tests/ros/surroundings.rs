@@ -1,8 +1,8 @@
 //! What surrounds a robot, as displays and planners get it: map, walls, way and goals, scan.
 
-use rumbo_log::{Log, MapPose, Obstacle, Row, Scene, SonarMount, State};
-use rumbo_ros::convert::{Converter, Sent, messages};
-use rumbo_ros::geometry::Geometry;
+use rumbo_log::{Log, MapPose, Row, Scene, SceneObstacle, SonarMount, State};
+use rumbo_ros::convert::{Converter, TopicMessage, messages};
+use rumbo_ros::geometry::BodyGeometry;
 use rumbo_ros::topics::Topic;
 use rumbo_ros::types::decode;
 use serde::Deserialize;
@@ -66,12 +66,12 @@ impl Scan {
     }
 }
 
-fn of<T: for<'a> Deserialize<'a>>(sent: &[Sent], topic: Topic) -> Vec<T> {
+fn of<T: for<'a> Deserialize<'a>>(sent: &[TopicMessage], topic: Topic) -> Vec<T> {
     let sent = sent.iter().filter(|sent| sent.topic == topic);
     sent.map(|sent| decode(&sent.data).unwrap()).collect()
 }
 
-fn markers(sent: &[Sent], topic: Topic) -> Vec<Vec<Marker>> {
+fn markers(sent: &[TopicMessage], topic: Topic) -> Vec<Vec<Marker>> {
     let all: Vec<(Vec<Marker>,)> = of(sent, topic);
     all.into_iter().map(|(markers,)| markers).collect()
 }
@@ -86,7 +86,7 @@ fn at(x_m: f64, y_m: f64, heading_rad: f64) -> MapPose {
 
 /// A wall 2 m ahead, from right to left, and a box of 0.36 m beside the way; no side lies between two cells of a map.
 fn scene() -> Scene {
-    let obstacle = |closed, corners: &[[f64; 2]]| Obstacle {
+    let obstacle = |closed, corners: &[[f64; 2]]| SceneObstacle {
         corners_m: corners.to_vec(),
         closed,
     };
@@ -184,7 +184,7 @@ fn an_open_world_is_free_floor_and_a_real_robot_has_no_map() {
 fn a_map_of_the_strangest_world_has_a_million_cells_at_most() {
     let mut scene = scene();
     for far in [90_000.0, 1e300, f64::NAN, f64::INFINITY] {
-        scene.obstacles.push(Obstacle {
+        scene.obstacles.push(SceneObstacle {
             corners_m: vec![[far, -far], [0.0, far]],
             closed: true,
         });
@@ -295,7 +295,7 @@ fn an_unknown_frame_is_refused_with_those_that_work() {
     let refused = |converter: &Converter| converter.in_odom("camera", MapPose::default());
     let real = "there is no frame `camera`; use odom or base_link";
     assert_eq!(refused(&converter).unwrap_err(), real);
-    converter.know(Geometry::new(log.scene(), |_| None).unwrap());
+    converter.know(BodyGeometry::new(log.scene(), |_| None).unwrap());
     converter.row(&log.rows[0]).unwrap();
     let simulated = "there is no frame `camera`; use odom, base_link or map";
     assert_eq!(refused(&converter).unwrap_err(), simulated);

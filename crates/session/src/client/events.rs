@@ -1,9 +1,9 @@
 //! What a client reports: events of the robot and the state of the link.
 
 use crate::anomaly::Anomaly;
-use crate::commands::Outcome;
+use crate::commands::CommandOutcome;
 use rumbo_control::params;
-use rumbo_wire::{EventKind, Hello, Status, Telemetry};
+use rumbo_wire::{EventKind, Hello, StatusReport, Telemetry};
 
 /// An event of the link, in the session's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,11 +21,11 @@ pub enum LinkEvent {
     /// The fast signals, as of this time \[ms\].
     Telemetry(i64, Telemetry),
     /// The slow signals.
-    Status(Status),
+    Status(StatusReport),
     /// Something happened at this time \[ms\].
     Event(i64, EventKind),
     /// A command ended.
-    Ended(Outcome),
+    Ended(CommandOutcome),
     /// STOP is not acknowledged, or the robot keeps reporting that it is armed.
     StopUnconfirmed,
     /// The robot does what no healthy robot does.

@@ -5,7 +5,9 @@ use super::{LinkEvent, RobotClient};
 use crate::commands::Fate;
 use crate::robot_clock::RobotClock;
 use rumbo_control::mode::ModeId;
-use rumbo_wire::{EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received, RobotTime};
+use rumbo_wire::{
+    EventKind, FrameMessage, FromRobot, Hello, PROTOCOL_VERSION, Received, RobotTime,
+};
 
 impl RobotClient {
     /// Decodes bytes from the robot and appends the events.

@@ -41,7 +41,7 @@ fn a_command_is_repeated_with_its_number_until_it_is_acknowledged() {
     manager.acknowledge(&ack(number_of(first)), FIRST_TIMEOUT_US + 50_000);
     assert_eq!(
         manager.take_outcomes(),
-        [Outcome {
+        [CommandOutcome {
             command: Command::Arm,
             fate: Fate::Applied(0.0)
         }]
@@ -79,7 +79,7 @@ fn stop_goes_first_and_nothing_older_follows_it() {
     manager.acknowledge(&ack(number_of(stop)), 60_000);
     assert_eq!(
         manager.take_outcomes(),
-        [Outcome {
+        [CommandOutcome {
             command: Command::Stop,
             fate: Fate::Applied(0.0)
         }]
@@ -116,7 +116,7 @@ fn an_order_is_given_up_2_s_after_it_was_given_whether_it_waits_or_is_under_way(
     assert_eq!(command_of(next), Command::Reference(0.5));
     assert_eq!(manager.poll(SEEN, 1_900_000 + EXPIRY_US), None);
     let given_up = [Command::ClearFault, Command::Arm, Command::Reference(0.5)];
-    let given_up = given_up.map(|command| Outcome {
+    let given_up = given_up.map(|command| CommandOutcome {
         command,
         fate: Fate::Expired,
     });
@@ -169,7 +169,7 @@ fn when_the_link_is_lost_everything_is_given_up_but_stop() {
     manager.poll(SEEN, 0);
     manager.give_up(Fate::LinkLost);
     assert_eq!(manager.poll(SEEN, 60_000_000), None);
-    let given_up = [Command::Arm, Command::ClearFault].map(|command| Outcome {
+    let given_up = [Command::Arm, Command::ClearFault].map(|command| CommandOutcome {
         command,
         fate: Fate::LinkLost,
     });
@@ -274,7 +274,7 @@ fn a_restarted_robot_is_not_asked_to_arm() {
     assert_eq!(manager.poll(SEEN, 1_000_000), None);
     assert_eq!(
         manager.take_outcomes(),
-        [Outcome {
+        [CommandOutcome {
             command: Command::Arm,
             fate: Fate::RobotRestarted
         }]

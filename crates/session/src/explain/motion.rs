@@ -1,6 +1,6 @@
 //! Rules for wheels, friction and the way.
 
-use super::{Cause, Kind, Seen, digits, longest, seconds};
+use super::{Cause, CauseKind, Seen, digits, longest, seconds};
 use std::f64::consts::PI;
 
 const SPEEDS: Option<&str> = Some("1-wheel-speed");
@@ -68,7 +68,7 @@ impl Seen<'_> {
 
     fn cause(
         &self,
-        kind: Kind,
+        kind: CauseKind,
         (from, to): (usize, usize),
         text: String,
         lesson: Option<&'static str>,
@@ -104,13 +104,13 @@ impl Seen<'_> {
         let lasted = digits(times_s[span.1] - times_s[span.0], 2);
         Some(match most > HELD {
             true => self.cause(
-                Kind::Held,
+                CauseKind::Held,
                 span,
                 format!("something held the {side} wheel: it stood for {lasted} s with a PWM of up to {}", digits(most, 0)),
                 None,
             ),
             false => self.cause(
-                Kind::DeadZone,
+                CauseKind::DeadZone,
                 span,
                 format!("the {side} wheel stood for {lasted} s: a PWM of {} does not overcome its friction", digits(most, 0)),
                 SPEEDS,
@@ -135,7 +135,7 @@ impl Seen<'_> {
             digits(RPM * speed[to].abs(), 0),
             digits(RPM * wanted[to].abs(), 0)
         );
-        Some(self.cause(Kind::Saturation, (from, to), text, SPEEDS))
+        Some(self.cause(CauseKind::Saturation, (from, to), text, SPEEDS))
     }
 
     /// What the integral has to add where the speed is as wanted.
@@ -157,7 +157,7 @@ impl Seen<'_> {
             false => "less",
         };
         Some(Cause {
-            kind: Kind::Feedforward,
+            kind: CauseKind::Feedforward,
             from_s: times_s[from],
             to_s: times_s[to],
             text: format!(
@@ -175,7 +175,7 @@ impl Seen<'_> {
         let to = contact.iter().rposition(|touches| *touches == 1.0)?;
         let at_s = digits(self.times_s()[from], 2);
         Some(self.cause(
-            Kind::Contact,
+            CauseKind::Contact,
             (from, to),
             format!("the robot touched something, at {at_s} s first"),
             None,
@@ -212,7 +212,7 @@ impl Seen<'_> {
             digits(100.0 * rolled_m, 1),
             digits(100.0 * moved_m, 1)
         );
-        Some(self.cause(Kind::Slip, (from, to), text, ODOMETRY))
+        Some(self.cause(CauseKind::Slip, (from, to), text, ODOMETRY))
     }
 
     /// Before a wall: what friction took from the speed while the bridge was at 0, beside what the approach counts on.
@@ -242,7 +242,7 @@ impl Seen<'_> {
             digits(slowed, 2),
             digits(planned, 2)
         );
-        Some(self.cause(Kind::Braking, (from, to), text, BRAKES))
+        Some(self.cause(CauseKind::Braking, (from, to), text, BRAKES))
     }
 
     fn drifted(&self) -> Option<Cause> {
@@ -272,6 +272,6 @@ impl Seen<'_> {
             digits(100.0 * offs[to], 1),
             digits(100.0 * (offs[to] - offs[from]), 1)
         );
-        Some(self.cause(Kind::Drift, (from, to), text, ODOMETRY))
+        Some(self.cause(CauseKind::Drift, (from, to), text, ODOMETRY))
     }
 }

@@ -1,6 +1,6 @@
 //! Rules for sonars and encoders: what they said beside what was true.
 
-use super::{Cause, Kind, Seen, digits, longest};
+use super::{Cause, CauseKind, Seen, digits, longest};
 use std::f64::consts::PI;
 
 const LESSON: Option<&str> = Some("5-lying-sensor");
@@ -20,6 +20,26 @@ const WHEEL_SHARE: f64 = 0.3;
 const WHEEL_S: f64 = 0.08;
 /// A servo that turns no more than this between frames stands [rad].
 const STANDS_RAD: f64 = 0.02;
+
+/// Where readings are wrong that do not go on: a face that comes into the beam is right the second time.
+fn outliers(
+    count: usize,
+    wrong: impl Fn(usize) -> bool,
+    is_right: impl Fn(usize) -> bool,
+) -> Vec<usize> {
+    let (mut outliers, mut at) = (Vec::new(), 0);
+    while at < count {
+        let from = at;
+        while at < count && wrong(at) {
+            at += 1;
+        }
+        if at > from && at - from <= 6 && from > 0 && is_right(from - 1) && is_right(at) {
+            outliers.push(from);
+        }
+        at += 1;
+    }
+    outliers
+}
 
 impl Seen<'_> {
     pub(super) fn sensors(&self) -> Vec<Cause> {
@@ -62,7 +82,7 @@ impl Seen<'_> {
             .filter(|(from, to)| (truth[*to] - truth[*from]).abs() > REPEATED_M);
         if let Some((from, to)) = stuck {
             push(
-                Kind::Sonar,
+                CauseKind::Sonar,
                 (from, to),
                 format!(
                     "the {side} sonar repeated {} cm for {} s, while the true range went from {} to {} cm",
@@ -75,7 +95,7 @@ impl Seen<'_> {
         }
         if let Some(span) = longest(&times_s, |at| near(at) && said[at].is_infinite(), FAILS_S) {
             push(
-                Kind::Sonar,
+                CauseKind::Sonar,
                 span,
                 format!(
                     "the {side} sonar heard nothing for {} s, though something was at {} cm",
@@ -89,12 +109,11 @@ impl Seen<'_> {
             |at: usize| near(at) && said[at].is_nan() && known.is_some_and(|known| at > known);
         if let Some(span) = longest(&times_s, silent, FAILS_S) {
             push(
-                Kind::Sonar,
+                CauseKind::Sonar,
                 span,
                 format!("the {side} sonar gave no answer for {} s", lasts(span)),
             );
         }
-        // Single readings, and none that goes on: a face that comes into the beam is right the second time.
         let off_m = |at: usize| (said[at] - truth[at]).abs();
         let wrong = |at: usize| {
             let most = OFF_M.max(OFF_SHARE * truth[at]) + LAG_S * speed[at].abs();
@@ -102,25 +121,14 @@ impl Seen<'_> {
         };
         let is_right =
             |at: usize| said.get(at).is_some_and(|value| value.is_finite()) && !wrong(at);
-        let mut outliers = Vec::new();
-        let mut at = 0;
-        while at < said.len() {
-            let from = at;
-            while at < said.len() && wrong(at) {
-                at += 1;
-            }
-            if at > from && at - from <= 6 && from > 0 && is_right(from - 1) && is_right(at) {
-                outliers.push(from);
-            }
-            at += 1;
-        }
+        let outliers = outliers(said.len(), wrong, is_right);
         let worst = outliers
             .iter()
             .copied()
             .max_by(|one, other| off_m(*one).total_cmp(&off_m(*other)));
         if let Some(worst) = worst {
             push(
-                Kind::Outliers,
+                CauseKind::Outliers,
                 (outliers[0], outliers[outliers.len() - 1]),
                 format!(
                     "readings of the {side} sonar that were far off: {}, the worst at {} s: {} cm instead of {} cm",
@@ -152,7 +160,7 @@ impl Seen<'_> {
             false => "counted noise",
         };
         Some(Cause {
-            kind: Kind::Encoder,
+            kind: CauseKind::Encoder,
             from_s: times_s[from],
             to_s: times_s[to],
             text: format!(

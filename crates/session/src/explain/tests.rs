@@ -10,7 +10,7 @@ fn rows(set: impl Fn(f64, &mut Row)) -> Vec<Row> {
     (0..125).map(row).collect()
 }
 
-fn found(rows: &[Row], events: &[LoggedEvent]) -> Vec<(Kind, String)> {
+fn found(rows: &[Row], events: &[LoggedEvent]) -> Vec<(CauseKind, String)> {
     let all = causes((rows, &[], events), BTreeMap::new(), 0.0, 5.0);
     all.into_iter()
         .map(|cause| (cause.kind, cause.text))
@@ -35,13 +35,16 @@ fn a_restart_explains_more_than_the_fault_and_the_stop_that_follow() {
         said(0.1, Level::Info, "sent: ON"),
         said(7.0, Level::Fault, "fault: beyond the stretch"),
     ];
-    let kinds: Vec<Kind> = found(&[], &events).iter().map(|(kind, _)| *kind).collect();
-    assert_eq!(kinds, [Kind::Restart, Kind::Fault, Kind::Stopped]);
+    let kinds: Vec<CauseKind> = found(&[], &events).iter().map(|(kind, _)| *kind).collect();
+    assert_eq!(
+        kinds,
+        [CauseKind::Restart, CauseKind::Fault, CauseKind::Stopped]
+    );
 }
 
 #[test]
 fn a_wheel_that_stands_is_held_at_a_high_pwm_and_in_its_dead_zone_at_a_low_one() {
-    for (pwm, kind) in [(200.0, Kind::Held), (40.0, Kind::DeadZone)] {
+    for (pwm, kind) in [(200.0, CauseKind::Held), (40.0, CauseKind::DeadZone)] {
         let rows = rows(|t_s, row| {
             let stands = (1.0..1.5).contains(&t_s);
             row.set("left_pwm", pwm);
@@ -61,7 +64,7 @@ fn a_sonar_that_hears_nothing_of_a_wall_is_told_with_where_the_wall_was() {
         row.set("range_left_m", if deaf { f64::INFINITY } else { 0.8 });
     });
     let told = "the left sonar heard nothing for 0.56 s, though something was at 80.0 cm";
-    assert_eq!(found(&rows, &[]), [(Kind::Sonar, told.to_owned())]);
+    assert_eq!(found(&rows, &[]), [(CauseKind::Sonar, told.to_owned())]);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::words;
 use rumbo_control::Velocity;
 use rumbo_control::mode::{ModeId, Movement, twist};
 use rumbo_log::parameter;
-use rumbo_wire::{Command, Level};
+use rumbo_wire::{Command, MovementLevel};
 
 /// A movement that a key holds ends this long after the page last repeated it: a page that is gone releases it \[us\].
 const HOLD_US: u64 = 600_000;
@@ -195,7 +195,7 @@ impl Session {
         if self.held.take_if(over).is_some() {
             let stop = Command::Move {
                 movement: Movement::Stop,
-                level: Level::Duty(0.0),
+                level: MovementLevel::Duty(0.0),
             };
             self.command(stop, now);
         }

@@ -5,10 +5,12 @@ use crate::support;
 use proptest::prelude::*;
 use rumbo_control::Velocity;
 use rumbo_control::mode::ModeId;
-use rumbo_log::{CalibrationPhase, Choice, Entry, Findings, Log, LogWriter, Manifest, Row, Source};
+use rumbo_log::{
+    CalibrationPhase, Choice, Entry, Findings, Log, LogWriter, Manifest, ReadingSource, Row,
+};
 use rumbo_session::{
     About, Ask, Board, CalibrationError, Cursor, Event, Going, Guest, LinkNews, Now, Order,
-    SLICE_US, Session, Sight, Target,
+    SLICE_US, Session, Target, TargetView,
 };
 use rumbo_wire::Command;
 use std::io::Cursor as Bytes;
@@ -66,9 +68,9 @@ impl Bench {
             self.toy.advance(SLICE_US).unwrap();
             self.wall_us += SLICE_US;
             let now = self.now();
-            let sight = Sight {
+            let sight = TargetView {
                 truth: self.toy.truth(),
-                ..Sight::default()
+                ..TargetView::default()
             };
             self.session.expire_hold(now);
             self.session.observe(sight, now);
@@ -281,14 +283,14 @@ fn a_program_that_sends_nothing_is_seen_by_instruments_and_what_it_prints_and_to
             contact,
             ..bench.toy.truth().unwrap()
         };
-        let sight = Sight {
+        let sight = TargetView {
             truth: Some(truth),
             shown: vec![(
-                Source::Truth,
+                ReadingSource::Truth,
                 vec![("true_x_m".into(), now.target_us as f64)],
             )],
             consoles: vec![(0, b"cm:3.5\n".to_vec())],
-            ..Sight::default()
+            ..TargetView::default()
         };
         bench.session.observe(sight, now);
         bench.session.update(Going::default(), now);

@@ -9,8 +9,8 @@ use rumbo_session::anomaly::Anomaly;
 use rumbo_session::client::{KnownTable, LinkEvent, RobotClient};
 use rumbo_session::fault::{Faults, Faulty};
 use rumbo_wire::{
-    Ack, Command, Decoder, FromRobot, Hello, Message, PROTOCOL_VERSION, Received, ResetCause,
-    RobotTime, Status, Telemetry, ToRobot,
+    Ack, Command, Decoder, FrameMessage, FromRobot, Hello, PROTOCOL_VERSION, Received, ResetCause,
+    RobotTime, StatusReport, Telemetry, ToRobot,
 };
 use support::Toy;
 
@@ -30,13 +30,13 @@ fn hello() -> FromRobot {
 }
 
 fn status(ms: u64) -> FromRobot {
-    FromRobot::Status(Status {
+    FromRobot::Status(StatusReport {
         armed: true,
         at: RobotTime {
             start: 0,
             ms: ms as u32,
         },
-        ..Status::default()
+        ..StatusReport::default()
     })
 }
 

@@ -7,11 +7,11 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use proptest::prelude::*;
-use rumbo_control::mode::{Level, ModeId, Movement};
+use rumbo_control::mode::{ModeId, Movement, MovementLevel};
 use rumbo_control::{Duty, Inputs, Micros, TICK_US, Velocity, Wheels};
-use rumbo_robot::{Config, Robot};
+use rumbo_robot::{Robot, RobotConfig};
 use rumbo_session::client::{KnownTable, LinkEvent, RobotClient};
-use rumbo_wire::{Command, Decoder, Message, Received, ResetCause, ToRobot};
+use rumbo_wire::{Command, Decoder, FrameMessage, Received, ResetCause, ToRobot};
 
 /// Oldest ON that may arm \[us\].
 const LIFE_US: u64 = 2_000_000;
@@ -44,7 +44,7 @@ fn action() -> impl Strategy<Value = Action> {
     let way = || prop::sample::select(vec![Way::Flows, Way::Flows, Way::Holds, Way::Cut]);
     let forward = Command::Move {
         movement: Movement::Forward,
-        level: Level::Duty(0.3),
+        level: MovementLevel::Duty(0.3),
     };
     let order = prop_oneof![
         5 => Just(Command::Arm),
@@ -71,7 +71,7 @@ fn action() -> impl Strategy<Value = Action> {
 }
 
 fn start(number: u8) -> Robot {
-    Robot::new(Config {
+    Robot::new(RobotConfig {
         image: 0,
         reset: ResetCause::External,
         start: number,

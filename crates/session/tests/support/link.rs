@@ -5,8 +5,8 @@ use rumbo_control::{AgedRange, Pose, Range};
 use rumbo_session::Target;
 use rumbo_session::client::{KnownTable, LinkEvent, RobotClient};
 use rumbo_session::commands::Fate;
-use rumbo_session::fault::{Faults, Faulty, Line};
-use rumbo_wire::{Body, Command, Decoder, FromRobot, Message, Received, Telemetry};
+use rumbo_session::fault::{Faults, Faulty, FaultyLine};
+use rumbo_wire::{Command, Decoder, FrameBody, FrameMessage, FromRobot, Received, Telemetry};
 use std::collections::VecDeque;
 use std::fmt;
 
@@ -83,11 +83,11 @@ fn telemetry(number: u64) -> Telemetry {
 
 /// Sends so many frames.
 pub(crate) fn frames(count: u64, seed: u64) -> Frames {
-    let mut line = Line::new(faults(), seed);
+    let mut line = FaultyLine::new(faults(), seed);
     let mut decoder = Decoder::<128>::default();
     let mut outcome = Frames::default();
     // What is accepted may combine parts of a frame and the one before it; no more.
-    let mut recent: VecDeque<Body> = VecDeque::new();
+    let mut recent: VecDeque<FrameBody> = VecDeque::new();
     let (mut bytes, mut whole_before) = (Vec::new(), true);
     for number in 0..count {
         let frame = FromRobot::Telemetry(telemetry(number)).frame((number % 16) as u8);

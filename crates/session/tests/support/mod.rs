@@ -6,11 +6,11 @@
 use rumbo_control::mode::{ModeId, Reference};
 use rumbo_control::params::{ParamError, ParamId, Params, SCHEMA};
 use rumbo_control::{AgedRange, Duty, Pose, Range, Velocity, Wheels};
-use rumbo_log::{Choice, Experiment, MapPose, Obstacle, Scene, SonarMount, Truth};
+use rumbo_log::{Choice, MapPose, ScenarioOffer, Scene, SceneObstacle, SonarMount, Truth};
 use rumbo_session::{Abilities, Target, TargetError};
 use rumbo_wire::{
-    Ack, Command, Decoder, Event, EventKind, FromRobot, Hello, Message, PROTOCOL_VERSION, Received,
-    Refusal, ResetCause, RobotTime, Status, Telemetry, ToRobot,
+    Ack, Command, Decoder, Event, EventKind, FrameMessage, FromRobot, Hello, PROTOCOL_VERSION,
+    Received, Refusal, ResetCause, RobotTime, StatusReport, Telemetry, ToRobot,
 };
 use std::collections::VecDeque;
 
@@ -117,12 +117,12 @@ impl Toy {
         let Wheels { left, right } = self.reference;
         let reference = Reference::new(mode.reference_kind(), [left, right]);
         let at = self.time();
-        self.say(FromRobot::Status(Status {
+        self.say(FromRobot::Status(StatusReport {
             mode,
             armed,
             reference,
             at,
-            ..Status::default()
+            ..StatusReport::default()
         }));
     }
 
@@ -338,9 +338,9 @@ impl Target for Toy {
         };
         Some(Scene {
             choice: self.choice.clone(),
-            experiments: vec![Experiment {
+            experiments: vec![ScenarioOffer {
                 name: "toy".into(),
-                ..Experiment::default()
+                ..ScenarioOffer::default()
             }],
             worlds: vec!["wall".into()],
             world_titles: std::collections::BTreeMap::new(),
@@ -350,7 +350,7 @@ impl Target for Toy {
             routes: Vec::new(),
             robot: "toy".into(),
             start: MapPose::default(),
-            obstacles: vec![Obstacle {
+            obstacles: vec![SceneObstacle {
                 corners_m: vec![[1.3, -1.0], [1.3, 1.0]],
                 closed: false,
             }],

@@ -169,16 +169,7 @@ impl Mission {
 
     fn switch(&mut self, chip: &mut Chip) -> u64 {
         match self.state {
-            State::Wait => {
-                if std::mem::take(&mut self.arrived) {
-                    // The new origin is here, one pass after the goal; what the robot still rolls counts.
-                    self.pose = Pose::default();
-                }
-                if let Some(goal_m) = self.ordered.take() {
-                    self.goal_m = goal_m;
-                    self.state = State::Initialise;
-                }
-            }
+            State::Wait => self.wait(),
             State::Initialise => {
                 chip.point(0.0);
                 self.line_deg = self.bearing_deg();
@@ -228,6 +219,17 @@ impl Mission {
             State::Pass => self.pass_corner(chip),
         }
         0
+    }
+
+    fn wait(&mut self) {
+        if std::mem::take(&mut self.arrived) {
+            // The new origin is here, one pass after the goal; what the robot still rolls counts.
+            self.pose = Pose::default();
+        }
+        if let Some(goal_m) = self.ordered.take() {
+            self.goal_m = goal_m;
+            self.state = State::Initialise;
+        }
     }
 
     fn go(&mut self, chip: &Chip) {

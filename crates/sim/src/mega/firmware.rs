@@ -14,7 +14,7 @@ use rumbo_emulator::devices::ports::Drive;
 use rumbo_emulator::devices::ports::Pin;
 use rumbo_emulator::devices::{Event, Input};
 use rumbo_emulator::image::Image;
-use rumbo_wire::{Decoder, FromRobot, Message, Received};
+use rumbo_wire::{Decoder, FrameMessage, FromRobot, Received};
 use std::collections::BTreeMap;
 
 /// The usual rate of the Bluetooth module [baud].
@@ -30,7 +30,7 @@ const LINE: usize = 128;
 
 /// What a program speaks on its link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Language {
+pub enum LinkLanguage {
     /// The frames of docs/protocol.md.
     Frames,
     /// The original's lines of text, or nothing.
@@ -42,7 +42,7 @@ pub enum Language {
 pub struct Firmware {
     name: String,
     image: Image,
-    language: Language,
+    language: LinkLanguage,
     wiring: String,
     board: &'static Board,
     wires: Wires,
@@ -64,7 +64,7 @@ impl Firmware {
     pub fn new(
         name: &str,
         image: Image,
-        language: Language,
+        language: LinkLanguage,
         (wiring, pins): (&str, &Wiring),
     ) -> Result<Self, SimError> {
         Ok(Self {
@@ -149,7 +149,7 @@ impl Firmware {
     }
 
     /// What it speaks on its link.
-    pub fn language(&self) -> Language {
+    pub fn language(&self) -> LinkLanguage {
         self.language
     }
 
@@ -210,7 +210,7 @@ impl Firmware {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Opening {
     /// What it speaks.
-    pub language: Language,
+    pub language: LinkLanguage,
     /// The USARTs whose transmitter it has switched on; not checked where it sends frames.
     pub transmits: [bool; 4],
 }
@@ -238,7 +238,7 @@ pub fn opening(board: &Board, image: &Image) -> Opening {
                 && FromRobot::from_body(&body).is_ok()
             {
                 return Opening {
-                    language: Language::Frames,
+                    language: LinkLanguage::Frames,
                     transmits: [false; 4],
                 };
             }
@@ -253,7 +253,7 @@ pub fn opening(board: &Board, image: &Image) -> Opening {
         *transmits = pin.is_some_and(|pin| chip.devices().drive(pin) == Drive::High);
     }
     Opening {
-        language: Language::Text,
+        language: LinkLanguage::Text,
         transmits,
     }
 }

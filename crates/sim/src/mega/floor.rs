@@ -2,7 +2,7 @@
 
 use super::firmware::Firmware;
 use super::{CYCLES_PER_US, Mega};
-use crate::floor::{self, Line, NOISE_V, Reading};
+use crate::floor::{self, DarkLine, FloorReading, NOISE_V};
 use rumbo_emulator::devices::Input;
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_plant::contact::Pose;
@@ -26,7 +26,7 @@ impl Charge {
     /// Those of a program.
     pub(super) fn of(firmware: &Firmware) -> Vec<Self> {
         let sensors = firmware.line_sensors().iter().enumerate();
-        let sensors = sensors.filter(|(_, sensor)| sensor.reading == Reading::Discharge);
+        let sensors = sensors.filter(|(_, sensor)| sensor.reading == FloorReading::Discharge);
         let charge = |(index, pin)| Self {
             sensor: index,
             pin,
@@ -41,7 +41,13 @@ impl Charge {
 
 impl Mega {
     /// The robot stands there now: its sensors see the floor.
-    pub(crate) fn see_floor(&mut self, lines: &[Line], pose: &Pose, now_us: u64, noise: &Noise) {
+    pub(crate) fn see_floor(
+        &mut self,
+        lines: &[DarkLine],
+        pose: &Pose,
+        now_us: u64,
+        noise: &Noise,
+    ) {
         let firmware = self.firmware.clone();
         let cycle = self.chip.cycle();
         self.floor
@@ -49,7 +55,7 @@ impl Mega {
         for (index, sensor) in firmware.line_sensors().iter().enumerate() {
             let (before, level_before) = self.floor[index];
             let darkness = floor::darkness(lines, sensor.place(pose));
-            if let Reading::Volts(usual_v) = sensor.reading {
+            if let FloorReading::Volts(usual_v) = sensor.reading {
                 let error_v = NOISE_V * noise.normal(SOURCE + index as u32, now_us);
                 let channel = sensor.pin.saturating_sub(firmware.board().first_analogue);
                 let volts = sensor.volts(usual_v, darkness) + error_v;
@@ -57,7 +63,7 @@ impl Mega {
             }
             // digitalRead() works on the pin of an analogue one too.
             let level = sensor.level(darkness, level_before);
-            let gives_level = sensor.reading != Reading::Discharge;
+            let gives_level = sensor.reading != FloorReading::Discharge;
             if gives_level && (level != level_before || before.is_nan()) {
                 self.put(cycle, firmware.board().pin(sensor.pin), level);
             }

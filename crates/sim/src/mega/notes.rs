@@ -1,10 +1,10 @@
 //! What is odd about a program on the robot, a line each: registers that are not modelled, motors and links that it never used.
 
 use super::console::Console;
-use super::firmware::Language;
+use super::firmware::LinkLanguage;
 use super::{CYCLES_PER_US, Mega, PARTS, TRIGGER_CYCLES};
 use crate::bus::DeviceKind;
-use crate::floor::Reading;
+use crate::floor::FloorReading;
 use crate::wiring::PartKind;
 use rumbo_emulator::cpu::Standstill;
 use rumbo_emulator::devices::ports::Drive;
@@ -120,7 +120,7 @@ impl Mega {
             .map(|_| format!("motor driver: {}", driver.in_words()));
         let sensors = self.firmware.line_sensors().first().map(|sensor| {
             match sensor.reading {
-                Reading::Discharge => {
+                FloorReading::Discharge => {
                     "line sensors: QTR-RC by what Pololu says of it, not identified"
                 }
                 _ => "line sensors: TCRT5000 modules by their data sheet, not identified",
@@ -222,7 +222,7 @@ impl Mega {
     fn silence(&self) -> Vec<Note> {
         let wiring = self.firmware.wiring();
         let mut silence = Vec::new();
-        if self.firmware.language() == Language::Frames || self.verdict.is_some() {
+        if self.firmware.language() == LinkLanguage::Frames || self.verdict.is_some() {
             return silence;
         }
         if self.is_idle() {

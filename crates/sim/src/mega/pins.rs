@@ -2,7 +2,7 @@
 
 use crate::drivers::Driver;
 use crate::error::SimError;
-use crate::floor::Reading;
+use crate::floor::FloorReading;
 use crate::wiring::{Divider, Motor, Wiring};
 use rumbo_emulator::devices::ports::Pin;
 
@@ -162,7 +162,7 @@ impl Wires {
             receivers: [pin("link_rx"), pin("debug_rx")],
             charged: {
                 let sensors = wiring.line_sensors.iter();
-                let charged = sensors.filter(|sensor| sensor.reading == Reading::Discharge);
+                let charged = sensors.filter(|sensor| sensor.reading == FloorReading::Discharge);
                 charged.filter_map(|sensor| on_board(sensor.pin)).collect()
             },
         })

@@ -20,7 +20,7 @@ mod unlinked;
 use crate::baseline::Baseline;
 use crate::config::{Config, Program};
 use crate::error::SimError;
-use crate::floor::Line;
+use crate::floor::DarkLine;
 use crate::mega::Mega;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
 use crate::wire_fault::{TimedWireFault, WireFaults};
@@ -30,15 +30,15 @@ use rumbo_control::mode::ModeId;
 use rumbo_control::{Duty, SIDES, SonarId, Wheels};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::drivetrain::{Bridge, Side};
-use rumbo_plant::link::{Direction, Link, LinkParams};
+use rumbo_plant::link::{Link, LinkDirection, LinkParams};
 use rumbo_plant::noise::Noise;
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::{Event, Plant, State, Truth};
+use rumbo_plant::plant::{Event, GroundTruth, Plant, State};
 use rumbo_plant::world::World;
 use rumbo_wire::{Command, FromRobot};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-pub use touches::Touch;
+pub use touches::ContactStart;
 use touches::Touches;
 
 /// What is at the robot's pins.
@@ -51,7 +51,7 @@ enum Controller {
 
 /// Raw bytes that crossed the link together.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Burst {
+pub struct LinkBurst {
     /// When they were sent to the robot, or had arrived from it [us].
     pub t_us: u64,
     /// To the robot, or from it.
@@ -79,7 +79,7 @@ pub struct Sim {
     wire_faults: WireFaults,
     noise: Noise,
     /// The dark lines on the floor.
-    lines: Arc<[Line]>,
+    lines: Arc<[DarkLine]>,
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
     /// The chip is without power: its program does not run, and its pins drive nothing.
@@ -87,7 +87,7 @@ pub struct Sim {
     /// The supply of an emulated program's motors is cut.
     motors_cut: bool,
     /// What crossed the link, while it is tapped.
-    tapped: Option<Vec<Burst>>,
+    tapped: Option<Vec<LinkBurst>>,
     among_others: bool,
     /// What was put elsewhere, by number, and how far from where the world has it \[m\].
     shifted: BTreeMap<usize, [f64; 2]>,
@@ -113,7 +113,7 @@ impl Sim {
             seed,
             day,
         } = config;
-        let plant = Plant::new(rumbo_plant::plant::Setup {
+        let plant = Plant::new(rumbo_plant::plant::PlantSetup {
             params,
             rig,
             world,
@@ -170,8 +170,8 @@ impl Sim {
             state,
             controller: Some(controller),
             baud: link.baud,
-            uplink: Link::new(link.clone(), noise, Direction::ToRobot),
-            downlink: Link::new(link, noise, Direction::ToStation),
+            uplink: Link::new(link.clone(), noise, LinkDirection::ToRobot),
+            downlink: Link::new(link, noise, LinkDirection::ToStation),
             duty: Wheels::default(),
             worst_reverse_rad_s: 0.0,
             touches: Touches::default(),
@@ -204,7 +204,7 @@ impl Sim {
     }
 
     /// Ground truth.
-    pub fn truth(&self) -> Truth {
+    pub fn truth(&self) -> GroundTruth {
         self.plant.truth(&self.state)
     }
 
@@ -229,7 +229,7 @@ impl Sim {
     }
 
     /// What the body has met, in order.
-    pub fn touches(&self) -> &[Touch] {
+    pub fn touches(&self) -> &[ContactStart] {
         &self.touches.0
     }
 
@@ -284,7 +284,7 @@ impl Sim {
     }
 
     /// Drains what crossed the link since it was tapped.
-    pub fn take_tapped(&mut self) -> Vec<Burst> {
+    pub fn take_tapped(&mut self) -> Vec<LinkBurst> {
         let tapped = self.tapped.as_mut();
         tapped.map(std::mem::take).unwrap_or_default()
     }
@@ -298,7 +298,7 @@ impl Sim {
         if let Some(tapped) = &mut self.tapped
             && !bytes.is_empty()
         {
-            tapped.push(Burst {
+            tapped.push(LinkBurst {
                 t_us,
                 to_robot,
                 bytes: bytes.to_vec(),
@@ -421,11 +421,15 @@ impl Sim {
     /// receives its parameters over the link before its run begins.
     pub fn restart_clock(&mut self) {
         self.state = self.plant.start(self.start);
-        self.uplink = Link::new(self.uplink.params().clone(), self.noise, Direction::ToRobot);
+        self.uplink = Link::new(
+            self.uplink.params().clone(),
+            self.noise,
+            LinkDirection::ToRobot,
+        );
         self.downlink = Link::new(
             self.downlink.params().clone(),
             self.noise,
-            Direction::ToStation,
+            LinkDirection::ToStation,
         );
         self.worst_reverse_rad_s = 0.0;
         self.touches = Touches::default();

@@ -10,8 +10,8 @@ use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_control::{Fault, Inputs, OUTPUT_DELAY_US, Outputs, ServoAngle, TICK_US, Wheels};
 use rumbo_plant::plant::Event;
-use rumbo_robot::{Cell, Config, Loops, Robot, START_AT};
-use rumbo_wire::{Ack, Command, Message, Refusal, ResetCause, Telemetry, ToRobot};
+use rumbo_robot::{Cell, Loops, Robot, RobotConfig, START_AT};
+use rumbo_wire::{Ack, Command, FrameMessage, Refusal, ResetCause, Telemetry, ToRobot};
 use std::sync::Arc;
 
 /// The converter's reference, the chip's supply [V].
@@ -94,7 +94,7 @@ impl Native {
             address: START_AT,
             value: start,
         });
-        let mut robot = Robot::new(Config {
+        let mut robot = Robot::new(RobotConfig {
             image: 0,
             reset: ResetCause::PowerOn,
             start,

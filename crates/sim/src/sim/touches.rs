@@ -4,7 +4,7 @@ use rumbo_plant::plant::Event;
 
 /// The beginning of a touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
+pub struct ContactStart {
     /// End of the step in which it began [us].
     pub at_us: u64,
     /// Index of the obstacle in the world, followed by those of its bodies.
@@ -15,7 +15,7 @@ pub struct Touch {
 
 /// Touches in order.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Touches(pub(super) Vec<Touch>);
+pub(super) struct Touches(pub(super) Vec<ContactStart>);
 
 impl Touches {
     /// Notes an event, if it is a touch.
@@ -26,7 +26,7 @@ impl Touches {
             speed_m_s,
         } = *event
         {
-            self.0.push(Touch {
+            self.0.push(ContactStart {
                 at_us,
                 obstacle,
                 speed_m_s,

@@ -8,7 +8,7 @@ use super::native::{Native, SESSION};
 use super::{Controller, Sim};
 use rumbo_control::{Fault, ServoAngle, Wheels};
 use rumbo_robot::Loops;
-use rumbo_wire::{Command, Message, Refusal, RobotTime, Telemetry, ToRobot};
+use rumbo_wire::{Command, FrameMessage, Refusal, RobotTime, Telemetry, ToRobot};
 
 impl Sim {
     /// Takes our native robot off its link: from now on it gets its commands by [`Sim::instruct`] and sends nothing. False

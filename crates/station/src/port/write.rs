@@ -1,7 +1,7 @@
 //! Writes a program to an Arduino at a serial port: the port and the clock around [`Programmer`].
 
 use super::{EMPTY_READS, PortError, TCP, is_patience};
-use rumbo_flash::{Action, BAUD, FlashError, Programmer};
+use rumbo_flash::{BAUD, FlashError, PortAction, Programmer};
 use std::fmt;
 use std::io::{self, Read, Write};
 use std::time::{Duration, Instant};
@@ -60,17 +60,17 @@ pub fn write_program(
         turn(programmer);
         let now_us = u64::try_from(began.elapsed().as_micros()).unwrap_or(u64::MAX);
         match programmer.poll(now_us).map_err(WriteError::Board)? {
-            Action::Lines(pulled) => {
+            PortAction::Lines(pulled) => {
                 // A port without these lines leaves the reset to the board's button.
                 let _ = port.write_data_terminal_ready(pulled);
                 let _ = port.write_request_to_send(pulled);
             }
-            Action::Send(bytes) => {
+            PortAction::Send(bytes) => {
                 let sent = port.set_timeout(PATIENCE).map_err(io::Error::from);
                 sent.and_then(|()| port.write_all(&bytes))
                     .map_err(WriteError::Lost)?;
             }
-            Action::Wait => {
+            PortAction::Wait => {
                 port.set_timeout(TURN)
                     .map_err(|error| WriteError::Lost(error.into()))?;
                 match port.read(&mut buffer) {
@@ -86,7 +86,7 @@ pub fn write_program(
                     Err(error) => return Err(WriteError::Lost(error)),
                 }
             }
-            Action::Done => return Ok(()),
+            PortAction::Done => return Ok(()),
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::{page, support};
 use page::*;
-use rumbo_station::{Lab, LabConfig, Recording, ServeAt, serve};
+use rumbo_station::{Lab, LabConfig, RecordingSetting, ServeAt, serve};
 use serde_json::{Value, json};
 use support::Toy;
 use tokio_tungstenite::tungstenite::Error;
@@ -256,7 +256,7 @@ fn recordings_are_for_a_page_that_may_drive_on_this_computer() {
     let folder = tempfile::tempdir().unwrap();
     let config = LabConfig {
         at: ServeAt::here(0),
-        recording: Some(Recording {
+        recording: Some(RecordingSetting {
             folder: folder.path().to_owned(),
         }),
         ..LabConfig::default()

@@ -60,9 +60,9 @@ prop_compose! {
         (crc_errors, dropped, overruns) in any::<(u8, u8, u8)>(),
         rig in prop::sample::select(Rig::ALL.to_vec()),
         at in time(),
-    ) -> Status {
+    ) -> StatusReport {
         let reference = Reference::new(mode.reference_kind(), numbers);
-        Status { mode, armed, fault, battery_v, reference, crc_errors, dropped, overruns, rig, at }
+        StatusReport { mode, armed, fault, battery_v, reference, crc_errors, dropped, overruns, rig, at }
     }
 }
 
@@ -118,8 +118,8 @@ pub(crate) fn from_robot() -> impl Strategy<Value = FromRobot> {
 pub(crate) fn command() -> impl Strategy<Value = Command> {
     let value = -1e6f32..1e6;
     let level = prop_oneof![
-        (0.0f32..1.0).prop_map(Level::Duty),
-        (0.0f32..30.0).prop_map(Level::Speed)
+        (0.0f32..1.0).prop_map(MovementLevel::Duty),
+        (0.0f32..30.0).prop_map(MovementLevel::Speed)
     ];
     let movement = prop::sample::select(vec![
         Movement::Stop,

@@ -9,10 +9,10 @@ use rumbo_wire::frame::MAX_FRAME;
 use rumbo_wire::*;
 
 /// A message as the receiver decodes it.
-fn received<M: Message>(message: &M) -> M {
+fn received<M: FrameMessage>(message: &M) -> M {
     let frame = message.frame(3);
     let (_, stuffed) = frame.bytes().split_last().unwrap();
-    M::from_body(&Body::parse(stuffed).unwrap()).unwrap()
+    M::from_body(&FrameBody::parse(stuffed).unwrap()).unwrap()
 }
 
 fn close(a: f32, b: f32, step: f32) -> bool {
@@ -52,7 +52,7 @@ proptest! {
             (Some(back_v), Some(sent_v)) => prop_assert!(close(back_v, sent_v, 0.001)),
             (back, sent) => prop_assert_eq!(back, sent),
         }
-        prop_assert_eq!(Status { battery_v: sent.battery_v, ..back }, sent);
+        prop_assert_eq!(StatusReport { battery_v: sent.battery_v, ..back }, sent);
     }
 
     #[test]
@@ -79,7 +79,7 @@ proptest! {
     fn any_payload_is_a_message_or_an_error(number in 0u8..16, payload in prop::collection::vec(any::<u8>(), 0..25)) {
         if let Some(kind) = Kind::from_number(number) {
             let frame = Frame::new(kind, 0, &payload);
-            let body = Body::parse(&frame.bytes()[..frame.bytes().len() - 1]).unwrap();
+            let body = FrameBody::parse(&frame.bytes()[..frame.bytes().len() - 1]).unwrap();
             if let (Ok(_), Ok(_)) = (FromRobot::from_body(&body), ToRobot::from_body(&body)) {
                 panic!("{kind:?} has two directions");
             }
@@ -167,7 +167,7 @@ fn a_non_finite_value_in_a_command_arrives_as_such() {
 #[test]
 fn an_unknown_command_can_still_be_refused_by_its_number() {
     let frame = Frame::new(Kind::Command, 0, &[7, 0x34, 0x12, 99]);
-    let body = Body::parse(&frame.bytes()[..frame.bytes().len() - 1]).unwrap();
+    let body = FrameBody::parse(&frame.bytes()[..frame.bytes().len() - 1]).unwrap();
     assert_eq!(ToRobot::from_body(&body), Err(Malformed::Number));
     assert_eq!(codec::command_number(&body), Some((7, 0x1234)));
 }
@@ -178,7 +178,7 @@ fn the_link_at_9600_baud_carries_25_telemetry_frames_a_second_in_750_bytes() {
     let telemetry = 25 * len(FromRobot::Telemetry(Telemetry::default()));
     assert_eq!(telemetry, 750);
     // With two statuses and the heading 12.5 times, room is left for an answer and an event.
-    let status = 2 * len(FromRobot::Status(Status::default()));
+    let status = 2 * len(FromRobot::Status(StatusReport::default()));
     let heading = 25 * len(FromRobot::HeadingRef(1.0)) / 2;
     assert_eq!((status, heading), (54, 87));
     assert!(telemetry + status + heading + 13 + 9 <= 960);

@@ -107,7 +107,7 @@ fn the_numbers_of_the_tables_are_right() {
             "2 | robot | telemetry",
         ),
         (
-            FromRobot::Status(Status::default()).frame(0),
+            FromRobot::Status(StatusReport::default()).frame(0),
             "3 | robot | status",
         ),
         (

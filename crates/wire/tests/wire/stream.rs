@@ -3,9 +3,9 @@
 use crate::common;
 use common::*;
 use proptest::prelude::*;
-use rumbo_wire::message::{Level, Waypoint};
+use rumbo_wire::message::{MovementLevel, Waypoint};
 use rumbo_wire::{
-    Command, Decoder, FromRobot, Kind, Message, Received, RobotTime, Telemetry, ToRobot,
+    Command, Decoder, FrameMessage, FromRobot, Kind, Received, RobotTime, Telemetry, ToRobot,
 };
 
 /// What came out of a stream: frames as (kind, payload), lines as text.
@@ -196,7 +196,7 @@ fn every_command() -> Vec<Command> {
         Command::WheelReference(wheels),
         Command::Move {
             movement,
-            level: Level::Duty(0.9),
+            level: MovementLevel::Duty(0.9),
         },
         Command::SetParam { id: 2, value },
         Command::GetParam { id: 2 },

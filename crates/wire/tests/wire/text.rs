@@ -12,12 +12,12 @@ fn hundredths() -> impl Strategy<Value = f32> + Clone {
     (-1_000_000i32..1_000_000).prop_map(|n| n as f32 / 100.0)
 }
 
-fn row() -> impl Strategy<Value = Row> {
+fn row() -> impl Strategy<Value = TextRow> {
     let n = hundredths;
     let pwm = || wheels(-255i16..=255);
     let distance = (0u32..60_000, n(), n(), n(), 1u8..5, pwm()).prop_map(
         |(dt_ms, left_cm, right_cm, reference_cm, mode, pwm)| {
-            Row::Distance(DistanceRow {
+            TextRow::Distance(DistanceRow {
                 dt_ms,
                 left_cm,
                 right_cm,
@@ -30,7 +30,7 @@ fn row() -> impl Strategy<Value = Row> {
     let mode = prop::sample::select(vec![0u8, 5, 6]);
     let speed = (0u32..60_000, wheels(n()), n(), mode, pwm()).prop_map(
         |(dt_ms, wheel_rpm, reference_rpm, mode, pwm)| {
-            Row::Speed(SpeedRow {
+            TextRow::Speed(SpeedRow {
                 dt_ms,
                 wheel_rpm,
                 reference_rpm,
@@ -48,7 +48,7 @@ fn row() -> impl Strategy<Value = Row> {
     )
         .prop_map(
             |(dt_ms, wheel_rpm, reference_rpm, [x_m, y_m, heading_deg], pwm)| {
-                Row::Waypoints(WaypointsRow {
+                TextRow::Waypoints(WaypointsRow {
                     dt_ms,
                     wheel_rpm,
                     reference_rpm,
@@ -82,7 +82,7 @@ fn row() -> impl Strategy<Value = Row> {
                 ranges,
             )| {
                 let [right_cm, left_cm, front_cm] = ranges;
-                Row::Mission(MissionRow {
+                TextRow::Mission(MissionRow {
                     dt_ms,
                     reference_rpm,
                     heading_reference_deg,
@@ -102,25 +102,25 @@ fn row() -> impl Strategy<Value = Row> {
 }
 
 /// The row as a line.
-fn line(row: &Row) -> String {
+fn line(row: &TextRow) -> String {
     let a_then_b = |wheels: Wheels<f32>| [wheels.right, wheels.left];
     let (dt_ms, numbers) = match row {
-        Row::Distance(row) => (
+        TextRow::Distance(row) => (
             row.dt_ms,
             vec![row.left_cm, row.right_cm, row.reference_cm, row.mode.into()],
         ),
-        Row::Speed(row) => {
+        TextRow::Speed(row) => {
             let mut numbers = a_then_b(row.wheel_rpm).to_vec();
             numbers.extend([row.reference_rpm, row.mode.into()]);
             (row.dt_ms, numbers)
         }
-        Row::Waypoints(row) => {
+        TextRow::Waypoints(row) => {
             let mut numbers = a_then_b(row.wheel_rpm).to_vec();
             numbers.extend(a_then_b(row.reference_rpm));
             numbers.extend([row.x_m, row.y_m, row.heading_deg]);
             (row.dt_ms, numbers)
         }
-        Row::Mission(row) => {
+        TextRow::Mission(row) => {
             let mut numbers = a_then_b(row.reference_rpm).to_vec();
             numbers.extend([row.heading_reference_deg, row.goal_x_m, row.goal_y_m]);
             numbers.extend([row.x_m, row.y_m, row.heading_deg, row.state.into()]);
@@ -128,13 +128,13 @@ fn line(row: &Row) -> String {
             (row.dt_ms, numbers)
         }
     };
-    let mut line = Line::new(dt_ms);
+    let mut line = TextLine::new(dt_ms);
     for number in numbers {
         line.number(number);
     }
-    if let Row::Distance(DistanceRow { pwm, .. })
-    | Row::Speed(SpeedRow { pwm, .. })
-    | Row::Waypoints(WaypointsRow { pwm, .. }) = row
+    if let TextRow::Distance(DistanceRow { pwm, .. })
+    | TextRow::Speed(SpeedRow { pwm, .. })
+    | TextRow::Waypoints(WaypointsRow { pwm, .. }) = row
     {
         line.pwm(&pwm.map(Duty::new));
     }
@@ -180,8 +180,8 @@ proptest! {
     #[test]
     fn a_row_comes_back_from_its_line(row in row()) {
         let text = line(&row);
-        prop_assert_eq!(Row::parse(text.strip_suffix("\r\n").unwrap()), Ok(row));
-        prop_assert_eq!(Row::parse_as(row.kind(), &text), Ok(row));
+        prop_assert_eq!(TextRow::parse(text.strip_suffix("\r\n").unwrap()), Ok(row));
+        prop_assert_eq!(TextRow::parse_as(row.kind(), &text), Ok(row));
         prop_assert_eq!(text.split(',').count(), row.kind().columns().len());
     }
 
@@ -197,14 +197,14 @@ proptest! {
     #[test]
     fn any_line_is_a_command_or_an_error(line in "(ON|REF|PID|GOAL|MODE)?[ -~]{0,40}") {
         let _ = TextCommand::parse(&line);
-        let _ = Row::parse(&line);
+        let _ = TextRow::parse(&line);
     }
 }
 
 #[test]
 fn the_widest_row_fits_its_line() {
     let far = -1e30;
-    let row = Row::Mission(MissionRow {
+    let row = TextRow::Mission(MissionRow {
         dt_ms: u32::MAX,
         reference_rpm: Wheels::both(far),
         heading_reference_deg: far,
@@ -279,14 +279,14 @@ fn what_is_wrong_with_a_line_is_reported() {
         ("1,2,3,4,5,6,700", TextError::OutOfRange(7)),
         ("-1,2,3,4,5,6,7", TextError::OutOfRange(1)),
     ] {
-        assert_eq!(Row::parse(line), Err(error), "{line}");
+        assert_eq!(TextRow::parse(line), Err(error), "{line}");
     }
     assert_eq!(
-        Row::parse_as(RowKind::Distance, "1,2,3"),
+        TextRow::parse_as(RowKind::Distance, "1,2,3"),
         Err(TextError::Missing)
     );
     assert_eq!(
-        Row::parse_as(RowKind::Distance, "1,2,3,4,1,6,7,8"),
+        TextRow::parse_as(RowKind::Distance, "1,2,3,4,1,6,7,8"),
         Err(TextError::Extra)
     );
 }
@@ -295,7 +295,8 @@ fn what_is_wrong_with_a_line_is_reported() {
 fn a_recorded_file_is_recognised_by_its_header() {
     let header = "dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b\r";
     assert_eq!(csv::recognise(header), Some(RowKind::Speed));
-    let Ok(Row::Speed(row)) = Row::parse_as(RowKind::Speed, "40,15.63,-12.5,60,5,100,-103") else {
+    let Ok(TextRow::Speed(row)) = TextRow::parse_as(RowKind::Speed, "40,15.63,-12.5,60,5,100,-103")
+    else {
         panic!("no row")
     };
     assert_eq!(
@@ -347,7 +348,7 @@ fn every_row_of_the_real_recordings_is_read() {
             let (header, body) = text.split_once('\n').unwrap();
             let kind = csv::recognise(header).unwrap();
             for line in body.lines() {
-                Row::parse_as(kind, line)
+                TextRow::parse_as(kind, line)
                     .unwrap_or_else(|error| panic!("{}: {line}: {error}", path.display()));
                 rows += 1;
             }
@@ -359,7 +360,7 @@ fn every_row_of_the_real_recordings_is_read() {
 /// Rows of the report's sketches as they are published: no time, a blank after each comma.
 #[test]
 fn rows_of_the_published_sketches_are_known_by_their_columns() {
-    let Ok(Row::Distance(row)) = Row::parse("30, 106.40, -76.40, 115") else {
+    let Ok(TextRow::Distance(row)) = TextRow::parse("30, 106.40, -76.40, 115") else {
         panic!("mode 1");
     };
     assert_eq!(
@@ -368,8 +369,8 @@ fn rows_of_the_published_sketches_are_known_by_their_columns() {
     );
     assert_eq!(row.pwm, Wheels::both(115));
 
-    let Ok(Row::Distance(row)) =
-        Row::parse("30, 118.49, 120.38, 0, 119.20, 8.95, -89.20, 115, 124")
+    let Ok(TextRow::Distance(row)) =
+        TextRow::parse("30, 118.49, 120.38, 0, 119.20, 8.95, -89.20, 115, 124")
     else {
         panic!("mode 2");
     };
@@ -383,14 +384,15 @@ fn rows_of_the_published_sketches_are_known_by_their_columns() {
         }
     );
 
-    let Ok(Row::Distance(row)) = Row::parse("58.58, 57.52, 57.49, 57.85, 0.00, 4.33, 74, 70")
+    let Ok(TextRow::Distance(row)) =
+        TextRow::parse("58.58, 57.52, 57.49, 57.85, 0.00, 4.33, 74, 70")
     else {
         panic!("mode 3");
     };
     // And the front one here, `left` of the rig.
     assert_eq!((row.mode, row.left_cm, row.right_cm), (3, 58.58, 57.52));
 
-    let Ok(Row::Speed(row)) = Row::parse("15.63, 12.50, 60.00, 60.00, 100, 103") else {
+    let Ok(TextRow::Speed(row)) = TextRow::parse("15.63, 12.50, 60.00, 60.00, 100, 103") else {
         panic!("mode 5");
     };
     assert_eq!(
@@ -404,8 +406,8 @@ fn rows_of_the_published_sketches_are_known_by_their_columns() {
         )
     );
 
-    let Ok(Row::Waypoints(row)) =
-        Row::parse("78.00, 86.00, 0.98, 1.20, 0.98, 0.02, 0.01, -0.02, 0.91, 1")
+    let Ok(TextRow::Waypoints(row)) =
+        TextRow::parse("78.00, 86.00, 0.98, 1.20, 0.98, 0.02, 0.01, -0.02, 0.91, 1")
     else {
         panic!("mode 7");
     };
@@ -427,10 +429,11 @@ fn numbers_that_only_look_like_a_published_row_are_none() {
         "30, 106.40, -76.40, 400",
         "30, 1, 2, 3, 4, 5, 6, 7, 8",
     ] {
-        assert!(Row::parse(line).is_err(), "{line}");
+        assert!(TextRow::parse(line).is_err(), "{line}");
     }
     // A row with a time has as many columns as the published one of mode 7.
-    let Ok(Row::Waypoints(row)) = Row::parse("64,28.12,25,78,86,0.01,0,0.91,122,134") else {
+    let Ok(TextRow::Waypoints(row)) = TextRow::parse("64,28.12,25,78,86,0.01,0,0.91,122,134")
+    else {
         panic!("mode 7");
     };
     assert_eq!(row.dt_ms, 64);

@@ -10,7 +10,7 @@ use crate::figures::runs::{self, Change, Runs, runs};
 use crate::figures::table::{Row, row, spread, table};
 use rumbo_experiment::files::Setup;
 use rumbo_plot::{Curve, Ink, Map, Panel, Plot, Points, Shape, Sheet, WIDTH, Words};
-use rumbo_sim::trace::Sample;
+use rumbo_sim::trace::TruthSample;
 use rumbo_wire::Command;
 
 const RPM: f64 = 30.0 / std::f64::consts::PI;
@@ -64,7 +64,7 @@ fn both(scenario: &str, baseline: Change) -> Result<Option<[Runs; 2]>, String> {
 }
 
 /// A signal over time, of both programs.
-fn signal(baseline: &Runs, ours: &Runs, signal: impl Fn(&Sample) -> f64) -> Vec<Curve> {
+fn signal(baseline: &Runs, ours: &Runs, signal: impl Fn(&TruthSample) -> f64) -> Vec<Curve> {
     vec![
         Curve::median(REPORT, BASELINE, &baseline.over_time(&signal)),
         Curve::median("ours", OURS, &ours.over_time(&signal)),

@@ -63,8 +63,18 @@ pub(super) fn mode1() -> Result<Option<Made>, String> {
 }
 
 /// Distance of the middle of the front pair from the wall at x = 1.2 m.
-fn ahead_m(sample: &Sample) -> f64 {
+fn ahead_m(sample: &TruthSample) -> f64 {
     1.2 - sample.x_m - 0.13 * sample.heading_rad.cos()
+}
+
+fn mode2_plot(baseline: &Runs, ours: &Runs) -> Plot {
+    let mut distance = signal(baseline, ours, |sample| 100.0 * ahead_m(sample));
+    distance.insert(0, reference(&ours.setup, 100.0));
+    let angle = signal(baseline, ours, |sample| DEG * sample.heading_rad);
+    Plot::over_time(vec![
+        Panel::new("distance to the wall, cm", distance).exactly(0.0, 125.0),
+        Panel::new("angle to its normal, deg", angle).exactly(-20.0, 40.0),
+    ])
 }
 
 pub(super) fn mode2() -> Result<Option<Made>, String> {
@@ -74,13 +84,6 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
     ) else {
         return Ok(None);
     };
-    let mut distance = signal(&baseline, &ours, |sample| 100.0 * ahead_m(sample));
-    distance.insert(0, reference(&ours.setup, 100.0));
-    let angle = signal(&baseline, &ours, |sample| DEG * sample.heading_rad);
-    let plot = Plot::over_time(vec![
-        Panel::new("distance to the wall, cm", distance).exactly(0.0, 125.0),
-        Panel::new("angle to its normal, deg", angle).exactly(-20.0, 40.0),
-    ]);
     let rows = [
         row(
             "119 -> 30 cm, within 5 %",
@@ -117,7 +120,7 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
         figures: vec![(
             "mode2",
             "Distance and angle to the wall over time: ours stands square at every reference",
-            figure("Mode 2", &plot),
+            figure("Mode 2", &mode2_plot(&baseline, &ours)),
         )],
         words: words(
             &[
@@ -132,7 +135,7 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
 }
 
 /// Distance of the middle of the side pair from the wall at y = 0.65 m.
-fn beside_m(sample: &Sample) -> f64 {
+fn beside_m(sample: &TruthSample) -> f64 {
     let (sin, cos) = sample.heading_rad.sin_cos();
     0.65 - sample.y_m - 0.03 * sin - 0.075 * cos
 }

@@ -4,7 +4,7 @@ use super::{rumbo_in, status};
 use crate::support::stderr;
 use rumbo_control::Wheels;
 use rumbo_control::mode::ModeId;
-use rumbo_experiment::batch::{Batch, Driver};
+use rumbo_experiment::batch::{Batch, DrivenBy};
 use rumbo_experiment::files::{Library, Overrides};
 use rumbo_lab::run_log::RunSource;
 use rumbo_log::LogKind;
@@ -18,7 +18,7 @@ fn an_episode_s_log_has_the_robot_the_goal_and_the_truth_and_is_not_run_again() 
     let folder = folder.path();
     let (library, overrides) = (Library::new(), Overrides::default());
     let setup = library.setup("mode8-random", &overrides).unwrap();
-    let mut batch = Batch::new(&setup, Driver::Caller, &[4]).unwrap();
+    let mut batch = Batch::new(&setup, DrivenBy::Caller, &[4]).unwrap();
     let robot = batch.robot_mut(0).unwrap();
     let source = RunSource {
         kind: LogKind::Episode,

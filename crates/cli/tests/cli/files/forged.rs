@@ -3,7 +3,7 @@
 use super::{rumbo_in, scenario, status};
 use crate::support::{stderr, stdout};
 use rumbo_log::{Burst, Manifest, Outcome};
-use rumbo_session::headless::Run;
+use rumbo_session::headless::RunRecords;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
 
@@ -72,7 +72,7 @@ fn texts_of_a_log_are_shown_and_not_interpreted() {
         to_robot: false,
         bytes: b"=cmd|' /C calc'!A0\r\n".to_vec(),
     }];
-    let run = Run {
+    let run = RunRecords {
         truths: &[(10_000, rumbo_log::Truth::default())],
         link: &link,
         outcome: Some(Outcome {
@@ -80,7 +80,7 @@ fn texts_of_a_log_are_shown_and_not_interpreted() {
             failures: vec![hostile.into()],
             pass: false,
         }),
-        ..Run::default()
+        ..RunRecords::default()
     };
     let logs = folder.join("logs");
     std::fs::create_dir(&logs).unwrap();

@@ -3,7 +3,7 @@
 use super::{rumbo_in, scenario, status};
 use crate::support::stderr;
 use rumbo_log::{Burst, Manifest, Truth};
-use rumbo_session::headless::Run;
+use rumbo_session::headless::RunRecords;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
 use std::path::Path;
@@ -15,10 +15,10 @@ fn session(path: &Path, manifest: &Manifest, t_us: u64) {
         to_robot: true,
         bytes: vec![0],
     }];
-    let run = Run {
+    let run = RunRecords {
         truths: &[(t_us, Truth::default())],
         link: &link,
-        ..Run::default()
+        ..RunRecords::default()
     };
     record_run(path, manifest, run).unwrap();
 }

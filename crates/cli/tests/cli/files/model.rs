@@ -3,7 +3,7 @@
 use super::{rumbo_in, scenario, status};
 use crate::support::{stderr, stdout};
 use rumbo_log::{Manifest, Truth};
-use rumbo_session::headless::Run;
+use rumbo_session::headless::RunRecords;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
 
@@ -24,12 +24,12 @@ fn a_run_of_another_model_that_differs_reports_the_model_first() {
             model,
             ..recorded.clone()
         };
-        let run = Run {
+        let run = RunRecords {
             truths: &[(200_000, Truth::default())],
             link: &log.link,
             said: &log.said,
             outcome: Some(outcome),
-            ..Run::default()
+            ..RunRecords::default()
         };
         record_run(&folder.join("x.mcap"), &manifest, run).unwrap();
         let output = rumbo_in(folder, &["rerun", "x.mcap"]);

@@ -10,7 +10,7 @@
 
 use super::place::{Bounds, Place, fractions};
 use crate::math::{round, sin_cos};
-use crate::types::{Pose, Range, Reading, SonarId, Transform};
+use crate::types::{Pose, Range, SonarId, SonarReading, Transform};
 
 /// Most points stored.
 pub(super) const CAPACITY: usize = 48;
@@ -100,7 +100,7 @@ pub(super) struct Beam {
 
 impl Beam {
     /// The beam of a reading, with the robot at `robot`; and the position of the echo on its axis, if there was one.
-    pub(super) fn of(robot: &Transform, reading: &Reading) -> (Self, Option<Place>) {
+    pub(super) fn of(robot: &Transform, reading: &SonarReading) -> (Self, Option<Place>) {
         let (x_m, y_m) = robot.to_world(reading.view.x_m, reading.view.y_m);
         let axis_rad = robot.pose.heading_rad + reading.view.axis_rad;
         let (sin, cos) = sin_cos(axis_rad);
@@ -232,7 +232,7 @@ impl Echoes {
     pub(super) fn ingest(
         &mut self,
         robot: &Transform,
-        reading: &Reading,
+        reading: &SonarReading,
         beam: &Beam,
         sure: bool,
     ) -> bool {
@@ -322,7 +322,7 @@ impl Echoes {
     }
 
     /// What this reading saw approaches: its way is free.
-    pub(super) fn forget(&mut self, robot: &Transform, reading: &Reading, range_m: f32) {
+    pub(super) fn forget(&mut self, robot: &Transform, reading: &SonarReading, range_m: f32) {
         let (beam, _) = Beam::of(robot, reading);
         self.clear(&beam, round(1_000.0 * range_m) + TRAIL_MM);
     }

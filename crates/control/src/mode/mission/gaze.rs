@@ -7,7 +7,7 @@ use super::watch::{Watch, Worth};
 use super::{Look, Phase, SWEEP_RAD, ServoAngle, Side, State};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, wrap_angle};
-use crate::types::{Range, Reading, SonarId};
+use crate::types::{Range, SonarId, SonarReading};
 
 /// The servo looks this far to each side on the way [rad].
 const SWING_RAD: f32 = 0.76;
@@ -61,7 +61,7 @@ pub(super) struct Gaze {
 
 impl Gaze {
     /// An answer of the front sonar.
-    pub(super) fn count(&mut self, reading: &Reading, worth: Worth) {
+    pub(super) fn count(&mut self, reading: &SonarReading, worth: Worth) {
         if abs(reading.servo_rad - self.target_rad) < THERE_RAD {
             self.looks = self.looks.saturating_add(1);
             self.wild = worth == Worth::Wild;

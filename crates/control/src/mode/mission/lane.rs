@@ -23,7 +23,7 @@ use super::{
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, wrap_angle};
 use crate::motion::{CREEP_M_S, LineState, StopState, Stopping, TurnState};
-use crate::types::{Fault, Range, Reading, SonarId};
+use crate::types::{Fault, Range, SonarId, SonarReading};
 use core::f32::consts::{FRAC_PI_2, PI};
 
 /// The front sonar looks ahead within this of the middle [rad].
@@ -404,12 +404,12 @@ impl Lane {
 }
 
 /// The front sonar's answer of this tick.
-fn front(estimate: &Estimate) -> Option<&Reading> {
+fn front(estimate: &Estimate) -> Option<&SonarReading> {
     let reading = estimate.reading.as_ref()?;
     (reading.sonar == SonarId::Front && reading.range != Range::Faulty).then_some(reading)
 }
 
-fn range_m(reading: &Reading) -> f32 {
+fn range_m(reading: &SonarReading) -> f32 {
     match reading.range {
         Range::Valid(range_m) => range_m,
         Range::Clear | Range::Faulty => FAR_M,

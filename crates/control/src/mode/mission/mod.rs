@@ -30,14 +30,16 @@ use super::description::{
     way,
 };
 use super::{
-    Action, Description, Group, Law, MetricGroup, Mode, Plot, Reference, Takes, waypoints,
+    Action, Description, Law, MetricGroup, Mode, ModePlot, ParamGroup, Reference, Takes, waypoints,
 };
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sqrt};
 use crate::motion::{Line, LineState, Segment, Turn, TurnState};
 use crate::params::{ParamId, Params};
 use crate::rig::{Rig, Rigs};
-use crate::types::{Drive, Fault, Look, Pose, Range, Reading, ServoAngle, Side, SonarId, TICK_S};
+use crate::types::{
+    Drive, Fault, Look, Pose, Range, ServoAngle, Side, SonarId, SonarReading, TICK_S,
+};
 use echoes::{Beam, Echoes};
 use gaze::Gaze;
 use goal::CAREFUL_M;
@@ -82,12 +84,12 @@ pub const DESCRIPTION: Description = Description {
     takes: Some(Takes::Lane),
     rigs: Rigs::of(&[Rig::Final]),
     parameters: &[
-        Group::new("goal", &[ParamId::MissionCruise, ParamId::MissionAround]),
-        Group::new(
+        ParamGroup::new("goal", &[ParamId::MissionCruise, ParamId::MissionAround]),
+        ParamGroup::new(
             "end of a goal",
             &[ParamId::MissionGiveUp, ParamId::MissionResetOrigin],
         ),
-        Group::new("lane", &[ParamId::LaneSafe]),
+        ParamGroup::new("lane", &[ParamId::LaneSafe]),
         TURNS,
         LINES,
         SPEED_LOOPS,
@@ -95,7 +97,12 @@ pub const DESCRIPTION: Description = Description {
         WHEEL_RAMPS,
     ],
     laws: &[&way(LINE), LAWS, TWIST, SPEED],
-    plots: &[Plot::Position, Plot::Heading, Plot::Distance, Plot::Wheels],
+    plots: &[
+        ModePlot::Position,
+        ModePlot::Heading,
+        ModePlot::Distance,
+        ModePlot::Wheels,
+    ],
     metrics: &[MetricGroup::Journey, MetricGroup::Goals, MetricGroup::Lane],
 };
 
@@ -375,7 +382,7 @@ impl State {
     }
 
     /// Stores a reading, as far as it can be trusted.
-    fn ingest(&mut self, estimate: &Estimate, reading: &Reading) {
+    fn ingest(&mut self, estimate: &Estimate, reading: &SonarReading) {
         let driving =
             !matches!(self.phase, Phase::Wait | Phase::Unreachable) || self.lane.is_driving();
         let driving = driving && (self.proof.is_some() || !self.movement.is_passing());
@@ -465,63 +472,4 @@ impl<'a> Mode<'a> for Mission<'a> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::types::View;
-
-    #[test]
-    fn all_that_is_remembered_fits_into_1_200_bytes() {
-        let bytes = core::mem::size_of::<State>();
-        assert!(bytes <= 1_200, "{bytes}");
-    }
-
-    /// A mission on its way to a goal, and what it decides while the left sonar answers so.
-    fn answered(state: &mut State, ranges_m: &[f32]) -> Action {
-        let params = Params::default();
-        let mission = Mission::new(&params, &Task::Goal { x_m: 3.0, y_m: 0.0 });
-        let mut action = Action::default();
-        let looks = ranges_m.iter().flat_map(|range_m| {
-            [
-                (SonarId::Left, 1.57, Range::Valid(*range_m)),
-                (SonarId::Right, -1.57, Range::Clear),
-                (SonarId::Front, 0.0, Range::Clear),
-            ]
-        });
-        for (sonar, axis_rad, range) in looks {
-            let view = View {
-                axis_rad,
-                ..View::default()
-            };
-            let mut estimate = Estimate {
-                facing: (0.0, 1.0),
-                reading: Some(Reading {
-                    sonar,
-                    range,
-                    view,
-                    servo_rad: 0.0,
-                }),
-                ..Estimate::default()
-            };
-            for _ in 0..2 {
-                action = mission.step(state, &estimate).expect("no fault");
-                estimate.reading = None;
-            }
-        }
-        action
-    }
-
-    #[test]
-    fn a_sonar_that_contradicts_itself_stops_the_robot_until_it_repeats_its_ranges() {
-        let drives = |action: &Action| matches!(action.drive, Drive::Twist { .. });
-        let state = &mut State::default();
-        state.renew();
-        assert!(drives(&answered(state, &[0.8, 0.8])));
-        let wild = answered(state, &[0.4, 1.1, 0.6, 1.4, 0.9, 0.3]);
-        assert!(state.watch.is_wild() && !state.movement.gives_way());
-        assert_eq!(wild.drive, Drive::Release);
-        assert_eq!(wild.state, Phase::GiveWay as u8);
-        let calm = answered(state, &[0.8, 0.8, 0.8, 0.8]);
-        assert!(drives(&calm));
-        assert_eq!(calm.state, Phase::GoToGoal as u8);
-    }
-}
+mod tests;

@@ -17,7 +17,7 @@
 use super::{Drive, Mission, Phase, SWEEP_RAD, State};
 use crate::estimate::Estimate;
 use crate::math::{abs, clamp, max, min, round, sin_cos};
-use crate::types::{Range, Reading, TICK_S};
+use crate::types::{Range, SonarReading, TICK_S};
 use core::f32::consts::PI;
 
 /// Looks along beams whose axes differ by less are of one thing [rad].
@@ -176,7 +176,7 @@ impl Approach {
 
 impl Track {
     /// Ingests a look; says whether something approaches.
-    pub(super) fn ingest(&mut self, reading: &Reading, since: &Since) -> Option<Approach> {
+    pub(super) fn ingest(&mut self, reading: &SonarReading, since: &Since) -> Option<Approach> {
         self.may_approach = false;
         let range_m = match reading.range {
             Range::Valid(range_m) if range_m < JUDGED_M => range_m,

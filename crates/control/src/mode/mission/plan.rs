@@ -150,7 +150,7 @@ fn seen_from(pose: &Pose, place: Place) -> (f32, f32) {
 mod tests {
     use super::super::echoes::Beam;
     use super::*;
-    use crate::types::{Range, Reading, SonarId, Transform, View};
+    use crate::types::{Range, SonarId, SonarReading, SonarView, Transform};
 
     /// A memory of points, each detected twice by a sonar close to it.
     fn remembered(points_m: &[(f32, f32)]) -> Echoes {
@@ -161,10 +161,10 @@ mod tests {
                 y_m: *y_m,
                 heading_rad: 0.0,
             };
-            let reading = Reading {
+            let reading = SonarReading {
                 sonar: SonarId::Front,
                 range: Range::Valid(0.1),
-                view: View::default(),
+                view: SonarView::default(),
                 servo_rad: 0.0,
             };
             let robot = Transform::of(from);

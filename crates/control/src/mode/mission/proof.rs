@@ -89,13 +89,11 @@ impl Mission<'_> {
         }
         if waited {
             // What it was going around, or what should answer, may have gone.
-            state.detour = None;
-            state.proof = None;
+            (state.detour, state.proof) = (None, None);
         }
         if !state.watch.suspects() {
-            if state.proof.take().is_some() {
-                state.watch.landmarks.trust();
-            }
+            let proved = state.proof.take();
+            proved.inspect(|_| state.watch.landmarks.trust());
             return Ok(None);
         }
         let Some(mut proof) = state.proof.or_else(|| begin(state, estimate)) else {

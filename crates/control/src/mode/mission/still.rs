@@ -4,7 +4,7 @@
 
 use super::moving::Since;
 use crate::math::abs;
-use crate::types::{Range, Reading};
+use crate::types::{Range, SonarReading};
 
 /// A beam stands if its axis turns by less from look to look [rad].
 const STANDS_RAD: f32 = 0.02;
@@ -30,7 +30,7 @@ pub(super) struct Still {
 
 impl Still {
     /// Ingests a look; says whether something moves.
-    pub(super) fn ingest(&mut self, reading: &Reading, since: &Since) -> bool {
+    pub(super) fn ingest(&mut self, reading: &SonarReading, since: &Since) -> bool {
         let stands =
             since.rolled_m == 0.0 && since.turned_rad == 0.0 && since.aside_rad < STANDS_RAD;
         if !stands {
@@ -63,7 +63,7 @@ impl Still {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::types::{SonarId, View};
+    use crate::types::{SonarId, SonarView};
 
     /// Whether something moves at the last of these looks, between which the robot rolls so far; below 0: silence.
     fn moves(rolled_m: f32, ranges_m: &[f32]) -> bool {
@@ -75,10 +75,10 @@ mod tests {
             } else {
                 Range::Valid(*range_m)
             };
-            let reading = Reading {
+            let reading = SonarReading {
                 sonar: SonarId::Front,
                 range,
-                view: View::default(),
+                view: SonarView::default(),
                 servo_rad: 0.0,
             };
             let since = Since {

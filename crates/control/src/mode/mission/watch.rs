@@ -15,7 +15,7 @@ use super::still::Still;
 use crate::estimate::Estimate;
 use crate::math::{abs, min, sin_cos};
 use crate::stuck::Stuck;
-use crate::types::{Fault, Range, Reading, SonarId, TICK_S};
+use crate::types::{Fault, Range, SonarId, SonarReading, TICK_S};
 use core::f32::consts::FRAC_PI_2;
 
 /// Impossible answers in a row that make a sonar faulty.
@@ -100,7 +100,7 @@ struct SonarState {
 
 impl SonarState {
     /// The robot's motion since the last answer, of which this reading is the next.
-    fn since(&self, reading: &Reading) -> Since {
+    fn since(&self, reading: &SonarReading) -> Since {
         Since {
             age_s: self.age_s,
             rolled_m: self.rolled_m,
@@ -110,11 +110,11 @@ impl SonarState {
     }
 
     /// What the beam of a reading is off that of the last answer [rad].
-    fn aside_rad(&self, reading: &Reading) -> f32 {
+    fn aside_rad(&self, reading: &SonarReading) -> f32 {
         abs(reading.view.axis_rad - (self.axis_rad - self.turned_rad))
     }
 
-    fn ingest(&mut self, reading: &Reading) -> Worth {
+    fn ingest(&mut self, reading: &SonarReading) -> Worth {
         let (rolled_m, turned_rad) = (self.rolled_m, self.turned_rad);
         (self.age_s, self.rolled_m, self.turned_rad) = (0.0, 0.0, 0.0);
         if reading.range == Range::Faulty {
@@ -215,7 +215,7 @@ impl Default for Watch {
 
 impl Watch {
     /// Ingests a reading of a robot that drives.
-    pub(in crate::mode) fn hear(&mut self, estimate: &Estimate, reading: &Reading) {
+    pub(in crate::mode) fn hear(&mut self, estimate: &Estimate, reading: &SonarReading) {
         let sight = Beam::of(&estimate.transform(), reading);
         self.ingest(estimate, reading, &sight, true);
     }
@@ -224,7 +224,7 @@ impl Watch {
     pub(super) fn ingest(
         &mut self,
         estimate: &Estimate,
-        reading: &Reading,
+        reading: &SonarReading,
         (beam, at): &(Beam, Option<Place>),
         driving: bool,
     ) -> Worth {

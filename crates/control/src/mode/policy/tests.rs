@@ -1,11 +1,11 @@
 use super::*;
 use crate::mode::ActiveMode;
 use crate::mode::ModeId;
-use crate::types::{AgedRange, Pose, Range, Reading, SonarId, View};
+use crate::types::{AgedRange, Pose, Range, SonarId, SonarReading, SonarView};
 
 /// A network of one layer that drives straight on by its biases, and its bytes.
-fn network() -> (Shape, impl Fn(u16) -> u8) {
-    let shape = Shape::new(1, &[3]).unwrap();
+fn network() -> (NetworkShape, impl Fn(u16) -> u8) {
+    let shape = NetworkShape::new(1, &[3]).unwrap();
     let neurons = [(0, 60), (0, 30), (0, -127)];
     let read = move |at: u16| {
         let first = shape.first_neuron();
@@ -27,10 +27,10 @@ fn estimate(tick: u8) -> Estimate {
         ranges: [AgedRange::fresh(range); 3],
         ..Estimate::default()
     };
-    estimate.reading = tick.is_multiple_of(4).then_some(Reading {
+    estimate.reading = tick.is_multiple_of(4).then_some(SonarReading {
         sonar,
         range,
-        view: View::default(),
+        view: SonarView::default(),
         servo_rad: 0.0,
     });
     estimate
@@ -138,7 +138,7 @@ fn a_silent_or_faulty_sonar_stops_the_robot() {
         let stopped = (0..200).find_map(|tick| {
             let mut estimate = estimate(tick);
             estimate.reading = match (estimate.reading, range) {
-                (Some(reading), Some(range)) => Some(Reading { range, ..reading }),
+                (Some(reading), Some(range)) => Some(SonarReading { range, ..reading }),
                 _ => None,
             };
             mode.step(&Params::default(), &estimate).err()

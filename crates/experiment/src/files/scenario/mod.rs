@@ -68,7 +68,7 @@ pub struct ScenarioFile {
     /// How long it lasts, in s.
     pub duration_s: f64,
     /// Where the robot starts.
-    pub start: Start,
+    pub start: StartPose,
     /// The wheels turn freely: no floor, the body does not move.
     pub wheels_in_air: bool,
     /// A calibration of this seed's robot comes first; its parameters are sent before the first command.
@@ -82,12 +82,12 @@ pub struct ScenarioFile {
     /// Wires that fail on the way.
     pub wire_faults: Vec<TimedWireFault>,
     /// Limits on the metrics for the run to pass.
-    pub limits: BTreeMap<String, Bounds>,
+    pub limits: BTreeMap<String, MetricBounds>,
     /// Control parameters sent before the first command, from `[parameters]`; they win over the robot file's, and later
     /// ones over earlier ones.
     pub parameters: Vec<(ParamId, f32)>,
     /// Whether each seed draws its own robot.
-    pub spread: Spread,
+    pub spread: SeedSpread,
     /// Plant values that hold in every run, set after the draw, from `[plant]`; dotted keys of `Params`.
     pub plant: BTreeMap<String, f64>,
     /// The robots in its world, if there are several: then the values above are those that an entry of `[[fleet]]` does
@@ -120,7 +120,7 @@ pub struct Member {
 
 /// The pose at the start, in the world frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Start {
+pub struct StartPose {
     /// Middle of the wheels' axis, in m.
     pub x_m: f64,
     /// Middle of the wheels' axis, in m.
@@ -131,14 +131,14 @@ pub struct Start {
 
 /// Limits on a metric; a missing end is unlimited.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Bounds {
+pub struct MetricBounds {
     /// Smallest value that passes.
     pub min: Option<f64>,
     /// Largest value that passes.
     pub max: Option<f64>,
 }
 
-impl Bounds {
+impl MetricBounds {
     /// Whether a value passes. NaN never does.
     pub fn admit(&self, value: f64) -> bool {
         !value.is_nan()
@@ -147,7 +147,7 @@ impl Bounds {
     }
 }
 
-impl std::fmt::Display for Bounds {
+impl std::fmt::Display for MetricBounds {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match (self.min, self.max) {
             (Some(min), Some(max)) => write!(f, "{min} to {max}"),
@@ -160,7 +160,7 @@ impl std::fmt::Display for Bounds {
 
 /// Whether each seed draws its own robot about the robot file's values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Spread {
+pub enum SeedSpread {
     /// Each seed draws radii, base, friction, battery, sensors.
     #[default]
     Drawn,
@@ -168,8 +168,8 @@ pub enum Spread {
     None,
 }
 
-pub(super) fn read_start(table: &Table<'_, '_>) -> Start {
-    let start = Start {
+pub(super) fn read_start(table: &Table<'_, '_>) -> StartPose {
+    let start = StartPose {
         x_m: table.number("x_m", PLACE).unwrap_or(0.0),
         y_m: table.number("y_m", PLACE).unwrap_or(0.0),
         heading_rad: table

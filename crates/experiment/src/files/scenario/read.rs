@@ -1,7 +1,7 @@
 //! Reads a scenario's file.
 
 use super::fleet::read_fleet;
-use super::{Bounds, ScenarioFile, Spread, read_start};
+use super::{MetricBounds, ScenarioFile, SeedSpread, read_start};
 use crate::files::commands::{MOST_COMMANDS, read_commands};
 use crate::files::error::FileError;
 use crate::files::faults::{MOST_FAULTS, read_sonar_faults, read_wire_faults};
@@ -74,14 +74,18 @@ impl ScenarioFile {
     }
 }
 
-fn read_spread(table: &Table<'_, '_>) -> Spread {
+fn read_spread(table: &Table<'_, '_>) -> SeedSpread {
     let none = table.flag("none").is_some_and(|flag| flag.value);
     table.finish();
-    if none { Spread::None } else { Spread::Drawn }
+    if none {
+        SeedSpread::None
+    } else {
+        SeedSpread::Drawn
+    }
 }
 
 /// Limits by metric. A dot in a metric's name may be quoted or not: TOML then nests, and the names are joined again.
-fn read_limits(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String, Bounds> {
+fn read_limits(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String, MetricBounds> {
     let mut limits = BTreeMap::new();
     for key in table.keys() {
         let metric = format!("{prefix}{}", key.value);
@@ -102,16 +106,16 @@ fn read_limits(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String, Bounds> 
 }
 
 /// The limits below a key, `{ min = 1, max = 2 }`, of which one may be missing.
-pub(crate) fn read_bounds(table: &Table<'_, '_>, key: &str) -> Bounds {
+pub(crate) fn read_bounds(table: &Table<'_, '_>, key: &str) -> MetricBounds {
     let below = table.table(key);
-    let bounds = Bounds {
+    let bounds = MetricBounds {
         min: below.number("min", BOUND),
         max: below.number("max", BOUND),
     };
     if below.keys().is_empty() && table.holds_table(key) {
         below.complain_here("has neither min nor max: write e.g. { max = 2.4 }");
     }
-    if let Bounds {
+    if let MetricBounds {
         min: Some(min),
         max: Some(max),
     } = bounds

@@ -9,7 +9,7 @@ use rumbo_experiment::run::RunResult;
 use rumbo_plant::world::Wall;
 use rumbo_sim::Sim;
 use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
-use rumbo_wire::text::Row;
+use rumbo_wire::text::TextRow;
 use rumbo_wire::{Command, FromRobot};
 
 /// A scenario in a world of these walls, each from one point to another.
@@ -294,7 +294,7 @@ fn in_text_both_modes_send_the_rows_of_the_report_with_the_front_sonar_of_the_pa
         }
         last_line(&mut sim, 0.5);
         // Mode 4 is on its way to the wall by now: the front one is nearer.
-        let Ok(Row::Distance(row)) = Row::parse(&last_line(&mut sim, 0.4)) else {
+        let Ok(TextRow::Distance(row)) = TextRow::parse(&last_line(&mut sim, 0.4)) else {
             panic!("mode {mode}")
         };
         assert_eq!(row.mode, mode);

@@ -7,7 +7,7 @@ use rumbo_experiment::files::Setup;
 use rumbo_experiment::note::Note;
 use rumbo_plant::world::Block;
 use rumbo_sim::sonar_fault::{SonarFault, TimedSonarFault};
-use rumbo_wire::{Command, FromRobot, Message, Refusal, ToRobot};
+use rumbo_wire::{Command, FrameMessage, FromRobot, Refusal, ToRobot};
 
 const TWO_DEGREES: f64 = 0.0349;
 

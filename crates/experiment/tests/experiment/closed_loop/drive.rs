@@ -1,7 +1,7 @@
 //! Guarantees of the drive layer to every mode that requests wheel speeds.
 
 use super::{fault, seeds, setup};
-use rumbo_control::mode::{Level, Movement};
+use rumbo_control::mode::{Movement, MovementLevel};
 use rumbo_experiment::files::TimedCommand;
 use rumbo_experiment::run::RunResult;
 use rumbo_wire::Command;
@@ -77,7 +77,7 @@ fn an_open_loop_reversal_is_no_silent_encoder() {
             at_s,
             command: Command::Move {
                 movement,
-                level: Level::Duty(0.9),
+                level: MovementLevel::Duty(0.9),
             },
             ..arm
         }));

@@ -24,7 +24,9 @@ use rumbo_experiment::note::Note;
 use rumbo_experiment::run::{RunResult, run, run_all};
 use rumbo_sim::Sim;
 use rumbo_sim::trace::Trace;
-use rumbo_wire::{Command, Decoder, EventKind, FromRobot, Message, Received, RobotTime, ToRobot};
+use rumbo_wire::{
+    Command, Decoder, EventKind, FrameMessage, FromRobot, Received, RobotTime, ToRobot,
+};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock};
 

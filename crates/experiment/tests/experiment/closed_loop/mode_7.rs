@@ -29,7 +29,7 @@ fn pure_pursuit_drives_a_curve_without_stopping_and_nearer_to_it_than_the_baseli
         assert!(worst(&runs, "odometry_rms_m") <= 0.015, "{scenario}");
         for run in &runs {
             // Where a wheel slows down to the end it may cross a bound twice: in between half of it counts.
-            let faster = |sample: &rumbo_sim::trace::Sample, than_rad_s: f64| {
+            let faster = |sample: &rumbo_sim::trace::TruthSample, than_rad_s: f64| {
                 sample.wheel_rad_s.iter().all(|rad_s| *rad_s > than_rad_s)
             };
             let samples = &run.trace.samples;

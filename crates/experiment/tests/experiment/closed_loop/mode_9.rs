@@ -4,7 +4,7 @@ use super::{seeds, setup};
 use rumbo_control::mode::policy::{SERVO_RAD, WHEEL_RAD_S, shares};
 use rumbo_control::policy::{DECISION_TICKS, decide};
 use rumbo_control::{Drive, Wheels};
-use rumbo_experiment::batch::{Driver, Robot};
+use rumbo_experiment::batch::{DrivenBy, Robot};
 use rumbo_experiment::campaign::judge;
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ fn every_decision_is_what_the_network_makes_of_what_the_robot_knew_a_decision_be
     let read = |at: u16| policy.bytes[usize::from(at)];
     let mut servo_rad = Vec::new();
     for seed in 1..4 {
-        let mut robot = Robot::new(&setup, Driver::Caller, seed).unwrap();
+        let mut robot = Robot::new(&setup, DrivenBy::Caller, seed).unwrap();
         robot.advance(50);
         for command in ["goal = \"world\"", "arm = true"] {
             robot.instruct(command).unwrap();
@@ -58,7 +58,7 @@ fn without_a_policy_the_robot_refuses_to_start() {
         policy: None,
         ..setup("mode9-random")
     };
-    let mut robot = Robot::new(&Arc::new(setup), Driver::Caller, 1).unwrap();
+    let mut robot = Robot::new(&Arc::new(setup), DrivenBy::Caller, 1).unwrap();
     robot.advance(50);
     let refused = robot.instruct("arm = true").unwrap_err().to_string();
     assert!(refused.contains("the robot has no policy"), "{refused}");

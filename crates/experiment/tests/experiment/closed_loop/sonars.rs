@@ -1,7 +1,7 @@
 //! A front sonar with false readings stops the robot before it touches anything, or lets it touch gently; a sound one
 //! is trusted.
 
-use rumbo_experiment::campaign::faults::{Verdict, drive_all};
+use rumbo_experiment::campaign::faults::{DetectionSummary, drive_all};
 use rumbo_experiment::files::Overrides;
 
 /// Two seeds at three instants; about 2 % of the campaign of all failures (`cargo xtask campaign --only faults`).
@@ -19,7 +19,7 @@ fn a_front_sonar_that_lies_drives_the_robot_into_nothing() {
         drive.starts_with("mode8") && front && lies.iter().any(|lie| failure.contains(lie))
     });
     let drives = drives.unwrap();
-    let verdict = Verdict::of(&drives);
+    let verdict = DetectionSummary::of(&drives);
     println!("{verdict:?}");
     for drive in drives.iter().filter(|drive| drive.touch.is_some()) {
         println!("{drive:?}");
@@ -43,7 +43,7 @@ fn a_sonar_that_falls_silent_lets_the_robot_touch_gently_at_most() {
             4,
             |drive, failure| drive == scenario && failure.to_string().starts_with(fails),
         );
-        let verdict = Verdict::of(&drives.unwrap());
+        let verdict = DetectionSummary::of(&drives.unwrap());
         println!("{scenario}, seed {seed}, {fails}: {verdict:?}");
         assert!(verdict.runs >= 3);
         assert_eq!(verdict.hard, 0);

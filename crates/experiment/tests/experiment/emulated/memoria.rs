@@ -3,7 +3,7 @@
 use super::rig::image;
 use rumbo_experiment::files::{Library, NativeProgram, Overrides, Setup};
 use rumbo_experiment::run::{RunResult, run};
-use rumbo_sim::trace::Sample;
+use rumbo_sim::trace::TruthSample;
 use rumbo_wire::FromRobot;
 
 /// rad/s in one rpm.
@@ -41,7 +41,7 @@ fn both(scenario: &str, sketch: &str, duration_s: f64) -> Option<[RunResult; 2]>
     Some(results)
 }
 
-fn end(result: &RunResult) -> Sample {
+fn end(result: &RunResult) -> TruthSample {
     *result.trace.samples.last().unwrap()
 }
 

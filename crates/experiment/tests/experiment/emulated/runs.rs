@@ -1,7 +1,7 @@
 //! Scenarios run with an image: commands in its language, metrics whatever it is, verdicts.
 
 use super::rig::{image, setup};
-use rumbo_experiment::files::{FileError, Library, Overrides, Port, TimedText};
+use rumbo_experiment::files::{FileError, Library, Overrides, TimedText, TypedPort};
 use rumbo_experiment::note::Note;
 use rumbo_experiment::run::run;
 use rumbo_wire::LineEnding;
@@ -41,7 +41,7 @@ fn a_hand_that_finds_no_room_leaves_the_robot_and_says_so() {
         at_s,
         text: text.into(),
         ending: LineEnding::Lf,
-        port: Port::Hand,
+        port: TypedPort::Hand,
     };
     // Beside where it is, and in the wall.
     setup.texts = vec![at(0.1, "robot=0 0.1 0"), at(0.2, "robot=1.2 0 0")];
@@ -65,7 +65,7 @@ fn lines_of_the_command_line_go_out_at_their_time() {
         at_s,
         text: text.into(),
         ending: LineEnding::Lf,
-        port: Port::Link,
+        port: TypedPort::Link,
     };
     setup.texts = vec![at(0.5, "DUTY 120"), at(1.5, "COAST")];
     let result = run(&setup, 1).unwrap();
@@ -90,7 +90,7 @@ fn a_line_typed_on_usb_reaches_serial_and_nothing_else() {
         at_s: 1.0,
         text: "who is there".into(),
         ending: LineEnding::CrLf,
-        port: Port::Usb,
+        port: TypedPort::Usb,
     }];
     let result = run(&setup, 1).unwrap();
     let said = |usart| String::from_utf8(result.trace.console(usart)).unwrap();
@@ -107,7 +107,7 @@ fn a_program_that_runs_into_erased_flash_ends_the_run_with_that_verdict() {
         at_s: 1.0,
         text: "CRASH".into(),
         ending: LineEnding::Lf,
-        port: Port::Link,
+        port: TypedPort::Link,
     }];
     let result = run(&setup, 1).unwrap();
     assert!(!result.pass);

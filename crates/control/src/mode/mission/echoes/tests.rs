@@ -1,22 +1,22 @@
 //! The memory of echoes: which points count, fade and give way.
 
 use super::*;
-use crate::types::{Transform, View};
+use crate::types::{SonarView, Transform};
 
 /// A reading of the front sonar, pointing in a direction from the origin.
-fn answer(range: Range, axis_rad: f32) -> Reading {
-    Reading {
+fn answer(range: Range, axis_rad: f32) -> SonarReading {
+    SonarReading {
         sonar: SonarId::Front,
         range,
-        view: View {
+        view: SonarView {
             axis_rad,
-            ..View::default()
+            ..SonarView::default()
         },
         servo_rad: axis_rad,
     }
 }
 
-fn ingest(echoes: &mut Echoes, robot: &Transform, reading: &Reading, sure: bool) {
+fn ingest(echoes: &mut Echoes, robot: &Transform, reading: &SonarReading, sure: bool) {
     let (beam, _) = Beam::of(robot, reading);
     echoes.ingest(robot, reading, &beam, sure);
 }
@@ -169,7 +169,7 @@ fn a_silence_contradicts_nothing_before_the_next_echo() {
 #[test]
 fn a_turn_moves_no_point_of_the_wall_ahead_of_the_sonar_beside() {
     let mut echoes = Echoes::default();
-    let right = Reading {
+    let right = SonarReading {
         sonar: SonarId::Right,
         ..answer(Range::Valid(0.15), -core::f32::consts::FRAC_PI_2)
     };

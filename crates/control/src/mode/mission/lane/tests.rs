@@ -1,15 +1,15 @@
 //! A lane's parts: what is ahead, the sweep, the side, the middle.
 
 use super::*;
-use crate::types::{AgedRange, View};
+use crate::types::{AgedRange, SonarView};
 
 /// What the robot knows when the front sonar answers with the servo at an angle.
 fn hears(range: Range, servo_rad: f32) -> Estimate {
     Estimate {
-        reading: Some(Reading {
+        reading: Some(SonarReading {
             sonar: SonarId::Front,
             range,
-            view: View::default(),
+            view: SonarView::default(),
             servo_rad,
         }),
         ..Estimate::default()

@@ -2,7 +2,7 @@
 
 use super::super::{Detour, Mode, Params, Place, Side, Task};
 use super::*;
-use crate::types::{SonarId, View};
+use crate::types::{SonarId, SonarView};
 
 /// Time between two looks [s].
 const LOOK_S: f32 = 0.06;
@@ -11,12 +11,12 @@ const LOOK_S: f32 = 0.06;
 fn approaches(axis_rad: f32, robot_m_s: f32, range_m: impl Fn(f32) -> f32) -> Option<u8> {
     let mut track = Track::default();
     (1..=20).find(|look| {
-        let reading = Reading {
+        let reading = SonarReading {
             sonar: SonarId::Front,
             range: Range::Valid(range_m(LOOK_S * f32::from(*look))),
-            view: View {
+            view: SonarView {
                 axis_rad,
-                ..View::default()
+                ..SonarView::default()
             },
             servo_rad: axis_rad,
         };

@@ -1,7 +1,7 @@
 //! What raises doubt about a sonar, and what makes it faulty.
 
 use super::*;
-use crate::types::{AgedRange, View};
+use crate::types::{AgedRange, SonarView};
 
 /// Answers of all three sonars in turn, while the robot rolls `rolled_m` per tick; the front one looks ahead.
 fn watched(
@@ -26,12 +26,12 @@ fn watched(
         let left = &mut estimate.ranges[SonarId::Left as usize];
         (left.range, left.age_ticks) = (answers(SonarId::Left, tick), 0);
         if tick % 2 == 0 {
-            let reading = Reading {
+            let reading = SonarReading {
                 sonar,
                 range: answers(sonar, tick),
-                view: View {
+                view: SonarView {
                     axis_rad,
-                    ..View::default()
+                    ..SonarView::default()
                 },
                 servo_rad: 0.0,
             };
@@ -162,11 +162,11 @@ fn a_wall_beside_the_robot_that_leaves_two_looks_unanswered_is_to_be_proven() {
         };
         estimate.ranges[SonarId::Left as usize] = AgedRange::fresh(left);
         watch.step(&estimate, 0.5, false).unwrap();
-        let view = View {
+        let view = SonarView {
             axis_rad: SWEEP_RAD,
-            ..View::default()
+            ..SonarView::default()
         };
-        let reading = Reading {
+        let reading = SonarReading {
             sonar: SonarId::Front,
             range,
             view,
