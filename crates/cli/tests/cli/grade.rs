@@ -293,7 +293,7 @@ fn hostile_hand_ins_gain_nothing_and_change_no_other_mark() {
     assert_eq!(fs::read_dir(bench.join("out/similar")).unwrap().count(), 1);
     let pair = fs::read_to_string(bench.join("out/similar/pair1.html")).unwrap();
     assert!(
-        pair.contains("<h3>ana</h3>") && pair.contains("This does not say who wrote from whom")
+        pair.contains("<h2>ana</h2>") && pair.contains("This does not say who wrote from whom")
     );
     assert!(pair.contains("<mark>void loop() {") && !pair.contains("<mark>// the same program"));
     let class = fs::read_to_string(bench.join("out/index.html")).unwrap();
