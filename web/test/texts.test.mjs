@@ -87,7 +87,7 @@ test('messages about a file that is no recording, after its name', () => {
 });
 
 test('why nothing is tuned', () => {
-  const displays = ['tune/mod', 'tune/objective'].flatMap((name) => [...read(`../../crates/experiment/src/${name}.rs`).matchAll(/^impl fmt::Display [^]*?^}/gm)].map(([part]) => part));
+  const displays = ['tune/error', 'tune/objective'].flatMap((name) => [...read(`../../crates/experiment/src/${name}.rs`).matchAll(/^impl fmt::Display [^]*?^}/gm)].map(([part]) => part));
   const texts = [...displays, read('../../crates/experiment/src/tune/over.rs').match(/"[^"]+ sets it itself[^"]*"/)?.[0] ?? ''].flatMap((part) => [...part.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped(found[1] ?? '').replace(/\{[^}]*\}/g, '{}')));
   assert.ok(texts.length > 9, String(texts.length));
   allSpanish(texts);
@@ -110,7 +110,7 @@ const WITHIN = ['not valid TOML: {}{}', '; write decimals with a point', 'must b
 
 test('what is wrong with a scenario, a world or an image', () => {
   const files = ['read', 'value', 'word', 'near', 'scenario/mod', 'scenario/read', 'scenario/fleet', 'commands', 'mover', 'route', 'world', 'fit', 'start'].map((name) => `experiment/src/files/${name}`);
-  const texts = [...files, 'sim/src/fleet', 'lab/src/fleet', 'emulator/src/image/error', 'emulator/src/image/hex'].flatMap((name) => {
+  const texts = [...files, 'sim/src/fleet', 'lab/src/robots', 'emulator/src/image/error', 'emulator/src/image/hex'].flatMap((name) => {
     const source = (read(`../../crates/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '');
     return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped((found[1] ?? '').replaceAll('{{', '').replace(/\{[^}]*\}+/g, '{}')));
   });
