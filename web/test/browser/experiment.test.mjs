@@ -18,10 +18,12 @@ test('the experiment is run, and its verdict has the numbers of rumbo run; the s
     await page.waitForSelector('#connection.good');
     await page.locator('#play').click();
     await verdict.filter({ hasText: / of 9 s/ }).waitFor();
+    assert.equal(await page.locator('#play').isDisabled(), true);
     await page.locator('#reference button').click();
     await page.locator('#events li', { hasText: 'refused, the experiment runs; STOP ends it' }).waitFor();
     await page.locator('#speed').selectOption('8');
     await verdict.filter({ hasText: 'passed: 7 of 7 limits kept' }).waitFor();
+    assert.equal(await page.locator('#play').isDisabled(), false);
     const { metrics } = JSON.parse(execFileSync(program(), ['run', 'mode1', '--seed', '1', '--json'], { encoding: 'utf8' }));
     await page.locator('#experiment-details').click();
     const rows = await page.locator('#experiment-dialog tbody tr').evaluateAll((rows) => rows.map((row) => [...row.querySelectorAll('td')].map(({ textContent }) => textContent ?? '')));

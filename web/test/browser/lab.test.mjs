@@ -191,6 +191,10 @@ test('a parameter is written and held, and a value out of range is refused with 
   await page.locator('#why-link_timeout_s', { hasText: 'refused: allowed is' }).waitFor();
   await row.getByRole('button', { name: 'Revert' }).click();
   assert.equal(await input.inputValue(), '0.3');
+  // A switch stands as the robot has it.
+  await page.getByLabel('all modes').check();
+  await page.waitForFunction(() => /** @type {HTMLInputElement | null} */ (document.querySelector('#parameter-mission_reset_origin'))?.checked);
+  await page.getByLabel('all modes').uncheck();
 });
 
 rare('the view held still loses no data', async () => {
