@@ -1,8 +1,8 @@
 // @ts-check
 /** What a robot's wiring is, without a page: its rows, what the station is asked of them, and what is on which pin. */
 
-/** @typedef {{name: string, title: string, pins: {name: string, pwm: boolean, interrupt: boolean}[]}} Board */
-/** @typedef {{name: string, title: string, jumpers: boolean, needed: string[], standby: boolean, shield: boolean}} Driver */
+/** @typedef {{name: string, title: string, pins: {name: string, pwm: boolean}[]}} Board */
+/** @typedef {{name: string, title: string, jumpers: boolean, needed: string[], standby: boolean}} Driver */
 /** A robot to begin with. @typedef {{name: string, title: string, board: string, driver: string, pins: Record<string, string>}} Known */
 /** @typedef {{boards: Board[], drivers: Driver[], known: Known[], parts: string[]}} Choices */
 /** Something that has a pin: a signal, or a part of a kind. @typedef {{signal: string, kind?: string, pin: string}} Row */

@@ -4,8 +4,8 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { added, byPin, pinOf, request, rowsOf } from '../src/wiring.js';
 
-const UNO = { name: 'uno', title: 'Arduino Uno', pins: Array.from({ length: 20 }, (_, pin) => ({ name: pin < 14 ? String(pin) : `A${pin - 14}`, pwm: false, interrupt: false })) };
-const L298N = { name: 'l298n', title: '', jumpers: false, standby: false, shield: false, needed: ['left_enable', 'left_forward', 'left_backward', 'right_enable', 'right_forward', 'right_backward'] };
+const UNO = { name: 'uno', title: 'Arduino Uno', pins: Array.from({ length: 20 }, (_, pin) => ({ name: pin < 14 ? String(pin) : `A${pin - 14}`, pwm: false })) };
+const L298N = { name: 'l298n', title: '', jumpers: false, standby: false, needed: ['left_enable', 'left_forward', 'left_backward', 'right_enable', 'right_forward', 'right_backward'] };
 const MX1508 = { ...L298N, name: 'mx1508', needed: ['left_forward', 'left_backward', 'right_forward', 'right_backward'] };
 const TB6612 = { ...L298N, name: 'tb6612', standby: true };
 

@@ -51,7 +51,6 @@ fn choices(library: &Library) -> Result<Value, FileError> {
                 "jumpers": jumpers,
                 "needed": needed(driver, jumpers),
                 "standby": driver.has_standby,
-                "shield": driver.shield.is_some(),
             })
         })
         .collect();
@@ -75,7 +74,6 @@ fn board(board: &Board) -> Value {
             json!({
                 "name": board.shown(pin),
                 "pwm": board.pwm.contains(&pin),
-                "interrupt": board.interrupts.contains(&pin),
             })
         })
         .collect();

@@ -20,7 +20,7 @@ const LEFT_US: f64 = 2400.0;
 /// a narrower one, Feetech's FS90R one of 45 us.
 const MIDDLE_US: f64 = 1500.0;
 const DEAD_US: f64 = 30.0;
-/// Off the middle by this it has its whole speed, in between one in proportion: Parallax's curve is straight from 1.4 to 1.6 ms.
+/// Off the middle by this it has its whole speed, in between one in proportion: an estimate, as the dead band is.
 const WHOLE_US: f64 = 100.0;
 
 /// The share of its whole speed that a pulse of this width makes, positive for long ones.
