@@ -46,6 +46,14 @@ test('1280 x 720 holds everything without scrolling, and every mode, in both lan
       assert.deepEqual(await beyond(), [0, 0], `${language}, mode ${mode}`);
       await fits(`${language}, mode ${mode}`);
     }
+    // A slow computer's rate is the longest chip; what is below the header stays under the pointer.
+    const moved = await page.evaluate((text) => {
+      const [chip, header] = [document.querySelector('#connection'), document.querySelector('header')];
+      const before = header?.clientHeight;
+      if (chip) chip.textContent = text;
+      return [before, header?.clientHeight];
+    }, { en: 'live 25 Hz, only × 0.94', es: 'en vivo 25 Hz, solo × 0,94' }[language] ?? '');
+    assert.equal(moved[0], moved[1], `${language}: height of the header [px]`);
   }
   await page.locator('#language').selectOption('en');
   await page.waitForFunction(() => document.documentElement.lang === 'en' && /** @type {any} */ (window).rumbo?.state());
