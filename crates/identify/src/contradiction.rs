@@ -6,7 +6,8 @@
 use crate::descent::descend;
 use crate::error::IdentifyError;
 use crate::log::DriveLog;
-use crate::problem::{Problem, UNKNOWNS};
+use crate::problem::Problem;
+use crate::unknowns::UNKNOWNS;
 use nalgebra::DVector;
 use rumbo_plant::params::Params;
 

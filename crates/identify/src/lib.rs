@@ -19,6 +19,7 @@ pub mod dialect;
 pub mod plan;
 pub mod problem;
 pub mod sonar_stats;
+pub mod unknowns;
 
 mod contradiction;
 mod descent;

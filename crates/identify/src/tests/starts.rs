@@ -1,7 +1,8 @@
 //! A fit says what the runs say, wherever it begins.
 
 use super::{exercise, log, recorded};
-use crate::problem::{Problem, UNKNOWNS};
+use crate::problem::Problem;
+use crate::unknowns::{UNKNOWNS, Unknown};
 use crate::{FitProgress, Identified, identify};
 use rumbo_plant::params::Params;
 
@@ -32,7 +33,7 @@ fn two_fits_from_far_apart_end_at_the_same_values() {
 fn an_unknown_near_its_limit_still_has_a_slope() {
     let run = [log(&recorded(&Params::default(), exercise, 3.0))];
     let problem = Problem::new(&UNKNOWNS, &run, &Params::default());
-    let ratio = |unknown: &crate::problem::Unknown| unknown.keys[0].ends_with("onset_ratio");
+    let ratio = |unknown: &Unknown| unknown.keys[0].ends_with("onset_ratio");
     let index = UNKNOWNS.iter().position(ratio).unwrap();
     let value = |z| problem.value(index, z);
     // As believed: a logarithmic standard deviation of 0.5 about 0.7 above the limit 0.1.
