@@ -6,6 +6,7 @@
 import { STANDING_RPM, TURNS, counted, judgeLink, judgeMotor, judgeServo, judgeSonar, judgeTurns, sonarInVain, turned } from './checkup.js';
 import { dialog } from './dialog.js';
 import { create } from './dom.js';
+import { keep, recall } from './stored.js';
 import { t } from './text.js';
 import { CM_PER_M, format } from './units.js';
 
@@ -60,13 +61,13 @@ export class CheckupDialog {
   /** Opens by itself the first time that this browser shows a real robot. @param {number[]} sonars @param {boolean} servo */
   meet(sonars, servo) {
     const state = this.#state();
-    if (!state || state.simulated || state.replay || state.robot.foreign || state.robot.text || !state.link.connected || remembered()) return;
+    if (!state || state.simulated || state.replay || state.robot.foreign || state.robot.text || !state.link.connected || recall('checkup') !== null) return;
     this.open(sonars, servo);
   }
 
   /** @param {number[]} sonars that the robot carries, by number @param {boolean} servo it carries one, with a sonar on it */
   open(sonars, servo) {
-    remember();
+    keep('checkup', 'offered');
     const names = [t('left|sonar'), t('right|sonar'), t('front|sonar')];
     this.#steps = [
       { title: t('Wheels in the air'), run: () => this.#begin() },
@@ -258,24 +259,5 @@ export class CheckupDialog {
   #leave() {
     this.#stopTimer();
     if (this.#state()?.robot.armed) this.#send({ type: 'disarm' });
-  }
-}
-
-const STORED = 'rumbo.checkup';
-
-/** Whether the check has been offered in this browser; without storage, it does not open by itself. */
-function remembered() {
-  try {
-    return localStorage.getItem(STORED) !== null;
-  } catch {
-    return true;
-  }
-}
-
-function remember() {
-  try {
-    localStorage.setItem(STORED, 'offered');
-  } catch {
-    // It is not remembered.
   }
 }

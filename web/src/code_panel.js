@@ -7,6 +7,7 @@ import { Debugger } from './debugger.js';
 import { saveFile } from './dialog.js';
 import { create, element, setText } from './dom.js';
 import { placeOf, plainName, sameFiles } from './source.js';
+import { keep, recall } from './stored.js';
 import { said, t } from './text.js';
 import { isSite } from './worker_link.js';
 
@@ -15,14 +16,13 @@ import { isSite } from './worker_link.js';
 /** @typedef {import('./code_editor.js').CodeEditor} CodeEditor */
 /** `files`: null where they are those of the lab's. @typedef {{files: SketchFile[] | null, breakpoints: Record<string, number[]>}} Draft */
 
-const STORED = 'rumbo.sketch.';
 /** After so long without a key what is typed is stored [ms]. */
 const STORE_MS = 300;
 
 /** @param {string} name @returns {Draft | null} */
 function stored(name) {
   try {
-    return JSON.parse(localStorage.getItem(STORED + name) ?? 'null');
+    return JSON.parse(recall(`sketch.${name}`) ?? 'null');
   } catch {
     return null;
   }
@@ -186,11 +186,8 @@ export class CodePanel {
     const { files, breakpoints } = this.#editor;
     // What was handed in is nowhere else.
     const isOnlyHere = this.#differs || (this.#program?.name === this.#name && !this.#program.watched);
-    try {
-      localStorage.setItem(STORED + this.#name, JSON.stringify({ files: isOnlyHere ? files : null, breakpoints }));
-    } catch {
-      setText(this.#note, t('this browser stores nothing: save the file'));
-    }
+    const kept = keep(`sketch.${this.#name}`, JSON.stringify({ files: isOnlyHere ? files : null, breakpoints }));
+    if (!kept) setText(this.#note, t('this browser stores nothing: save the file'));
   }
 
   /** @param {boolean} debug */

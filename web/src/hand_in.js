@@ -1,10 +1,12 @@
 // @ts-check
 /**
  * What a student does with a lesson: writes figures into its empty cells and answers below, compares the figures with those
- * that the lesson gives for the same run, and saves all as a Markdown file to hand in.
+ * that the lesson gives for the same run, and saves all as a Markdown file to hand in. The tab keeps what is written: another
+ * lesson may be looked at, and the page loaded again.
  */
 import { saveFile } from './dialog.js';
 import { create } from './dom.js';
+import { keep, recall } from './stored.js';
 import { t } from './text.js';
 import { formatFloat, parse } from './units.js';
 
@@ -21,6 +23,7 @@ const headsOf = (table) => [...table.querySelectorAll('th')].map((head) => textO
 export class HandIn {
   #body;
   #title = '';
+  #key = '';
   #summary = create('output', { className: 'hint' });
   #name = create('input', { type: 'text', id: 'hand-in-name', maxLength: 80 });
   #answers = create('textarea', { id: 'hand-in-answers', rows: 5, maxLength: 8_000 });
@@ -28,11 +31,22 @@ export class HandIn {
   /** @param {HTMLElement} body of the lesson */
   constructor(body) {
     this.#body = body;
+    body.addEventListener('input', () => this.keep());
   }
 
-  /** Prepares a lesson that is shown: its empty cells take figures. @param {string} title */
-  add(title) {
+  /** What is written: cell by cell, the name, the answers. */
+  get #fields() {
+    return [.../** @type {NodeListOf<HTMLInputElement>} */ (this.#body.querySelectorAll('td.own input')), this.#name, this.#answers];
+  }
+
+  keep() {
+    keep(this.#key, JSON.stringify(this.#fields.map(({ value }) => value)), 'sessionStorage');
+  }
+
+  /** Prepares a lesson that is shown: its empty cells take figures. @param {string} title @param {string} file */
+  add(title, file) {
     this.#title = title;
+    this.#key = `lesson.${file}`;
     const cells = [...this.#body.querySelectorAll('td.own')];
     for (const cell of cells) {
       const row = cell.closest('tr');
@@ -48,6 +62,9 @@ export class HandIn {
       return made;
     };
     this.#summary.textContent = this.#answers.value = '';
+    /** @type {string[]} */
+    const written = JSON.parse(recall(this.#key, 'sessionStorage') ?? '[]');
+    this.#fields.forEach((field, index) => { field.value = written[index] || field.value; });
     this.#body.append(create('section', { className: 'stack', id: 'hand-in' }, create('h3', { textContent: t('Hand in') }),
       create('label', {}, `${t('name')} `, this.#name), create('label', { className: 'stack' }, t('hypotheses and answers'), this.#answers),
       create('div', { className: 'row' },

@@ -3,8 +3,8 @@
  * The page's key to the station: exchanged for the token in the printed address, and kept in the browser's
  * storage for this address and port. (A cookie would go to every other port of the computer as well.)
  */
+import { keep, recall } from './stored.js';
 
-const STORED = 'rumbo.key';
 /** Time-out of an answer [ms]. */
 const ANSWER_MS = 5_000;
 
@@ -18,21 +18,13 @@ let own = null;
 /** @param {string} key */
 function store(key) {
   own = key;
-  try {
-    localStorage.setItem(STORED, key);
-  } catch {
-    // The page has it.
-  }
+  keep('key', key);
   return key;
 }
 
 /** The key, or something random: with it a page that missed the answer may show the token again. */
 function shown() {
-  try {
-    own = localStorage.getItem(STORED) ?? own;
-  } catch {
-    // The page has it, or there is none.
-  }
+  own = recall('key') ?? own;
   return own ?? store(Array.from(crypto.getRandomValues(new Uint8Array(32)), (byte) => byte.toString(16).padStart(2, '0')).join(''));
 }
 

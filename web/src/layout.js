@@ -4,6 +4,7 @@
  * its description and is stored by the browser when changed; and others by name. A layout is also a file.
  */
 import { UNITS, signal } from './signals.js';
+import { keep, recall } from './stored.js';
 import { t } from './text.js';
 
 /**
@@ -19,7 +20,6 @@ export const LONGEST_S = 600;
 export const SHORTEST_S = 0.2;
 const WINDOW_S = 20;
 const MOST_PLOTS = 12;
-const STORED = 'rumbo.layouts';
 const VERSION = 1;
 
 /** @param {string} title @param {number} weight @param {string[]} signals @returns {PlotSpec} */
@@ -141,7 +141,7 @@ export class Shelf {
 
   constructor() {
     try {
-      const kept = JSON.parse(localStorage.getItem(STORED) ?? '{}');
+      const kept = JSON.parse(recall('layouts') ?? '{}');
       this.#modes = sound(kept.modes);
       this.#named = sound(kept.named);
     } catch {
@@ -179,11 +179,7 @@ export class Shelf {
   }
 
   #store() {
-    try {
-      localStorage.setItem(STORED, JSON.stringify({ version: VERSION, modes: this.#modes, named: this.#named }));
-    } catch {
-      // Storage is forbidden or full: the layouts live as long as the page.
-    }
+    keep('layouts', JSON.stringify({ version: VERSION, modes: this.#modes, named: this.#named }));
   }
 }
 

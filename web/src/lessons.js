@@ -53,7 +53,7 @@ export class Lessons {
     this.#shown = name;
     const lesson = new Lesson((href, title) => this.#link(href, title));
     this.#body.replaceChildren(...lesson.read(await answer.text()));
-    this.#handIn.add(lesson.title);
+    this.#handIn.add(lesson.title, name);
     this.#body.scrollTop = 0;
   }
 
@@ -103,5 +103,6 @@ export class Lessons {
       const input = cell?.querySelector('input');
       if (input) input.value = figures[key]?.replace(/ (s|cm|rpm)$/, '') ?? '';
     }
+    if (this.#row) this.#handIn.keep();
   }
 }

@@ -14,42 +14,28 @@ import { PROGRAM } from './spanish/program.js';
 import { ROBOT, UNDERSCORED } from './spanish/robot.js';
 import { SCENARIOS } from './spanish/scenarios.js';
 import { WIRING } from './spanish/wiring.js';
+import { keep, recall } from './stored.js';
 
 /** Every text with its Spanish. @type {Record<string, string>} */
 export const SPANISH = { ...PAGE, ...ROBOT, ...PARAMETERS, ...PROGRAM, ...SCENARIOS, ...GUIDE, ...FILES, ...CODE, ...WIRING };
 
 /** The languages, by the code that browsers have for them. */
 export const LANGUAGES = /** @type {const} */ ({ en: 'English', es: 'Español' });
-const STORED = 'rumbo.language';
 
 /** @typedef {keyof typeof LANGUAGES} Language */
 
 /** The chosen language, or else the browser's first that there is. @returns {Language} */
 function choose() {
   const known = Object.keys(LANGUAGES);
-  const wanted = [stored(), ...navigator.languages.map((each) => each.slice(0, 2))];
-  return /** @type {Language} */ (wanted.find((each) => each !== null && known.includes(each)) ?? 'en');
-}
-
-/** Storage may be forbidden to the page; then nothing is stored. */
-function stored() {
-  try {
-    return localStorage.getItem(STORED);
-  } catch {
-    return null;
-  }
+  const wanted = [recall('language'), ...navigator.languages.map((each) => each.slice(0, 2))];
+  return /** @type {Language} */ (wanted.find((each) => each && known.includes(each)) ?? 'en');
 }
 
 export const language = choose();
 
 /** Reloads the page in this language, and stores the choice. @param {string} wanted */
 export function speak(wanted) {
-  try {
-    localStorage.setItem(STORED, wanted);
-  } catch {
-    return;
-  }
-  location.reload();
+  if (keep('language', wanted)) location.reload();
 }
 
 /** Texts that were shown without a translation; for tests. @type {Set<string>} */

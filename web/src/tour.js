@@ -4,12 +4,11 @@
  * time. What a step asks for takes it to the next one; so does its button.
  */
 import { create, setText } from './dom.js';
+import { keep, recall } from './stored.js';
 import { t } from './text.js';
 
 /** @typedef {import('./types.js').State} State */
 /** A step: what it points at, what it says, and what fulfils it, compared with its beginning. @typedef {{at: string, text: string, done?: (now: State, before: State) => boolean}} Step */
-
-const STORED = 'rumbo.tour';
 
 /** @returns {Step[]} */
 const STEPS = () => [
@@ -44,7 +43,7 @@ export class Tour {
 
   /** Begins by itself where nobody has seen it. */
   offer() {
-    if (this.#offered || isSeen()) return;
+    if (this.#offered || recall('tour') !== null) return;
     this.#offered = true;
     this.begin();
   }
@@ -85,18 +84,6 @@ export class Tour {
   #end() {
     this.#card.hidden = true;
     this.#point(null);
-    try {
-      localStorage.setItem(STORED, 'seen');
-    } catch {
-      // It comes again with the next page.
-    }
-  }
-}
-
-function isSeen() {
-  try {
-    return localStorage.getItem(STORED) !== null;
-  } catch {
-    return true;
+    keep('tour', 'seen');
   }
 }

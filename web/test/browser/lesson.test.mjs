@@ -25,6 +25,11 @@ test('a lesson takes the figures of its runs, compares them, and is saved to han
     await row.nth(1).locator('input').nth(1).fill('9');
     await page.locator('#hand-in-answers').pressSequentially('It slides past, l');
     assert.equal((await state()).robot.armed, true);
+    // Another lesson is looked at, and the page loaded again: what was written is there.
+    await page.locator('#lesson-list').click();
+    await page.reload();
+    await page.locator('#lessons').click();
+    await page.locator('#lesson-body button', { hasText: 'Stopping before a wall' }).click();
     await page.locator('#hand-in-check').click();
     await page.locator('#hand-in output', { hasText: /^\d agree, [1-3] do not, 7 are empty$/ }).waitFor();
     assert.deepEqual(await violations(page, '#lesson'), []);
