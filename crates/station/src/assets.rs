@@ -113,6 +113,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/steering.js": SCRIPT,
     "src/step.js": SCRIPT,
     "src/store.js": SCRIPT,
+    "src/stored.js": SCRIPT,
     "src/table.js": SCRIPT,
     "src/tabs.js": SCRIPT,
     "src/text.js": SCRIPT,
