@@ -36,6 +36,13 @@ async function fits(where) {
   assert.deepEqual(await cutOff(), [], where);
 }
 
+/** What is under something else, or out of sight, wherever the page is scrolled to. @param {string[]} selectors */
+const covered = (...selectors) => page.evaluate((selectors) => selectors.flatMap((selector) => [...document.querySelectorAll(selector)].filter((each) => {
+  each.scrollIntoView({ block: 'nearest' });
+  const { left, top, right, bottom } = each.getBoundingClientRect();
+  return right > left && ![left + 3, right - 3].every((x) => each.contains(document.elementFromPoint(x, (top + bottom) / 2)));
+}).map((each) => each.id || each.textContent)), selectors);
+
 test('1280 x 720 holds everything without scrolling, and every mode, in both languages', async () => {
   for (const language of ['en', 'es']) {
     await page.locator('#language').selectOption(language);
@@ -54,6 +61,14 @@ test('1280 x 720 holds everything without scrolling, and every mode, in both lan
       return [before, header?.clientHeight];
     }, { en: 'live 25 Hz, only × 0.94', es: 'en vivo 25 Hz, solo × 0,94' }[language] ?? '');
     assert.equal(moved[0], moved[1], `${language}: height of the header [px]`);
+    // A laptop zoomed to 150 %, and a projector with a lesson.
+    await page.setViewportSize({ width: 960, height: 600 });
+    assert.deepEqual(await covered('#state', '#map-corner button'), [], language);
+    await page.setViewportSize({ width: 1024, height: 768 });
+    await page.locator('#lessons').click();
+    assert.deepEqual(await covered('#lesson-close', '#state', '#map-corner button', '#layouts', '#keep-run'), [], language);
+    await page.locator('#lesson-close').click();
+    await page.setViewportSize({ width: 1280, height: 720 });
   }
   await page.locator('#language').selectOption('en');
   await page.waitForFunction(() => document.documentElement.lang === 'en' && /** @type {any} */ (window).rumbo?.state());
