@@ -3,18 +3,19 @@
 import uPlot from '../vendor/uplot/uPlot.js';
 import { create } from './dom.js';
 import { begin_s, differences, on_s, stepsOf } from './kept.js';
-import { FONT } from './plot.js';
+import { FONT, valueAxis } from './plot.js';
 import { SIGNALS } from './signals.js';
 import { figures } from './step.js';
 import { said, t } from './text.js';
 import { colours } from './theme.js';
-import { format } from './units.js';
+import { formatShort } from './units.js';
 
 /** @typedef {import('./kept.js').Run} Run */
 /** @typedef {import('./store.js').Store} Store */
 /** @typedef {string | number | null | undefined} Value */
 
 const HEIGHT_PX = 260;
+const BEFORE_S = 1;
 /** Of the runs, in turn; from the sixth on dashed. */
 const INKS = /** @type {const} */ (['left', 'right', 'front', 'goal', 'reference']);
 
@@ -73,8 +74,9 @@ export class Comparison {
       width: Math.max(260, this.body.clientWidth),
       height: HEIGHT_PX,
       legend: { show: false },
-      scales: { x: { time: false } },
-      axes: [t('time [s]'), `${t(about)} [${t(unit)}]`].map((label) => ({ label, labelFont: FONT, labelSize: 16, stroke: () => colours.dim, font: FONT, grid: { stroke: () => colours.grid, width: 1 } })),
+      // What was before ON, or before the step, is not compared.
+      scales: { x: { time: false, range: (_plot, low, high) => [this.#align.value === '' ? low : Math.max(low, -BEFORE_S), high] } },
+      axes: [t('time [s]'), `${t(about)} [${t(unit)}]`].map((label, axis) => ({ ...valueAxis(), label, labelFont: FONT, labelSize: 16, size: [24, 46][axis], space: [50, 30][axis] })),
       series: [{}, ...this.#runs.map((_run, index) => ({ stroke: () => colours[ink(index)], width: 1.75, spanGaps: true, points: { show: false }, dash: index < INKS.length ? undefined : [6, 3] }))],
     }, data, this.#plot);
     return undefined;
@@ -102,7 +104,7 @@ function figuresOf(runs, steps) {
 
 /** The value of each run; of two also the difference. @param {string} title @param {[string, Value[]][]} lines @param {number} runs */
 function table(title, lines, runs) {
-  const number = (/** @type {Value} */ value) => (typeof value === 'number' ? format(value, Number.isInteger(value) ? 0 : Math.abs(value) < 0.1 ? 4 : 2) : typeof value === 'string' ? said(value) : value === null ? t('never') : '–');
+  const number = (/** @type {Value} */ value) => (typeof value === 'number' ? formatShort(value, Number.isInteger(value) ? 12 : 4) : typeof value === 'string' ? said(value) : value === null ? t('never') : '–');
   const rows = lines.map(([name, values]) => {
     const [a, b] = values;
     const difference = runs !== 2 ? [] : [typeof a === 'number' && typeof b === 'number' ? number(b - a) : ''];

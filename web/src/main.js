@@ -165,8 +165,8 @@ const consoles = new Consoles(send, (usart) => store.readings.printedBy(usart).l
 const parts = new PartsPanel(send);
 const program = new ProgramPanel(send, complain, showRecording, (files) => openScenario(files, askLab, complain));
 listen(askLab, () => simulated?.choice ?? null);
-/** The run that the consoles are of. @type {number | null} */
-let consoleRun = null;
+/** The runs that the consoles are of, and the plots. @type {[number | null, number | null]} */
+let [consoleRun, shownRun] = [null, null];
 const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);
 const panel = new CommandPanel(send, map);
 const experiment = new ExperimentPanel(send);
@@ -219,7 +219,7 @@ const runs = new Runs(() => {
   const metrics = Object.fromEntries(state?.experiment?.limits.map((limit) => [limit.name, limit.value]) ?? []);
   return { name, store: store.frozen(), about: { scenario, world, 'sensor layout': rig, seed, program: state?.program?.name ?? null }, parameters, metrics };
 }, () => plots.modes, send, plots, map);
-new Why(plots, isSite ? (from_s, to_s) => (link instanceof WorkerLink ? link.explain(from_s, to_s) : Promise.reject(new Error('no lab'))) : null, (lesson) => lessons.open(lesson), () => tabs.show('why'));
+const why = new Why(plots, isSite ? (from_s, to_s) => (link instanceof WorkerLink ? link.explain(from_s, to_s) : Promise.reject(new Error('no lab'))) : null, (lesson) => lessons.open(lesson), () => tabs.show('why'));
 const calibration = new CalibrationDialog(send);
 new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
 const report = new ReportDialog();
@@ -318,6 +318,12 @@ function receive(message) {
       state = message.state;
       // The same scenario again has no new scene.
       lessons.setRun(message.run);
+      if (message.run !== shownRun) {
+        // The time that is held was of another run, as what explained it.
+        why.clear();
+        plots.follow(true);
+        shownRun = message.run;
+      }
       store.playhead_s = state.replay ? state.t_s : timeline.at_s;
       plots.whole_s = state.replay?.duration_s ?? null;
       setBody();

@@ -13,6 +13,8 @@ class Line {
   constructor(parameter, send, explain) {
     this.parameter = parameter;
     this.edited = false;
+    /** It was sent, and the robot's table does not show that yet. */
+    this.sent = false;
     /** The refusal the operator has seen and left. @type {string | null} */
     this.dismissed = null;
     this.field = valueField(parameter);
@@ -36,14 +38,14 @@ class Line {
     this.why = create('tr', { className: 'why' }, create('td', { colSpan: 6, id: `why-${parameter.name}` }));
     const write = () => {
       const value = this.field.read();
-      if (Number.isNaN(value)) return;
+      if (Number.isNaN(value)) return void (/** @type {HTMLInputElement} */ (this.input).reportValidity());
       // A value out of range is sent too: the robot refuses it with a reason.
-      this.edited = false;
+      this.sent = true;
       this.dismissed = null;
       send({ type: 'set_param', id: this.parameter.id, value });
     };
     const revert = () => {
-      this.edited = false;
+      this.edited = this.sent = false;
       this.dismissed = this.parameter.refused;
       this.show(this.parameter);
     };
@@ -70,6 +72,8 @@ class Line {
     const held = this.field.text(parameter.value);
     const refused = parameter.refused === this.dismissed ? null : parameter.refused;
     this.field.limit(parameter);
+    // A table that was on its way when it was sent does not overwrite it.
+    if (this.sent && (parameter.pending || refused || this.field.text(this.field.read()) === held)) this.edited = this.sent = false;
     // What is being typed is not overwritten; a refused value stays to be corrected.
     if (!this.edited && !refused && !parameter.pending && this.field.held() !== held) this.field.hold(held);
     this.apply.hidden = this.revert.hidden = this.field.held() === held && !refused;

@@ -154,6 +154,9 @@ export class Runs {
         end();
         this.#showSeeds(runs);
         this.#dialog.dialog.close();
+        // Their time counts from ON, which may be out of sight.
+        const from_s = this.#plots.overlay.shift_s(this.#plots.store);
+        this.#plots.zoom(from_s - 1, from_s + Math.max(...this.#plots.overlay.seeds.map((store) => store.newest_s)));
       },
       failed: (why) => {
         end();

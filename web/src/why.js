@@ -30,13 +30,19 @@ export class Why {
     this.#open = openLesson;
     const robot = () => /^#(robot=.*)/.exec(location.hash)?.[1];
     this.#ask = askLab ?? ((from_s, to_s) => ask(`/explain?from=${from_s}&to=${to_s}${robot() ? `&${robot()}` : ''}`));
-    setText(this.#words, t('What explains the time that the plots show: zoom into a piece first'));
+    this.clear();
     element('why', HTMLDivElement).append(create('div', { className: 'row' }, this.#words), this.#list);
     const button = element('explain', HTMLButtonElement);
     button.addEventListener('click', () => {
       show();
       this.#explain();
     });
+  }
+
+  /** What was explained is of another run. */
+  clear() {
+    setText(this.#words, t('What explains the time that the plots show: zoom into a piece first'));
+    this.#list.replaceChildren();
   }
 
   async #explain() {

@@ -220,7 +220,7 @@ export class WireDialog {
     const open = this.#wired.filter(({ signal, pin }) => driver.needed.includes(signal) && pin.trim() === '').map(({ signal }) => words(signal));
     const about = { name: this.#name.value, like: this.#like.value || null, board: board.name, driver: driver.name, four_wheels: this.#wheels.checked };
     const wrong = this.#wired.find(({ pin, kind }) => !kind && pin.trim() !== '' && !/^m\d$/i.test(pin.trim()) && pinOf(board, pin) === null);
-    const local = open.length > 0 ? t('still without a pin: {}', open.join(', ')) : wrong ? t('{}: the {} has no pin {}', words(wrong.signal), board.title, wrong.pin) : null;
+    const local = open.length > 0 ? t('still without a pin: {}', open.join('; ')) : wrong ? t('{}: the {} has no pin {}', words(wrong.signal), board.title, wrong.pin) : null;
     /** @type {Answer} */
     let answer = {};
     if (local === null) {

@@ -148,8 +148,11 @@ test('a kept run stays behind the curves and is compared with the next, which is
     await page.locator('#seeds-start').click();
     await page.locator('#seeds button', { hasText: /^7$/ }).waitFor();
     assert.equal(await page.locator('#seeds button').count(), 21);
+    // Their time counts from ON: the plots go there, and follow the next run, which nothing has explained.
+    assert.equal(await page.evaluate(() => /** @type {any} */ (window).rumbo.plots().following), false);
     await page.locator('#play').click();
-    await page.waitForFunction(() => /** @type {any} */ (window).rumbo.shown()?.t_s > 2);
+    await page.waitForFunction(() => /** @type {any} */ (window).rumbo.shown()?.t_s > 2 && /** @type {any} */ (window).rumbo.plots().following);
+    assert.equal(await page.locator('#why .causes li').count(), 0);
     await shot('seeds');
     await page.locator('#seeds button', { hasText: /^7$/ }).click();
     await page.waitForFunction(() => /** @type {HTMLInputElement} */ (document.getElementById('seed')).value === '7');

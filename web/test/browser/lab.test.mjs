@@ -186,9 +186,14 @@ test('a parameter is written and held, and a value out of range is refused with 
   await input.press('Enter');
   await page.waitForFunction(() => [...document.querySelectorAll('#events li')].some((line) => line.textContent?.includes('link_timeout_s = 0.3: acknowledged')));
   const row = page.locator('#parameters tr', { has: input });
+  const told = input.evaluate((/** @type {HTMLInputElement} */ field) => new Promise((done) => { field.addEventListener('invalid', () => done(field.validationMessage), { once: true }); }));
+  await input.fill('soon');
+  await input.press('Enter');
+  assert.match(String(await told), /^a number from 0/);
   await input.fill('99');
   await input.press('Enter');
   await page.locator('#why-link_timeout_s', { hasText: 'refused: allowed is' }).waitFor();
+  assert.equal(await input.inputValue(), '99', 'it stays to be corrected');
   await row.getByRole('button', { name: 'Revert' }).click();
   assert.equal(await input.inputValue(), '0.3');
   // A switch stands as the robot has it.
