@@ -1,7 +1,7 @@
 // @ts-check
 /** The calibration as a guided page: where to put the robot, its progress, its results, and the parameters before and after. */
 import { dialog } from './dialog.js';
-import { create, setText } from './dom.js';
+import { clickable, create, setText } from './dom.js';
 import { numberAs, said, t } from './text.js';
 import { format, formatFloat } from './units.js';
 
@@ -73,9 +73,7 @@ export class CalibrationDialog {
 
   /** @param {string} text @param {() => void} act @param {string} [kind] */
   #button(text, act, kind = '') {
-    const made = create('button', { type: 'button', textContent: text, className: kind });
-    made.addEventListener('click', act);
-    return made;
+    return clickable({ textContent: text, className: kind }, act);
   }
 
   #begin() {

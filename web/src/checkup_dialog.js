@@ -5,7 +5,7 @@
  */
 import { STANDING_RPM, TURNS, counted, judgeLink, judgeMotor, judgeServo, judgeSonar, judgeTurns, sonarInVain, turned } from './checkup.js';
 import { dialog } from './dialog.js';
-import { create } from './dom.js';
+import { clickable, create } from './dom.js';
 import { keep, recall } from './stored.js';
 import { t } from './text.js';
 import { CM_PER_M, format } from './units.js';
@@ -106,11 +106,7 @@ export class CheckupDialog {
 
   /** @param {[string, () => void][]} answers */
   #buttons(...answers) {
-    return create('div', { className: 'row' }, ...answers.map(([text, act], index) => {
-      const button = create('button', { type: 'button', textContent: text, className: index === 0 ? 'go' : '' });
-      button.addEventListener('click', act);
-      return button;
-    }));
+    return create('div', { className: 'row' }, ...answers.map(([text, act], index) => clickable({ textContent: text, className: index === 0 ? 'go' : '' }, act)));
   }
 
   /** Shows what a step found, and what can be done then. @param {Verdict} verdict */

@@ -5,7 +5,7 @@
  */
 import { Debugger } from './debugger.js';
 import { saveFile } from './dialog.js';
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { placeOf, plainName, sameFiles } from './source.js';
 import { keep, recall } from './stored.js';
 import { said, t } from './text.js';
@@ -138,11 +138,7 @@ export class CodePanel {
     const sorted = [...files].sort((one, other) => Number(other.name === main) - Number(one.name === main) || one.name.localeCompare(other.name));
     this.#editor?.setFiles(sorted);
     if (this.#editor) this.#editor.breakpoints = breakpoints;
-    this.#tabs.replaceChildren(...sorted.map(({ name }) => {
-      const tab = create('button', { type: 'button', textContent: name, value: name });
-      tab.addEventListener('click', () => this.#show(name));
-      return tab;
-    }));
+    this.#tabs.replaceChildren(...sorted.map(({ name }) => clickable({ textContent: name, value: name }, () => this.#show(name))));
     this.#show(sorted[0]?.name ?? '');
     this.#say();
   }

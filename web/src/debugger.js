@@ -3,7 +3,7 @@
  * The debugger of the page: speaks the Debug Adapter Protocol with the lab's, and shows where the program stands, how it came
  * there, and what its variables are.
  */
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { Requests } from './source.js';
 import { said, t } from './text.js';
 import { format } from './units.js';
@@ -168,8 +168,7 @@ export class Debugger {
     this.#editor()?.standAt(frame.source?.path ?? null, frame.line);
     this.#stack.replaceChildren(...frames.map((each) => {
       const place = each.source ? `${each.source.name}:${each.line}` : '';
-      const button = create('button', { type: 'button', className: 'link', disabled: !each.source?.path, textContent: each.name });
-      button.addEventListener('click', () => this.#choose(frames, each));
+      const button = clickable({ className: 'link', disabled: !each.source?.path, textContent: each.name }, () => this.#choose(frames, each));
       const item = create('li', {}, button, create('span', { className: 'hint', textContent: ` ${place}` }));
       if (each === frame) item.setAttribute('aria-current', 'true');
       return item;

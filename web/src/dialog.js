@@ -1,6 +1,6 @@
 // @ts-check
 /** Dialogs over the page, and files to and from the reader's computer. */
-import { create } from './dom.js';
+import { clickable, create } from './dom.js';
 import { said, t } from './text.js';
 
 /**
@@ -45,8 +45,7 @@ export function complaint() {
 
 /** A button that copies a text. @param {string} text */
 export function copyButton(text) {
-  const button = create('button', { type: 'button', className: 'small', textContent: t('Copy') });
-  button.addEventListener('click', () => navigator.clipboard.writeText(text).then(() => { button.textContent = t('copied'); }, () => {}));
+  const button = clickable({ className: 'small', textContent: t('Copy') }, () => navigator.clipboard.writeText(text).then(() => { button.textContent = t('copied'); }, () => {}));
   return button;
 }
 
@@ -75,8 +74,7 @@ export function saveFile(name, content) {
  */
 export function fileButton(text, accept, taken, multiple = false) {
   const input = create('input', { type: 'file', accept, multiple, hidden: true });
-  const button = create('button', { type: 'button', textContent: text });
-  button.addEventListener('click', () => input.click());
+  const button = clickable({ textContent: text }, () => input.click());
   input.addEventListener('change', () => {
     const files = [...input.files ?? []];
     if (!files[0]) return;

@@ -29,6 +29,18 @@ export function create(tag, properties = {}, ...children) {
   return made;
 }
 
+/**
+ * A new button.
+ * @param {Partial<Omit<HTMLButtonElement, 'style'>>} properties
+ * @param {(event: MouseEvent) => unknown} act when it is pressed
+ * @param {(Node | string)[]} children
+ */
+export function clickable(properties, act, ...children) {
+  const made = create('button', { type: 'button', ...properties }, ...children);
+  made.addEventListener('click', act);
+  return made;
+}
+
 /** A text with what stands between backticks as code. @param {string} text */
 export const withCode = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? create('code', { textContent: part }) : part));
 

@@ -5,7 +5,7 @@
  * lesson may be looked at, and the page loaded again.
  */
 import { saveFile } from './dialog.js';
-import { create } from './dom.js';
+import { clickable, create } from './dom.js';
 import { keep, recall } from './stored.js';
 import { t } from './text.js';
 import { formatFloat, parse } from './units.js';
@@ -56,11 +56,6 @@ export class HandIn {
       cell.replaceChildren(input);
     }
     if (cells.length === 0) return;
-    const button = (/** @type {string} */ id, /** @type {string} */ text, /** @type {string} */ about, /** @type {() => void} */ act) => {
-      const made = create('button', { id, type: 'button', className: 'small', textContent: text, title: about });
-      made.addEventListener('click', act);
-      return made;
-    };
     this.#summary.textContent = this.#answers.value = '';
     /** @type {string[]} */
     const written = JSON.parse(recall(this.#key, 'sessionStorage') ?? '[]');
@@ -68,8 +63,14 @@ export class HandIn {
     this.#body.append(create('section', { className: 'stack', id: 'hand-in' }, create('h3', { textContent: t('Hand in') }),
       create('label', {}, `${t('name')} `, this.#name), create('label', { className: 'stack' }, t('hypotheses and answers'), this.#answers),
       create('div', { className: 'row' },
-        button('hand-in-check', t('Check the figures'), t('Compare the figures in the tables with those that the lesson gives for the same runs'), () => this.#check()),
-        button('hand-in-save', t('Save to hand in'), t('Save name, tables with their runs, and answers as a Markdown file'), () => this.#save()), this.#summary)));
+        clickable({
+          id: 'hand-in-check', className: 'small', textContent: t('Check the figures'),
+          title: t('Compare the figures in the tables with those that the lesson gives for the same runs'),
+        }, () => this.#check()),
+        clickable({
+          id: 'hand-in-save', className: 'small', textContent: t('Save to hand in'),
+          title: t('Save name, tables with their runs, and answers as a Markdown file'),
+        }, () => this.#save()), this.#summary)));
   }
 
   get #tables() {

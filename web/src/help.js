@@ -1,7 +1,7 @@
 // @ts-check
 /** The help page: keys, meaning of colours and lines, further reading. */
 import { dialog } from './dialog.js';
-import { create, withCode } from './dom.js';
+import { clickable, create, withCode } from './dom.js';
 import { t } from './text.js';
 
 /** Keys and what they do. */
@@ -36,8 +36,7 @@ function list(title, lines) {
 /** Makes the help page; returns the function that opens it. @param {() => void} begin shows the first steps */
 export function makeHelp(begin) {
   const made = dialog('help-dialog', t('Help'));
-  const again = create('button', { type: 'button', id: 'tour-again', textContent: t('Show the first steps') });
-  again.addEventListener('click', () => {
+  const again = clickable({ id: 'tour-again', textContent: t('Show the first steps') }, () => {
     made.dialog.close();
     begin();
   });

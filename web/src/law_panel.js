@@ -4,7 +4,7 @@
  * click on a gain gives a slider. The equations come from the control core; names and units are those of its parameters and signals.
  */
 import { Diagram } from './diagram.js';
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { wrapped } from './geometry.js';
 import { parse, work } from './law.js';
 import { unitWords } from './parameters.js';
@@ -93,9 +93,7 @@ export class LawPanel {
 
   /** @param {string} name */
   #gain(name) {
-    const button = create('button', { type: 'button', className: 'small', textContent: name, title: said(this.#parameters.get(name)?.description ?? '') });
-    button.addEventListener('click', () => this.#choose(name));
-    return button;
+    return clickable({ className: 'small', textContent: name, title: said(this.#parameters.get(name)?.description ?? '') }, () => this.#choose(name));
   }
 
   /** A part of an equation, to be filled with numbers. @param {Part} part @param {Line} law @returns {HTMLElement} */

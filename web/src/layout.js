@@ -3,7 +3,7 @@
  * Layouts: the plots, their signals, the limits of their axes, and the window of time. One for each mode, which starts from
  * its description and is stored by the browser when changed; and others by name. A layout is also a file.
  */
-import { UNITS, signal } from './signals.js';
+import { signal } from './signals.js';
 import { keep, recall } from './stored.js';
 import { t } from './text.js';
 
@@ -126,9 +126,6 @@ export function fromText(text) {
   check(from?.rumbo === 'layout', t('it is no layout of Rumbo'));
   return checked(from);
 }
-
-/** The first scale of a plot of this unit. @param {import('./signals.js').Unit} unit @returns {[number, number]} */
-export const firstScale = (unit) => [0, 10 * UNITS[unit].step];
 
 /** The stored layouts: the latest one of each mode, and the named ones. */
 export class Shelf {

@@ -1,7 +1,7 @@
 // @ts-check
 /** The dialog of the layouts: those that the browser keeps by name, and files. */
 import { complaint, dialog, fileButton, saveFile } from './dialog.js';
-import { create } from './dom.js';
+import { clickable, create } from './dom.js';
 import { BadLayout, fromText, toText } from './layout.js';
 import { t } from './text.js';
 
@@ -24,10 +24,8 @@ export class LayoutDialog {
       plots.shelf.name(this.#name.value, plots.layout);
       this.#show();
     });
-    const save = create('button', { type: 'button', textContent: t('Save file'), id: 'layout-save' });
-    save.addEventListener('click', () => saveFile(`${this.#name.value || 'rumbo'}.layout.json`, new Blob([toText(plots.layout)], { type: 'application/json' })));
-    const initial = create('button', { type: 'button', textContent: t('Restore default'), id: 'layout-initial' });
-    initial.addEventListener('click', () => {
+    const save = clickable({ textContent: t('Save file'), id: 'layout-save' }, () => saveFile(`${this.#name.value || 'rumbo'}.layout.json`, new Blob([toText(plots.layout)], { type: 'application/json' })));
+    const initial = clickable({ textContent: t('Restore default'), id: 'layout-initial' }, () => {
       plots.use(null);
       this.#dialog.dialog.close();
     });
@@ -44,8 +42,7 @@ export class LayoutDialog {
 
   #show() {
     this.#list.replaceChildren(...this.#plots.shelf.names.map((name) => {
-      const load = create('button', { type: 'button', textContent: name, title: t('Show this layout') });
-      load.addEventListener('click', () => {
+      const load = clickable({ textContent: name, title: t('Show this layout') }, () => {
         this.#plots.use(this.#plots.shelf.named(name));
         this.#name.value = name;
         this.#dialog.dialog.close();

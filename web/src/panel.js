@@ -1,7 +1,7 @@
 // @ts-check
 /** The command panel: mode, ON and OFF, STOP, and the controls of the mode. */
 import { number, read } from './decimal.js';
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { Joystick } from './joystick.js';
 import { Movements } from './movements.js';
 import { isOwn } from './program.js';
@@ -74,11 +74,8 @@ export class CommandPanel {
   setModes(modes) {
     this.#entries = modes;
     this.#shown = null;
-    this.#modes.replaceChildren(...modes.map((mode) => {
-      const button = create('button', { type: 'button', value: String(mode.id) }, create('b', { textContent: String(mode.id) }), named(mode.name));
-      button.addEventListener('click', () => this.#send({ type: 'mode', mode: mode.id }));
-      return button;
-    }));
+    this.#modes.replaceChildren(...modes.map((mode) => clickable({ value: String(mode.id) }, () => this.#send({ type: 'mode', mode: mode.id }),
+      create('b', { textContent: String(mode.id) }), named(mode.name))));
   }
 
   /** @param {Scene | null} scene */

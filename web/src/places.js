@@ -1,7 +1,7 @@
 // @ts-check
 /** The controls of modes 7 and 8: a route by clicks on the map, a goal by click, by numbers or from the report, and the lane. */
 import { number, read, setLimits, write } from './decimal.js';
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { format, pair } from './units.js';
 import { t } from './text.js';
 
@@ -82,25 +82,16 @@ export class Places {
       this.#sendGoal([read(this.#x), read(this.#y)]);
     });
     const own = this.#scene?.goals.filter((goal) => !GOALS.some((each) => same(each, goal))) ?? [];
-    const presets = create('div', { className: 'row' }, ...[...GOALS, ...own].map((goal) => {
-      const button = create('button', { type: 'button', textContent: inWords(goal), title: t('Set this goal') });
-      button.addEventListener('click', () => this.#sendGoal(goal));
-      return button;
-    }));
+    const presets = create('div', { className: 'row' }, ...[...GOALS, ...own].map((goal) => clickable({ textContent: inWords(goal), title: t('Set this goal') }, () => this.#sendGoal(goal))));
     if (mode.lane) {
-      const lane = create('button', { type: 'button', id: 'lane', textContent: t('LANE'), title: t('Follow a lane of boxes') });
-      lane.addEventListener('click', () => this.#send({ type: 'lane' }));
+      const lane = clickable({ id: 'lane', textContent: t('LANE'), title: t('Follow a lane of boxes') }, () => this.#send({ type: 'lane' }));
       presets.append(lane);
     }
     this.#root.replaceChildren(form, presets, create('span', { className: 'hint', textContent: t('A click on the map sets the goal: x forward, y left of the robot\'s origin.') }));
   }
 
   #layOutRoute() {
-    const button = (/** @type {string} */ text, /** @type {string} */ title, /** @type {() => void} */ act) => {
-      const made = create('button', { type: 'button', textContent: text, title });
-      made.addEventListener('click', act);
-      return made;
-    };
+    const button = (/** @type {string} */ text, /** @type {string} */ title, /** @type {() => void} */ act) => clickable({ textContent: text, title }, act);
     const own = this.#scene?.routes.map((route, index) => button(this.#scene?.routes.length === 1 ? t('Scenario\'s') : t('Scenario\'s {}', index + 1), t('Take the scenario\'s route'), () => this.#take(route))) ?? [];
     this.#root.replaceChildren(
       create('div', { className: 'row' },
@@ -157,11 +148,8 @@ export class Places {
       setText(this.#list, t('Clicks on the map add waypoints, {} at most.', this.#mode?.route ?? 0));
       return;
     }
-    this.#list.replaceChildren(...draft.map((at, index) => {
-      const chip = create('button', { type: 'button', className: 'place', title: t('Remove this waypoint') }, create('b', { textContent: String(index + 1) }), inWords(at), ' ×');
-      chip.addEventListener('click', () => this.#change(draft.filter((_place, each) => each !== index)));
-      return chip;
-    }));
+    this.#list.replaceChildren(...draft.map((at, index) => clickable({ className: 'place', title: t('Remove this waypoint') },
+      () => this.#change(draft.filter((_place, each) => each !== index)), create('b', { textContent: String(index + 1) }), inWords(at), ' ×')));
   }
 }
 

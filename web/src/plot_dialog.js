@@ -3,7 +3,7 @@
 import { BadExpression, MARK } from './computed.js';
 import { check, decimal, number, read, write } from './decimal.js';
 import { complaint, dialog, saveFile } from './dialog.js';
-import { create } from './dom.js';
+import { clickable, create } from './dom.js';
 import { MOST_UNITS, unitsOf } from './layout.js';
 import { printPdf, toCsv, toPng, toSvg } from './picture.js';
 import { SIGNALS, UNITS, computed, signal } from './signals.js';
@@ -74,8 +74,7 @@ export class PlotDialog {
   /** @param {string} text @param {string | null} ending Null: the browser's print dialog saves it. @param {(panel: PlotPanel, frame: import('./picture.js').Frame) => Blob | Promise<Blob | void>} make */
   #pictureButton(text, ending, make) {
     const title = ending === null ? t('Print this plot, or save it as PDF') : t('Save this plot as {}', text);
-    const button = create('button', { type: 'button', textContent: text, title });
-    button.addEventListener('click', async () => {
+    const button = clickable({ textContent: text, title }, async () => {
       const panel = this.#panel;
       const [from_s = 0, to_s = 0, width_mm = 0, height_mm = 0] = [this.#from, this.#to, this.#width, this.#height].map(read);
       const fits = from_s < to_s && width_mm >= 40 && width_mm <= 400 && height_mm >= 30 && height_mm <= 400;

@@ -4,7 +4,7 @@
  * A layout, one for each mode, defines the plots.
  */
 import { BAND_PX, StateBand } from './band.js';
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { LONGEST_S, LOOP_PLOTS, OWN_PLOTS, OWN_PROGRAM, PLOTS, SHORTEST_S, Shelf, unitsOf } from './layout.js';
 import { Overlay } from './overlay.js';
 import { portName } from './signals.js';
@@ -257,8 +257,7 @@ export class Plots {
     const own = [...this.#choices.querySelectorAll('button')];
     const same = own.map(({ value }) => value).join() === offered.map(({ title }) => title).join();
     const buttons = same ? own : offered.map((spec) => {
-      const button = create('button', { type: 'button', value: spec.title, textContent: t(spec.title), title: t('Plot {}, or not', t(spec.title)) });
-      button.addEventListener('click', () => {
+      const button = clickable({ value: spec.title, textContent: t(spec.title), title: t('Plot {}, or not', t(spec.title)) }, () => {
         const shown = this.layout.plots.find((each) => each.title === spec.title);
         this.change(shown ?? null, shown ? null : { ...spec });
       });

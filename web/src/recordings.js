@@ -1,7 +1,7 @@
 // @ts-check
 /** The recordings of this computer: find one, open it as a replay, compare some, delete. */
 import { complaint, dialog, fileButton } from './dialog.js';
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { MOST } from './kept.js';
 import { ask } from './key.js';
 import { language, said, t } from './text.js';
@@ -35,8 +35,7 @@ export class Recordings {
   constructor(ask, show) {
     element('recordings', HTMLButtonElement).addEventListener('click', () => this.open());
     if (isSite) {
-      const saves = create('button', { type: 'button', className: 'go', textContent: t('Save this run'), title: t('Save the recording of the run so far as a file') });
-      saves.addEventListener('click', () => ask('save'));
+      const saves = clickable({ className: 'go', textContent: t('Save this run'), title: t('Save the recording of the run so far as a file') }, () => ask('save'));
       const replays = create('button', { type: 'button', textContent: t('Replay this run'), title: t('Show the run so far as a replay; the robot waits meanwhile') });
       const close = (/** @type {() => void} */ work) => {
         this.#dialog.dialog.close();
@@ -111,8 +110,7 @@ export class Recordings {
       this.#chosen = [...this.#chosen.filter((each) => each !== name), ...(box.checked ? [name] : [])].slice(-MOST);
       this.#show();
     });
-    const show = create('button', { type: 'button', textContent: t('Open|replay'), disabled: !readable, title: t('Show it as a replay, in a page of its own') });
-    show.addEventListener('click', () => this.#replay(name));
+    const show = clickable({ textContent: t('Open|replay'), disabled: !readable, title: t('Show it as a replay, in a page of its own') }, () => this.#replay(name));
     return create('tr', { title: name },
       create('td', {}, box), create('td', { className: 'wrap' }, this.#title(recording), create('span', { className: 'hint', textContent: when(recording) })),
       create('td', {}, show, ...(open ? [create('span', { className: 'chip', textContent: t('being recorded') })] : readable ? [this.#deleteButton(name)] : [])),

@@ -4,7 +4,7 @@
  * which is loaded when the dialog is opened first; at a station it is a command that makes it, and the dialog says which.
  */
 import { complaint, copyButton, dialog, saveFile } from './dialog.js';
-import { create, element, setText, withCode } from './dom.js';
+import { clickable, create, element, setText, withCode } from './dom.js';
 import { language, said, t } from './text.js';
 import { Search } from './tune_search.js';
 import { format } from './units.js';
@@ -166,8 +166,7 @@ export class ReportDialog {
     const file = new Blob([page], { type: 'text/html' });
     URL.revokeObjectURL(this.#url);
     this.#url = URL.createObjectURL(file);
-    const save = create('button', { type: 'button', textContent: t('Save') });
-    save.addEventListener('click', () => saveFile(FILE, file));
+    const save = clickable({ textContent: t('Save') }, () => saveFile(FILE, file));
     const open = create('a', { href: this.#url, target: '_blank', textContent: t('Open the report') });
     setText(this.#note, `${FILE}, ${format(page.length / 1e3, 0)} kB`);
     // The station allows its own pages no styles within: the saved file shows them.

@@ -5,7 +5,7 @@
  */
 import { Comparison } from './comparison.js';
 import { complaint, dialog } from './dialog.js';
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { MOST } from './kept.js';
 import { Store } from './store.js';
 import { said, t } from './text.js';
@@ -171,13 +171,10 @@ export class Runs {
     this.#plots.overlay.setSeeds(stores);
     this.#map.setSeeds(stores);
     this.#seeds.hidden = runs.length === 0;
-    const hide = create('button', { type: 'button', className: 'small', textContent: t('Hide') });
-    hide.addEventListener('click', () => this.#showSeeds([]));
-    this.#seeds.replaceChildren(create('span', { className: 'hint', textContent: t('the experiment with seeds') }), ...runs.map(({ seed, pass }) => {
-      const button = create('button', { type: 'button', className: `small ${pass ? '' : 'bad'}`, textContent: String(seed), title: t(pass ? 'Seed {} keeps all limits: run it here' : 'Seed {} misses a limit: run it here', seed) });
-      button.addEventListener('click', () => this.#become(seed));
-      return button;
-    }), hide);
+    const hide = clickable({ className: 'small', textContent: t('Hide') }, () => this.#showSeeds([]));
+    this.#seeds.replaceChildren(create('span', { className: 'hint', textContent: t('the experiment with seeds') }), ...runs.map(({ seed, pass }) => clickable({
+      className: `small ${pass ? '' : 'bad'}`, textContent: String(seed), title: t(pass ? 'Seed {} keeps all limits: run it here' : 'Seed {} misses a limit: run it here', seed),
+    }, () => this.#become(seed))), hide);
     this.#plots.draw();
   }
 

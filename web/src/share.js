@@ -4,7 +4,7 @@
  * for its own computer.
  */
 import { dialog } from './dialog.js';
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { LONGEST, pack, readLink, writeLink } from './run_link.js';
 import { said, t } from './text.js';
 import { format } from './units.js';
@@ -37,8 +37,7 @@ export class Share {
     const button = element('share', HTMLButtonElement);
     button.hidden = !isSite;
     if (!isSite) return;
-    const copy = create('button', { type: 'button', className: 'go', textContent: t('Copy') });
-    copy.addEventListener('click', async () => {
+    const copy = clickable({ className: 'go', textContent: t('Copy') }, async () => {
       this.#link.select();
       await navigator.clipboard.writeText(this.#link.value).then(() => setText(this.#copied, t('copied')), () => setText(this.#copied, t('copy it from the field')));
     });

@@ -4,7 +4,7 @@
  * session (`tune_search.js`). On the site, whose page has no threads for it, the dialog says which command does it.
  */
 import { complaint, dialog, saveFile, wordsOf } from './dialog.js';
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { ask } from './key.js';
 import { grouped } from './header.js';
 import { unitWords } from './parameters.js';
@@ -259,8 +259,7 @@ export class TuneDialog {
   #offer(found) {
     this.#found = found;
     const { robot_file, held_out: { seeds, passed_now, passed_tuned } } = found;
-    const save = create('button', { type: 'button', id: 'tune-save', textContent: t('Save as robot file') });
-    save.addEventListener('click', () => saveFile(`${this.#scene?.robot ?? 'robot'}-tuned.toml`, new Blob([robot_file ?? ''], { type: 'application/toml' })));
+    const save = clickable({ id: 'tune-save', textContent: t('Save as robot file') }, () => saveFile(`${this.#scene?.robot ?? 'robot'}-tuned.toml`, new Blob([robot_file ?? ''], { type: 'application/toml' })));
     const none = create('span', { className: 'hint', textContent: t('no robot file: more of the unseen robots fail than before') });
     this.#allow();
     const worse = certainlyWorse(found);

@@ -1,7 +1,7 @@
 // @ts-check
 /** *Explain this*: what explains the stretch that the plots show, by the rules of the station (`explain.rs` of the session). */
 import { wordsOf } from './dialog.js';
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { ask } from './key.js';
 import { said, t } from './text.js';
 import { format } from './units.js';
@@ -61,10 +61,8 @@ export class Why {
 
   /** @param {Cause} cause */
   #line({ from_s, to_s, text, lesson }) {
-    const at = create('button', { type: 'button', className: 'small', textContent: `${format(from_s, 2)} s`, title: t('Show it in the plots') });
-    at.addEventListener('click', () => this.#plots.zoom(from_s - AROUND_S, to_s + AROUND_S));
-    const learn = create('button', { type: 'button', className: 'link', textContent: t('lesson {}', lesson?.split('-')[0] ?? '') });
-    learn.addEventListener('click', () => this.#open(`${lesson}.md`));
+    const at = clickable({ className: 'small', textContent: `${format(from_s, 2)} s`, title: t('Show it in the plots') }, () => this.#plots.zoom(from_s - AROUND_S, to_s + AROUND_S));
+    const learn = clickable({ className: 'link', textContent: t('lesson {}', lesson?.split('-')[0] ?? '') }, () => this.#open(`${lesson}.md`));
     return create('li', {}, at, ` ${said(text)} `, ...(lesson === null || isSite ? [] : [learn]));
   }
 }

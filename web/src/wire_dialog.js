@@ -4,7 +4,7 @@
  * once by the station; it drives with the sketch that is chosen here, and its file can be kept for `--robot`.
  */
 import { complaint, dialog, fileButton, saveFile, wordsOf } from './dialog.js';
-import { create, setText } from './dom.js';
+import { clickable, create, setText } from './dom.js';
 import { ask } from './key.js';
 import { base64 } from './program.js';
 import { plainName } from './source.js';
@@ -74,8 +74,7 @@ export class WireDialog {
     this.#problem.id = 'wire-problem';
     const label = (/** @type {string} */ text, /** @type {HTMLElement} */ field) => create('label', {}, `${text} `, field);
     const folder = create('input', { type: 'file', hidden: true, webkitdirectory: true });
-    const open = create('button', { type: 'button', textContent: t('Sketch folder…') });
-    open.addEventListener('click', () => folder.click());
+    const open = clickable({ textContent: t('Sketch folder…') }, () => folder.click());
     folder.addEventListener('change', () => this.#read([...folder.files ?? []]));
     this.#dialog.body.append(
       create('p', { className: 'hint', textContent: t('Say where its wires go, by number or as A0; or drag a name onto the board. Then choose the sketch that drives it.') }),

@@ -6,7 +6,7 @@
 import { inWorld } from './movers.js';
 import { check, decimal, read, setLimits, write } from './decimal.js';
 import { complaint, fileButton, saveFile } from './dialog.js';
-import { create, element, setText } from './dom.js';
+import { clickable, create, element, setText } from './dom.js';
 import { said, t } from './text.js';
 import { colours } from './theme.js';
 import { ARENA, Draft, added, anchor, arenaOf, changed, grips, has, items, met, moved, outlines, poseOf, pulled, sameItem, turned, without } from './world_shapes.js';
@@ -315,9 +315,7 @@ export class WorldEditor {
 
 /** @param {string} text @param {string} title @param {() => void} act */
 function button(text, title, act) {
-  const made = create('button', { type: 'button', textContent: text, title });
-  made.addEventListener('click', act);
-  return made;
+  return clickable({ textContent: text, title }, act);
 }
 
 /** @param {Item} item */

@@ -143,6 +143,11 @@ rare('what is plotted does not jump where the robot moves its origin to its goal
   }
 });
 
+test('what the plots show is explained', async () => {
+  await page.locator('#explain').click();
+  await page.locator('#why', { hasText: /^from [\d.]+ to [\d.]+ s/ }).waitFor();
+});
+
 test('no script failed on the way', () => {
   assert.deepEqual(dashboard.complaints, []);
 });
