@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::left_out::LeftOut;
 use rumbo_ros::recorded::Series;
 use rumbo_session::plotter_row;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// The column of the Serial Monitor's times of day.
@@ -66,7 +67,7 @@ pub(crate) fn read(path: &Path, text: &str) -> Result<Option<Table>, Failure> {
             .iter()
             .any(|cell| value(cell).is_none() && !cell.is_empty());
         let names: Vec<String> = match is_header {
-            true => header.iter().map(|cell| (*cell).to_owned()).collect(),
+            true => distinct(&header, has_clock),
             false => (1..=header.len()).map(|at| format!("value_{at}")).collect(),
         };
         if names.len() < 2 && !has_clock {
@@ -86,6 +87,31 @@ pub(crate) fn read(path: &Path, text: &str) -> Result<Option<Table>, Failure> {
         }
     }
     table.finish(path)
+}
+
+/// The names of a header, each once: the second `rpm` is `rpm_2`. Columns of one name would be taken for one.
+fn distinct(header: &[&str], has_clock: bool) -> Vec<String> {
+    let written: HashSet<&str> = header.iter().copied().collect();
+    let mut seen: HashMap<&str, usize> = HashMap::new();
+    if has_clock {
+        seen.insert(CLOCK, 1);
+    }
+    let mut names = Vec::with_capacity(header.len());
+    for &cell in header {
+        let count = seen.entry(cell).or_default();
+        *count += 1;
+        let mut name = cell.to_owned();
+        // `rpm_2` may be the name of a third one.
+        while *count > 1 {
+            name = format!("{cell}_{count}");
+            if !written.contains(name.as_str()) {
+                break;
+            }
+            *count += 1;
+        }
+        names.push(name);
+    }
+    names
 }
 
 #[derive(Default)]
@@ -195,5 +221,25 @@ fn without_stamp(line: &str) -> &str {
     match (stamp(line), line.split_once("->")) {
         (Some(_), Some((_, rest))) => rest.trim(),
         _ => line.trim(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::distinct;
+
+    #[test]
+    fn columns_of_one_name_stay_apart() {
+        for (header, has_clock, names) in [
+            (
+                vec!["t", "rpm", "rpm", "rpm"],
+                false,
+                vec!["t", "rpm", "rpm_2", "rpm_3"],
+            ),
+            (vec!["a", "a", "a_2"], false, vec!["a", "a_3", "a_2"]),
+            (vec!["clock", "a"], true, vec!["clock_2", "a"]),
+        ] {
+            assert_eq!(distinct(&header, has_clock), names);
+        }
     }
 }

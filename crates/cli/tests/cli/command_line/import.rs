@@ -255,6 +255,21 @@ fn a_table_of_another_program_is_shown_with_the_command_that_imports_it() {
 }
 
 #[test]
+fn two_columns_of_one_name_are_two() {
+    let table = b"millis,rpm,rpm,pwm,pwm\n0,10,20,100,110\n20,10,20,100,110\n40,10,20,100,110\n";
+    let import = Import::of("table.csv", table);
+    let columns = "t_ms=millis,left_rpm=rpm,right_rpm=rpm_2,left_pwm=#4,right_pwm=#5";
+    let output = import.run(&["import", "table.csv", "--columns", columns]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let last = import.exported("table.mcap").pop().unwrap();
+    assert!(
+        (2.0 * last["left_rad_s"] - last["right_rad_s"]).abs() < 1e-3,
+        "{last:?}"
+    );
+    assert_eq!([last["left_pwm"], last["right_pwm"]], [100.0, 110.0]);
+}
+
+#[test]
 fn counts_are_speeds_by_what_a_turn_counts_and_rows_of_the_serial_monitor_have_its_times() {
     // 748 counts in a second to the right, half as many to the left; a row each 5 ms.
     let rows: Vec<String> = (0..300)
