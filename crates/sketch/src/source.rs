@@ -258,6 +258,12 @@ fn read(path: &Path, name: &str, left: &mut u64) -> Result<Vec<u8>, SketchError>
     Ok(bytes)
 }
 
+/// Whether a file is, by its ending, one that a sketch is made of, or an image.
+#[must_use]
+pub fn is_program(path: &Path) -> bool {
+    ending(path).is_some_and(|own| KINDS.contains(&own) || ["elf", "hex"].contains(&own))
+}
+
 /// The ending of a file's name.
 pub(crate) fn ending(path: &Path) -> Option<&str> {
     path.extension().and_then(|ending| ending.to_str())
