@@ -102,7 +102,7 @@ impl Guard {
 
 fn is_another(path: &Path) -> Failure {
     Failure::Input(format!(
-        "{}: is there already, and not of the same run or report; choose another place with --out, or replace it with --force",
+        "{}: is there already, and not of the same run or report; choose another place, or replace it with --force",
         path.display()
     ))
 }

@@ -72,7 +72,11 @@ fn a_csv_that_a_spanish_spreadsheet_saved_is_imported_and_another_log_of_its_nam
     assert!(import("plain.csv", RECORDING).status.success());
     let other = import("plain.csv", &RECORDING.replace(",5,", ",6,"));
     assert_eq!(other.status.code(), Some(2));
-    assert!(stderr(&other).contains("--out"), "{}", stderr(&other));
+    assert!(
+        stderr(&other).contains("another place"),
+        "{}",
+        stderr(&other)
+    );
 }
 
 #[test]
