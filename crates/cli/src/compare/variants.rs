@@ -135,6 +135,16 @@ fn overrides(scenario: &str, text: &str) -> Result<Overrides, Failure> {
             }
         }
     }
+    let programs = [
+        sketch.is_some(),
+        overrides.firmware.is_some(),
+        overrides.program != NativeProgram::Rumbo,
+    ];
+    if programs.into_iter().filter(|is_one| *is_one).count() > 1 {
+        return Err(Failure::Input(format!(
+            "--with {text}: one program drives; give program, firmware or sketch"
+        )));
+    }
     if let Some(sketch) = sketch {
         let board = crate::args::board(overrides.robot.as_deref(), Some(scenario))?;
         overrides.firmware = Some(sketch::image(sketch, board)?);

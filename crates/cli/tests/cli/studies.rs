@@ -284,6 +284,10 @@ fn wrong_variants_are_refused() {
             &["mode1", "--with", "program=baseline,front_kp=5"],
             "does not drive here",
         ),
+        (
+            &["mode1", "--with", "sketch=mine,firmware=mine.elf"],
+            "one program drives",
+        ),
     ] {
         let refused = rumbo(&[&["compare"][..], arguments].concat());
         assert_eq!(refused.status.code(), Some(2), "{arguments:?}");
