@@ -54,7 +54,7 @@ pub(crate) struct RunArgs {
     pub(crate) program: ProgramName,
     #[command(flatten)]
     pub(crate) image: ImageArgs,
-    /// Line of text sent over the link at a time, e.g. 'REF 40@6'; \\x05 in it is that byte; may be repeated
+    /// Line of text sent over the link at a time, e.g. 'REF 40@6'; \x05 in it is that byte; may be repeated
     #[arg(long = "command", value_name = "TEXT@SECONDS", value_parser = timed_text, conflicts_with = "program")]
     pub(crate) commands: Vec<TimedText>,
     /// Line of text typed on the board's USB port (Serial) at a time, e.g. 'go@2'; may be repeated
@@ -274,8 +274,8 @@ pub(crate) struct IdentifyArgs {
         conflicts_with = "check"
     )]
     pub(crate) battery: Option<f64>,
-    /// Speed of the port [baud]
-    #[arg(long, value_name = "BAUD", default_value_t = rumbo_session::DEFAULT_BAUD)]
+    /// Speed of the serial port; the robot's is 9600
+    #[arg(long, value_name = "N", default_value_t = rumbo_session::DEFAULT_BAUD)]
     pub(crate) baud: u32,
     /// Folder for the log of the drive [default: that of sessions]
     #[arg(long, value_name = "DIR", requires = "drive", conflicts_with = "check")]
