@@ -151,6 +151,10 @@ fn a_sweep_without_sense_is_refused_and_nothing_is_written() {
         let said = stderr(&refused);
         assert!(said.contains(why), "{said}");
     }
+    let begin = ["sweep", "mode5", "kv=0.01,0.02", "--out", &text];
+    let unknown = rumbo(&[&begin[..], &["--by", "zzz"]].concat());
+    let said = stderr(&unknown);
+    assert_eq!(said.matches("`rms_rad_s`").count(), 1, "{said}");
     assert!(!folder.exists());
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("index.html"), "mine").unwrap();
