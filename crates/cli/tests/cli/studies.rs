@@ -364,6 +364,14 @@ fn a_tuning_without_sense_is_refused() {
             &["--over", "front_kp", "--for", "settling_s < x"],
             "its limit is not a number",
         ),
+        (
+            &["--over", "front_kp", "--for", "settling_s < 1,5"],
+            "`5`: write metrics and limits",
+        ),
+        (
+            &["--over", "battery.open_circuit_v"],
+            "is a number of the plant",
+        ),
         (&["--over", "front_kp", "--runs", "5"], "at least 2000 runs"),
     ] {
         let refused = rumbo(&[&["tune", "mode1"][..], arguments].concat());
