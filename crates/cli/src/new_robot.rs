@@ -79,9 +79,9 @@ pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
         }
     };
     write(&path, &text)?;
-    let shown = output::shown(&path);
+    let (shown, quoted) = (output::shown(&path), output::quoted(&path));
     output::line(&format!(
-        "{shown}: measure and change it, then `rumbo run free --robot {shown} --sketch FOLDER`"
+        "{shown}: measure and change it, then `rumbo run free --robot {quoted} --sketch FOLDER`"
     ))
 }
 

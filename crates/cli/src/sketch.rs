@@ -179,7 +179,7 @@ pub(crate) fn begin(
         _ => None,
     };
     write_for_editors(folder, robot.as_deref())?;
-    let (file, folder) = (output::shown(&begun), output::shown(folder));
+    let (file, folder) = (output::shown(&begun), output::quoted(folder));
     // An example says in its first line how to drive it.
     let first = files.iter().find(|(file, _)| main.as_ref() == Some(file));
     let command = first.and_then(|(_, bytes)| {

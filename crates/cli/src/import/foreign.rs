@@ -363,15 +363,7 @@ fn command(file: &Path, guesses: &[Guess], series: &[Series]) -> String {
     let columns: Vec<String> = period.into_iter().chain(columns).collect();
     format!(
         "rumbo import {} --columns '{}'",
-        quoted(file),
+        output::quoted(file),
         columns.join(",")
     )
-}
-
-fn quoted(file: &Path) -> String {
-    let shown = file.display().to_string();
-    match shown.contains([' ', '\'', '(', ')', '&', ';']) {
-        true => format!("'{}'", shown.replace('\'', "'\\''")),
-        false => shown,
-    }
 }
