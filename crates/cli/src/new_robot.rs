@@ -97,9 +97,11 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
         )),
         _ => place::unwritable(path, &error),
     });
-    file?
-        .write_all(text.as_bytes())
-        .map_err(|error| place::unwritable(path, &error))
+    file?.write_all(text.as_bytes()).map_err(|error| {
+        // Half a file would be in the way of the next attempt.
+        let _ = std::fs::remove_file(path);
+        place::unwritable(path, &error)
+    })
 }
 
 /// What the robot is made of: by the options, else asked for.
