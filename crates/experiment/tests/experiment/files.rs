@@ -634,6 +634,19 @@ fn a_rig_of_the_scenario_that_the_robot_lacks_is_said_with_both() {
 }
 
 #[test]
+fn every_robot_stands_in_a_scenario_that_asks_nothing_of_it() {
+    let library = Library::new();
+    for robot in library.list(Kind::Robot) {
+        let overrides = Overrides {
+            robot: Some(robot.clone()),
+            ..Overrides::default()
+        };
+        let setup = library.setup("free", &overrides);
+        assert!(setup.is_ok(), "{robot}: {:?}", setup.err());
+    }
+}
+
+#[test]
 fn a_sonar_that_the_rig_lacks_cannot_fail() {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_sonar.toml");
     let setup = |text: String| {
