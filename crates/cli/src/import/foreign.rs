@@ -137,6 +137,8 @@ impl Held {
         ];
         for (index, column) in self.series.iter().enumerate() {
             let values = || column.samples.iter().map(|(_, value)| *value);
+            // A sonar that never heard anything has no values.
+            let figure_of = |value: Option<f64>| value.map_or_else(String::new, figure);
             let is = of(index).map_or_else(String::new, |guess| {
                 let doubt = if guess.is_sure { "" } else { " ?" };
                 format!("{}{doubt}", guess.name)
@@ -144,9 +146,9 @@ impl Held {
             table.push(vec![
                 (index + 1).to_string(),
                 column.name.clone(),
-                values().next().map_or_else(String::new, figure),
-                figure(values().fold(f64::INFINITY, f64::min)),
-                figure(values().fold(f64::NEG_INFINITY, f64::max)),
+                figure_of(values().next()),
+                figure_of(values().reduce(f64::min)),
+                figure_of(values().reduce(f64::max)),
                 is,
             ]);
         }

@@ -274,6 +274,16 @@ fn two_columns_of_one_name_are_two() {
 }
 
 #[test]
+fn a_column_without_values_has_no_least_and_no_largest() {
+    let import = Import::of("table.csv", b"millis,range_left_m\n0,\n20,\n40,\n");
+    let said = stdout(&import.run(&["import", "table.csv"]));
+    assert!(
+        said.contains("range_left_m") && !said.contains("inf"),
+        "{said}"
+    );
+}
+
+#[test]
 fn counts_are_speeds_by_what_a_turn_counts_and_rows_of_the_serial_monitor_have_its_times() {
     // 748 counts in a second to the right, half as many to the left; a row each 5 ms.
     let rows: Vec<String> = (0..300)
