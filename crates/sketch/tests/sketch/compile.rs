@@ -74,7 +74,12 @@ fn the_library_and_a_servo_are_there_on_every_board() {
             "void setup() { Serial1.begin(9600); }\nvoid loop() { }\n",
         )],
     );
-    assert!(refused(&compiler, &second).contains("'Serial1' was not declared"));
+    let said = refused(&compiler, &second);
+    assert!(
+        said.contains("'Serial1' was not declared")
+            && said.contains("`uno`, which has Serial alone"),
+        "{said}"
+    );
 }
 
 #[test]
