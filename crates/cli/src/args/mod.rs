@@ -92,7 +92,7 @@ pub(crate) enum Command {
     Prune(PruneArgs),
     /// Begin a sketch that drives to a wall, or the file of a robot of your own
     New(NewArgs),
-    /// List modes, scenarios, worlds, rigs, robots and parameters
+    /// List modes, scenarios, worlds, rigs, robots, sketches and parameters; ports and logs of this computer
     List(ListArgs),
     /// Print a script with which a shell completes the words of `rumbo`
     Completions(CompletionsArgs),
