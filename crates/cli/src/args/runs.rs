@@ -1,7 +1,7 @@
 //! Options of the commands that run experiments and fit numbers: `run`, `experiments`, `identify`, `calibrate`.
 
 use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, ProgramName, SeedArgs, SettingArgs};
-use super::values::{line_ending, press, put, timed_text, usb_text};
+use super::values::{at_rest, line_ending, press, put, timed_text, usb_text};
 use clap::{Args, ValueEnum};
 use rumbo_experiment::files::TimedText;
 use rumbo_wire::LineEnding;
@@ -270,6 +270,7 @@ pub(crate) struct IdentifyArgs {
     #[arg(
         long,
         value_name = "VOLTS",
+        value_parser = at_rest,
         requires = "drive",
         conflicts_with = "check"
     )]
