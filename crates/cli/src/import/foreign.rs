@@ -3,7 +3,7 @@
 use super::columns::{Taken, taken};
 use super::guess::{self, Guess};
 use super::made::{Made, Samples, Signals, rows};
-use super::table::{self, Table};
+use super::table::{self, Table, Unread};
 use crate::args::ImportArgs;
 use crate::column_names::Role;
 use crate::failure::Failure;
@@ -25,6 +25,7 @@ struct Held {
     series: Vec<Series>,
     /// The samples have their times; else the numbers of their rows.
     timed: bool,
+    unread: Unread,
 }
 
 /// Imports a bag or a log of another program: its types say what is what.
@@ -51,6 +52,7 @@ pub(super) fn import_bag(
     let held = Held {
         series,
         timed: true,
+        unread: Unread::default(),
     };
     let asked = match args.columns.is_empty() {
         true => &["auto".to_owned()][..],
@@ -70,6 +72,7 @@ pub(super) fn import_table(
         columns,
         rows,
         left_out,
+        unread,
     }) = table::read(&args.file, text)?
     else {
         return Ok(false);
@@ -78,6 +81,7 @@ pub(super) fn import_table(
     let held = Held {
         series: columns,
         timed: false,
+        unread,
     };
     match args.columns.is_empty() {
         true => held.preview(args, rows)?,
@@ -178,10 +182,23 @@ impl Held {
         guard.make_equal(out, |place| {
             std::fs::write(place, &log).map_err(|error| place::unwritable(out, &error))
         })?;
-        for note in &made.notes {
+        for note in made.notes.iter().chain(&self.notes_on(&taken)) {
             output::note(&format!("{shown}: {note}"));
         }
         made.sum_up(out, &taken, &self.series, args.json)
+    }
+
+    /// What of the columns that were named could not be read.
+    fn notes_on(&self, taken: &[Taken]) -> Vec<String> {
+        let columns = taken.iter().filter_map(|one| self.series.get(one.column?));
+        let notes = columns.filter_map(|Series { name, .. }| {
+            let (count, first) = self.unread.get(name)?;
+            let values = output::counted(*count, "value");
+            Some(format!(
+                "{name}: {values} left out, the first is `{first}`, no number"
+            ))
+        });
+        notes.collect()
     }
 
     /// Times of all samples \[s\], and what is taken of them.

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::left_out::LeftOut;
 use rumbo_ros::recorded::Series;
 use rumbo_session::plotter_row;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 
 /// The column of the Serial Monitor's times of day.
@@ -15,6 +15,8 @@ pub(crate) const CLOCK: &str = "clock";
 const MOST_COLUMNS: usize = 256;
 /// Values of a table.
 const MOST_VALUES: usize = 20_000_000;
+/// Characters shown of a cell that is no number.
+const LONGEST_CELL: usize = 24;
 const DAY_S: f64 = 86_400.0;
 
 /// A table, by columns.
@@ -23,7 +25,11 @@ pub(crate) struct Table {
     pub(crate) columns: Vec<Series>,
     pub(crate) rows: usize,
     pub(crate) left_out: LeftOut,
+    pub(crate) unread: Unread,
 }
+
+/// Cells that are no numbers: of each column how many, and the first.
+pub(crate) type Unread = BTreeMap<String, (usize, String)>;
 
 /// Reads a table whose cells commas part, or blanks where it has no commas; `None` if most of it is none.
 ///
@@ -75,15 +81,7 @@ pub(crate) fn read(path: &Path, text: &str) -> Result<Option<Table>, Failure> {
         }
         table.order(&names, has_clock);
         for (number, line) in lines().skip(usize::from(is_header)) {
-            let row = cells(without_stamp(line));
-            if row.len() != names.len() || row.iter().all(|cell| value(cell).is_none()) {
-                let what = format!("{} values in a row of {} columns", row.len(), names.len());
-                table.left_out.row(number, what);
-                continue;
-            }
-            let row = names.iter().zip(row);
-            let row = row.filter_map(|(name, cell)| Some((name.clone(), value(cell)?)));
-            table.push(stamp(line), row.collect());
+            table.push_cells(number, &names, line);
         }
     }
     table.finish(path)
@@ -122,9 +120,36 @@ struct Builder {
     /// Since midnight of the first day, the last one \[s\].
     clock_s: Option<f64>,
     left_out: LeftOut,
+    unread: Unread,
 }
 
 impl Builder {
+    /// A line below a header; one with more or fewer cells, or without any number, is left out.
+    fn push_cells(&mut self, number: usize, names: &[String], line: &str) {
+        let row = cells(without_stamp(line));
+        let values: Vec<Option<f64>> = row.iter().map(|cell| value(cell)).collect();
+        if row.len() != names.len() {
+            let what = format!("{} values in a row of {} columns", row.len(), names.len());
+            self.left_out.row(number, what);
+            return;
+        }
+        if values.iter().all(Option::is_none) {
+            self.left_out.row(number, "has no number".into());
+            return;
+        }
+        for ((name, cell), value) in names.iter().zip(row).zip(&values) {
+            if value.is_none() && !cell.is_empty() {
+                let unread = self.unread.entry(name.clone());
+                let (count, _) =
+                    unread.or_insert_with(|| (0, cell.chars().take(LONGEST_CELL).collect()));
+                *count += 1;
+            }
+        }
+        let row = names.iter().zip(values);
+        let row = row.filter_map(|(name, value)| Some((name.clone(), value?)));
+        self.push(stamp(line), row.collect());
+    }
+
     fn order(&mut self, names: &[String], has_clock: bool) {
         let clock = has_clock.then(|| CLOCK.to_owned());
         for name in clock.iter().chain(names) {
@@ -185,6 +210,7 @@ impl Builder {
             columns: self.columns,
             rows: self.rows,
             left_out: self.left_out,
+            unread: self.unread,
         }))
     }
 }

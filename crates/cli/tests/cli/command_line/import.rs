@@ -284,6 +284,17 @@ fn a_column_without_values_has_no_least_and_no_largest() {
 }
 
 #[test]
+fn cells_that_are_no_numbers_are_said() {
+    let table = b"t_ms;left_rpm;right_rpm\n0;1.234,5;1\n20;1.234,5;\n40;7;2\n";
+    let import = Import::of("table.csv", table);
+    let output = import.run(&["import", "table.csv", "--columns", "auto"]);
+    assert_eq!(
+        stderr(&output),
+        "note: table.csv: left_rpm: 2 values left out, the first is `1.234.5`, no number\n"
+    );
+}
+
+#[test]
 fn counts_are_speeds_by_what_a_turn_counts_and_rows_of_the_serial_monitor_have_its_times() {
     // 748 counts in a second to the right, half as many to the left; a row each 5 ms.
     let rows: Vec<String> = (0..300)
