@@ -75,7 +75,13 @@ pub(super) fn import_table(
         unread,
     }) = table::read(&args.file, text)?
     else {
-        return Ok(false);
+        return match args.columns.is_empty() {
+            true => Ok(false),
+            false => Err(Failure::Input(format!(
+                "{}: is no table: it needs two rows, and most of them with a number and as many cells as the header",
+                args.file.display()
+            ))),
+        };
     };
     left_out.report(&args.file);
     let held = Held {
@@ -233,7 +239,7 @@ impl Held {
         let others = series
             .iter()
             .enumerate()
-            .filter(|(index, _)| !is_taken(*index));
+            .filter(|(index, column)| !is_taken(*index) && !column.samples.is_empty());
         let others: Vec<&Series> = others.map(|(_, column)| column).collect();
         if others.len() > MOST_NUMBERS {
             notes.push(format!(

@@ -381,6 +381,17 @@ fn what_columns_are_missing_or_unclear_is_said_with_what_there_is() {
 }
 
 #[test]
+fn columns_of_what_is_no_table_are_refused_with_what_a_table_is() {
+    for table in ["a,b\n", "a,b\n1,2\n", "a,b\n1,2,5\n2,3,5\n3,4,5\n"] {
+        let import = Import::of("table.csv", table.as_bytes());
+        let refused = import.run(&["import", "table.csv", "--columns", "t_ms=a"]);
+        let said = stderr(&refused);
+        assert!(said.contains("as many cells as the header"), "{said}");
+        assert_eq!(refused.status.code(), Some(2));
+    }
+}
+
+#[test]
 fn a_log_of_another_program_is_imported_and_only_ours_is_sent_to_replay() {
     let bags = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../ros/tests/bags");
     let import = Import::of(
