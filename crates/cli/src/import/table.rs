@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::left_out::LeftOut;
 use rumbo_ros::recorded::Series;
 use rumbo_session::plotter_row;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 
@@ -36,6 +37,7 @@ pub(crate) type Unread = BTreeMap<String, (usize, String)>;
 /// # Errors
 /// A larger table than is read.
 pub(crate) fn read(path: &Path, text: &str) -> Result<Option<Table>, Failure> {
+    let text = without_comments(text);
     let lines = || {
         let lines = (1..).zip(text.lines());
         lines.filter(|(_, line)| !line.trim().is_empty())
@@ -85,6 +87,24 @@ pub(crate) fn read(path: &Path, text: &str) -> Result<Option<Table>, Failure> {
         }
     }
     table.finish(path)
+}
+
+/// Lines with # before a table are blank here, but for the last if it names the columns, as NumPy writes it.
+fn without_comments(text: &str) -> Cow<'_, str> {
+    let is_comment = |line: &&str| line.trim_start().starts_with('#');
+    let count = text.lines().take_while(is_comment).count();
+    let last = text.lines().take(count).last();
+    let (Some(last), Some(first)) = (last, text.lines().nth(count)) else {
+        return Cow::Borrowed(text);
+    };
+    let names = last.trim_start().trim_start_matches('#').trim();
+    let row = cells(first);
+    let are_names = cells(names).len() == row.len() && row.iter().all(|cell| value(cell).is_some());
+    let header = if are_names { names } else { "" };
+    let comments = text.split_inclusive('\n').take(count);
+    let rest = &text[comments.map(str::len).sum::<usize>()..];
+    // The lines keep their numbers.
+    Cow::Owned(format!("{}{header}\n{rest}", "\n".repeat(count - 1)))
 }
 
 /// The names of a header, each once: the second `rpm` is `rpm_2`. Columns of one name would be taken for one.
@@ -252,7 +272,19 @@ fn without_stamp(line: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::distinct;
+    use super::{distinct, without_comments};
+
+    #[test]
+    fn comments_before_a_table_are_no_rows_and_may_name_its_columns() {
+        for (text, without) in [
+            ("# by me\n# t v\n0 1\n2 3\n", "\nt v\n0 1\n2 3\n"),
+            ("# by me\nt,v\n0,1\n", "\nt,v\n0,1\n"),
+            ("t,v\n0,1\n", "t,v\n0,1\n"),
+            ("# nothing else", "# nothing else"),
+        ] {
+            assert_eq!(without_comments(text), without);
+        }
+    }
 
     #[test]
     fn columns_of_one_name_stay_apart() {
