@@ -155,8 +155,9 @@ Examples:
   rumbo grade assignment.toml my_sketch
   rumbo grade assignment.toml --gradescope autograder.zip
 
-Each folder or file in FOLDER is a hand-in: a sketch, an .ino, an .elf or a .hex. FOLDER may itself be the only one. Sketches are
-compiled in a sandbox (bwrap): no network, no files but their own, bounded time and memory.
+Each folder or file in FOLDER is a hand-in: a sketch, an .ino, an .elf, a .hex, or a .zip of these. FOLDER may itself be the only
+one, or the archive of a class from Moodle or Canvas. Sketches are compiled in a sandbox (bwrap): no network, no files but their
+own, bounded time and memory.
 
 In DIR: index.html, the class; students/NAME.html; marks.csv; junit.xml; gradescope/NAME.json. The same hand-ins give the same bytes.
 
@@ -165,7 +166,7 @@ pub(crate) struct GradeArgs {
     /// The assignment's file
     #[arg(value_name = "ASSIGNMENT.toml")]
     pub(crate) assignment: PathBuf,
-    /// Folder with the hand-ins, or one hand-in
+    /// Folder or .zip with the hand-ins, or one hand-in
     #[arg(value_name = "FOLDER", required_unless_present_any = ["gradescope", "autograder"])]
     pub(crate) folder: Option<PathBuf>,
     /// Grade nothing; write the autograder to upload to Gradescope
