@@ -8,9 +8,8 @@ use crate::interrupt;
 use crate::mark::Mark;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
-use crate::run::{progress_bar, set_threads};
+use crate::run::{check_control, progress_bar, set_threads};
 use crate::sketch;
-use crate::sweep::check_control;
 use rumbo_control::params::ParamId;
 use rumbo_experiment::compare::{Difference, Variant, differences, run_variants};
 use rumbo_experiment::files::{
