@@ -259,6 +259,17 @@ fn a_table_of_another_program_is_shown_with_the_command_that_imports_it() {
 }
 
 #[test]
+fn a_table_that_shares_some_names_with_the_original_s_is_one_of_another_program() {
+    let table = b"t_s,x_m,y_m,heading_deg,state\n0,0,0,0,1\n1,0.1,0,0,1\n2,0.2,0,5,1\n";
+    let import = Import::of("table.csv", table);
+    let said = stdout(&import.run(&["import", "table.csv"]));
+    assert!(
+        said.contains("t_s=t_s,x_m=x_m,y_m=y_m,heading_deg=heading_deg"),
+        "{said}"
+    );
+}
+
+#[test]
 fn two_columns_of_one_name_are_two() {
     let table = b"millis,rpm,rpm,pwm,pwm\n0,10,20,100,110\n20,10,20,100,110\n40,10,20,100,110\n";
     let import = Import::of("table.csv", table);
