@@ -164,6 +164,6 @@ fn leave(
         written.map_err(|error| place::unwritable(&waves, &error))?;
         place::write(&waves, bytes)?;
     }
-    let [log, waves] = [log, waves].map(|path| output::shown(&path));
+    let [log, waves] = [log, waves].map(|path| output::quoted(&path));
     output::line(&format!("        rumbo replay {log}; gtkwave {waves}"))
 }

@@ -111,7 +111,8 @@ fn nearest(header: &str) -> Option<RowKind> {
         due.filter(|name| found.contains(name)).count()
     };
     let nearest = RowKind::ALL.into_iter().max_by_key(matching);
-    nearest.filter(|kind| matching(kind) > 2)
+    // Others have an x_m and a y_m too.
+    nearest.filter(|kind| 2 * matching(kind) > kind.columns().len())
 }
 
 /// The columns that an unknown header lacks.

@@ -9,7 +9,7 @@ use rumbo_debug::dap::{Adapter, Launch, LaunchHost};
 use rumbo_debug::symbols::Symbols;
 use rumbo_experiment::debugged::Debugged;
 use rumbo_experiment::files::{Library, Overrides};
-use std::io::{Read, Write};
+use std::io::{IsTerminal, Read, Write};
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -22,6 +22,11 @@ const WAITING: usize = 64;
 pub(crate) fn debug(args: &DebugArgs) -> Result<(), Failure> {
     sketch::take_libraries(&args.libraries)?;
     let Some(port) = args.port else {
+        if std::io::stdin().is_terminal() {
+            output::aside(
+                "waiting for an editor to speak the Debug Adapter Protocol on stdin; `rumbo debug --help` says more",
+            );
+        }
         return serve(args, std::io::stdin(), std::io::stdout());
     };
     let refused = |error: std::io::Error| {

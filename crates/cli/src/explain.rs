@@ -1,7 +1,7 @@
 //! `rumbo explain`: what explains a stretch of a log.
 
 use crate::args::ExplainArgs;
-use crate::export::warn_if_cut;
+use crate::export::{stretch, warn_if_cut};
 use crate::failure::Failure;
 use crate::output;
 use rumbo_session::explain::explain as causes_of;
@@ -11,15 +11,7 @@ use rumbo_station::log_file;
 pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
     let log = log_file::read(&args.log).map_err(Failure::input)?;
     warn_if_cut(&args.log, &log)?;
-    let (from_s, to_s) = (
-        args.from_s.unwrap_or(0.0),
-        args.to_s.unwrap_or(f64::INFINITY),
-    );
-    if from_s >= to_s {
-        return Err(Failure::Input(format!(
-            "--from {from_s} --to {to_s}: nothing lies between them; give --from before --to"
-        )));
-    }
+    let [from_s, to_s] = stretch(&args.log, &log, args.from_s, args.to_s)?;
     let causes = causes_of(&log, from_s, to_s);
     if args.json {
         return output::json(&causes);

@@ -100,21 +100,35 @@ fn check_signals(signals: &[String]) -> Result<(), Failure> {
 
 /// Leaves of a log what lies between the times that were asked for.
 fn cut_out(log: &mut Log, args: &ExportArgs) -> Result<(), Failure> {
-    let (from_s, to_s) = (
-        args.from_s.unwrap_or(0.0),
-        args.to_s.unwrap_or(f64::INFINITY),
-    );
+    let [from_s, to_s] = stretch(&args.log, log, args.from_s, args.to_s)?;
     let within = |t_s: f64| (from_s..=to_s).contains(&t_s);
     log.rows.retain(|row| within(row.t_ms as f64 / 1e3));
     log.readings.retain(|each| within(each.t_ms as f64 / 1e3));
     log.events.retain(|event| within(event.t_s));
-    match log.rows.is_empty() && (args.from_s.is_some() || args.to_s.is_some()) {
-        true => Err(Failure::Input(format!(
-            "{}: holds nothing from {from_s} s to {to_s} s; give times of the log, --from before --to",
-            args.log.display()
-        ))),
-        false => Ok(()),
+    Ok(())
+}
+
+/// The times that were asked for, refused where the log holds nothing between them.
+pub(crate) fn stretch(
+    path: &Path,
+    log: &Log,
+    from_s: Option<f64>,
+    to_s: Option<f64>,
+) -> Result<[f64; 2], Failure> {
+    let (from, to) = (from_s.unwrap_or(0.0), to_s.unwrap_or(f64::INFINITY));
+    let mut times = log.rows.iter().map(|row| row.t_ms as f64 / 1e3);
+    let is_all = from_s.is_none() && to_s.is_none();
+    if is_all || from < to && times.any(|t_s| (from..=to).contains(&t_s)) {
+        return Ok([from, to]);
     }
+    let until = to_s.map_or_else(
+        || format!("its end at {:.1} s", log.duration_s()),
+        |to_s| format!("{to_s} s"),
+    );
+    Err(Failure::Input(format!(
+        "{}: holds nothing from {from} s to {until}; give times of the log, --from before --to",
+        path.display()
+    )))
 }
 
 /// The files of a format: suffix and mark.

@@ -136,8 +136,8 @@ fn debugging(port: u16, args: &LabArgs) -> Result<Debugging, Failure> {
     };
     let debugging = Debugging::at(port).map_err(refused)?;
     let port = debugging.port().map_err(refused)?;
-    let image = args.image.firmware.as_ref();
-    let image = image.map_or_else(String::new, |path| path.display().to_string());
+    let image = args.image.firmware.as_deref();
+    let image = image.map(output::quoted).unwrap_or_default();
     output::aside(&format!(
         "a debugger may come at any time: avr-gdb {image} -ex 'target remote :{port}'"
     ));

@@ -42,6 +42,7 @@ pub(crate) fn list(args: &ListArgs) -> Result<(), Failure> {
             Topic::Rigs,
             Topic::Robots,
             Topic::Policies,
+            Topic::Sketches,
             Topic::Parameters,
         ],
     };
@@ -93,6 +94,7 @@ fn overview(all: &Map<String, Value>) -> Result<(), Failure> {
         Topic::Rigs,
         Topic::Robots,
         Topic::Policies,
+        Topic::Sketches,
         Topic::Parameters,
     ];
     let other = |topic| vec![name(topic).to_owned(), names(entries(topic))];

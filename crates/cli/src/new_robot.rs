@@ -8,6 +8,7 @@ use rumbo_experiment::files::new_robot::{JUMPERS, NewRobot, counted, looks_like,
 use rumbo_experiment::files::{Kind, Library};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::DRIVERS;
+use std::collections::HashSet;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 
@@ -79,9 +80,9 @@ pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
         }
     };
     write(&path, &text)?;
-    let shown = output::shown(&path);
+    let (shown, quoted) = (output::shown(&path), output::quoted(&path));
     output::line(&format!(
-        "{shown}: measure and change it, then `rumbo run free --robot {shown} --sketch FOLDER`"
+        "{shown}: measure and change it, then `rumbo run free --robot {quoted} --sketch FOLDER`"
     ))
 }
 
@@ -97,13 +98,27 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
         )),
         _ => place::unwritable(path, &error),
     });
-    file?
-        .write_all(text.as_bytes())
-        .map_err(|error| place::unwritable(path, &error))
+    file?.write_all(text.as_bytes()).map_err(|error| {
+        // Half a file would be in the way of the next attempt.
+        let _ = std::fs::remove_file(path);
+        place::unwritable(path, &error)
+    })
+}
+
+/// Refuses a signal with two pins.
+fn each_once(pins: &[(String, String)]) -> Result<(), Failure> {
+    let mut known = HashSet::new();
+    match pins.iter().find(|(signal, _)| !known.insert(signal)) {
+        None => Ok(()),
+        Some((signal, _)) => Err(Failure::Input(format!(
+            "--pins: {signal} is given twice; give each signal once"
+        ))),
+    }
 }
 
 /// What the robot is made of: by the options, else asked for.
 fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
+    each_once(&args.pins)?;
     let asks = std::io::stdin().is_terminal() && std::io::stdout().is_terminal();
     let missing = [
         args.board.is_none().then_some("--board"),

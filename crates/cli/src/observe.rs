@@ -113,11 +113,7 @@ fn wait_for_debugger(port: u16, args: &RunArgs) -> Result<TcpStream, Failure> {
     };
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(refused)?;
     let port = listener.local_addr().map_err(refused)?.port();
-    let image = args
-        .image
-        .firmware
-        .as_ref()
-        .map(|path| path.display().to_string());
+    let image = args.image.firmware.as_deref().map(output::quoted);
     output::aside(&format!(
         "waiting for a debugger: avr-gdb {} -ex 'target remote :{port}'",
         image.unwrap_or_default()

@@ -80,6 +80,17 @@ pub(crate) fn shown(path: &Path) -> String {
     path.display().to_string()
 }
 
+/// A path as a shell takes it for one word, in a command to be copied.
+pub(crate) fn quoted(path: &Path) -> String {
+    let text = shown(path);
+    let is_plain =
+        |c: char| c.is_alphanumeric() || "_-./:+@,%".contains(c) || cfg!(windows) && c == '\\';
+    match text.chars().all(is_plain) {
+        true => text,
+        false => format!("'{}'", text.replace('\'', "'\\''")),
+    }
+}
+
 /// Prints rows with their columns aligned, each row indented by two spaces.
 pub(crate) fn table(rows: &[Vec<String>]) -> Result<(), Failure> {
     let shown = |row: &Vec<String>| -> Vec<String> {
@@ -155,7 +166,19 @@ pub(crate) fn report(failure: Failure) -> ExitCode {
 
 #[cfg(test)]
 mod tests {
-    use super::{figure, visible};
+    use super::{figure, quoted, visible};
+    use std::path::Path;
+
+    #[test]
+    fn a_path_in_a_command_is_one_word_of_a_shell() {
+        for (path, shown) in [
+            ("señal/wall-2.toml", "señal/wall-2.toml"),
+            ("my robot.toml", "'my robot.toml'"),
+            ("o'brien $x", "'o'\\''brien $x'"),
+        ] {
+            assert_eq!(quoted(Path::new(path)), shown);
+        }
+    }
 
     #[test]
     fn what_a_terminal_would_obey_is_shown_escaped() {

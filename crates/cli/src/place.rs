@@ -2,7 +2,8 @@
 //! and then moved there.
 //!
 //! No result destroys data: a command never writes to its inputs, and an existing file is replaced only if it carries
-//! the [`Mark`] of the same run or report, or with `--force`. [`Guard`] checks before anything runs.
+//! the [`Mark`] of the same run or report, or with `--force`; what a program is made of never. [`Guard`] checks before
+//! anything runs.
 
 use crate::failure::Failure;
 use crate::mark::Mark;
@@ -79,6 +80,13 @@ impl Guard {
     fn keeps_inputs(&self, path: &Path) -> Result<(), Failure> {
         // Both are opened for that, and to open a pipe may wait for ever.
         let is_there = path.symlink_metadata().is_ok();
+        // Whichever files a sketch includes: no result has such an ending.
+        if is_there && rumbo_sketch::is_program(path) {
+            return Err(Failure::Input(format!(
+                "{}: is part of a program; choose another place",
+                path.display()
+            )));
+        }
         let is_same =
             |input: &&PathBuf| is_there && same_file::is_same_file(input, path).unwrap_or(false);
         match self.inputs.iter().find(is_same) {
@@ -94,7 +102,7 @@ impl Guard {
 
 fn is_another(path: &Path) -> Failure {
     Failure::Input(format!(
-        "{}: is there already, and not of the same run or report; choose another place with --out, or replace it with --force",
+        "{}: is there already, and not of the same run or report; choose another place, or replace it with --force",
         path.display()
     ))
 }
@@ -233,6 +241,20 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
         write(&path, "after").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"after");
+    }
+
+    #[test]
+    fn no_result_replaces_a_sketch() {
+        let folder = tempfile::tempdir().unwrap();
+        let guard = Guard::new(Vec::<PathBuf>::new(), true);
+        let mark = Mark::Text("rumbo run".into());
+        for name in ["a.ino", "motor.h", "a.elf"] {
+            let path = folder.path().join(name);
+            assert!(guard.check(&path, &mark).is_ok());
+            std::fs::write(&path, "void setup() {}").unwrap();
+            assert!(guard.check(&path, &mark).is_err(), "{name}");
+            assert!(guard.make_equal(&path, |_| Ok(())).is_err(), "{name}");
+        }
     }
 
     #[test]

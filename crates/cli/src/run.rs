@@ -10,6 +10,7 @@ use crate::place::{self, Guard};
 use crate::results::Results;
 use crate::run_log::{Kept, RunSource};
 use indicatif::{ProgressBar, ProgressStyle};
+use rumbo_control::params::ParamId;
 use rumbo_experiment::compare::median;
 use rumbo_experiment::files::{Library, Overrides, ScenarioFile, Setup, TimedText};
 use rumbo_experiment::run::{self, RunResult};
@@ -27,6 +28,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let setups: Vec<Setup> = args.scenarios.iter().map(setup).collect::<Result<_, _>>()?;
     setups.iter().try_for_each(sends_all)?;
     check_places(args, &setups)?;
+    note_in_vain(args, &setups);
     if let Some(folder) = &args.out {
         place::try_folder(folder)?;
     }
@@ -93,6 +95,28 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     match passed {
         true => Ok(()),
         false => Err(Failure::LimitMissed),
+    }
+}
+
+/// A program without our parameters would do the same with any.
+pub(crate) fn check_control<'a>(
+    mut names: impl Iterator<Item = &'a str>,
+    setup: &Setup,
+) -> Result<(), Failure> {
+    match names.find(|name| ParamId::from_name(name).is_some()) {
+        Some(name) if !setup.takes_parameters() => Err(Failure::Input(format!(
+            "{name}: is a parameter of Rumbo's control core, which does not drive here; choose one of the plant's (`rumbo list plant`)"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Says of a parameter of our program that another one drives.
+fn note_in_vain(args: &RunArgs, setups: &[Setup]) {
+    let names = || args.parameters.params.iter().map(|(name, _)| name.as_str());
+    let refused = |setup: &Setup| check_control(names(), setup).err();
+    if let Some(why) = setups.iter().find_map(refused) {
+        output::note(&format!("--param {why}"));
     }
 }
 

@@ -168,18 +168,15 @@ pub(crate) fn begin(
             true => begun.clone(),
             false => folder.join(file),
         };
-        if let Err(error) = std::fs::write(&path, bytes) {
-            // An empty folder would be in the way of the next attempt.
-            let _ = std::fs::remove_dir_all(folder);
-            return Err(place::unwritable(&path, &error));
-        }
+        std::fs::write(&path, bytes)
+            .map_err(|error| out_of_the_way(folder, place::unwritable(&path, &error)))?;
     }
     let robot = match Library::new().robot_with(|robot| robot.board == board) {
         Some(robot) if board != <&Board>::default() => Some(robot),
         _ => None,
     };
-    write_for_editors(folder, robot.as_deref())?;
-    let (file, folder) = (output::shown(&begun), output::shown(folder));
+    write_for_editors(folder, robot.as_deref()).map_err(|why| out_of_the_way(folder, why))?;
+    let (file, folder) = (output::shown(&begun), output::quoted(folder));
     // An example says in its first line how to drive it.
     let first = files.iter().find(|(file, _)| main.as_ref() == Some(file));
     let command = first.and_then(|(_, bytes)| {
@@ -196,6 +193,12 @@ pub(crate) fn begin(
         "{file}: `rumbo lab --scenario mode1{robot} --sketch {folder}` shows it drive, also while it is edited; \
          `rumbo run mode1{robot} --sketch {folder}` judges it, and the template does not take the second setpoint"
     ))
+}
+
+/// Removes the folder of a sketch that could not be begun: it would be in the way of the next attempt.
+fn out_of_the_way(folder: &Path, why: Failure) -> Failure {
+    let _ = std::fs::remove_dir_all(folder);
+    why
 }
 
 /// What VS Code needs, for a robot that is not the scenario's.

@@ -10,10 +10,9 @@ use crate::interrupt;
 use crate::mark::Mark;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
-use crate::run::{progress_bar, set_threads};
+use crate::run::{check_control, progress_bar, set_threads};
 use crate::run_log::{self, RunSource};
 use journal::{Header, Journal};
-use rumbo_control::params::ParamId;
 use rumbo_experiment::MODEL;
 use rumbo_experiment::files::{Library, Overrides, Setup};
 use rumbo_experiment::metrics::{bare, more_is_better};
@@ -129,19 +128,6 @@ fn plan(args: &SweepArgs, setup: &Setup) -> Result<SweepPlan, Failure> {
     plan.check(setup)?;
     check_control(args.axes.iter().map(|axis| axis.name.as_str()), setup)?;
     Ok(plan)
-}
-
-/// A program without our parameters would do the same with any.
-pub(crate) fn check_control<'a>(
-    mut names: impl Iterator<Item = &'a str>,
-    setup: &Setup,
-) -> Result<(), Failure> {
-    match names.find(|name| ParamId::from_name(name).is_some()) {
-        Some(name) if !setup.takes_parameters() => Err(Failure::Input(format!(
-            "{name}: is a parameter of Rumbo's control core, which does not drive here; choose one of the plant's (`rumbo list plant`)"
-        ))),
-        _ => Ok(()),
-    }
 }
 
 fn header(args: &SweepArgs, setup: &Setup, overrides: &Overrides, plan: &SweepPlan) -> Header {

@@ -49,7 +49,7 @@ pub(crate) fn tune(args: &TuneArgs) -> Result<(), Failure> {
     let asked = interrupt::asked();
     let is_asked = || asked.load(Ordering::Relaxed);
     let bar = progress_bar();
-    let outcome = plan.run(&|share| bar.set_position((100.0 * share) as u64), &|| {
+    let outcome = plan.run(&|share| bar.set_position((1_000.0 * share) as u64), &|| {
         !is_asked()
     });
     bar.finish_and_clear();
@@ -108,8 +108,9 @@ fn on_image(
 
 /// In hundredths of all runs.
 fn progress_bar() -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {pos} %, at most {eta} left");
-    ProgressBar::new(100).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    let style = ProgressStyle::with_template("{bar:40} {percent} %, at most {eta} left");
+    // By the permille: until it moves, the time left reads 0.
+    ProgressBar::new(1_000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
 /// The outcome, for programs and for the dashboard.

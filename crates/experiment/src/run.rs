@@ -28,6 +28,7 @@ use rumbo_sim::mega::Mega;
 use rumbo_sim::trace::{SAMPLE_US, Trace, TruthSample};
 use serde::Serialize;
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::ops::Deref;
@@ -370,7 +371,7 @@ pub fn check_metrics<'a>(
     let run = run(setup, seed)?;
     let known: Vec<&str> = run.metrics.keys().map(String::as_str).collect();
     let bare = known.iter().map(|name| metrics::bare(name));
-    let all: Vec<&str> = known.iter().copied().chain(bare).collect();
+    let all: BTreeSet<&str> = known.iter().copied().chain(bare).collect();
     match names.find(|name| !all.contains(name)) {
         Some(name) => Err(unknown("metric", name, all.iter().copied())),
         None => Ok(()),

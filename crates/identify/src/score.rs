@@ -9,6 +9,8 @@ use rumbo_plant::params::Params;
 use serde::Serialize;
 
 pub(crate) const RPM_PER_RAD_S: f64 = 30.0 / std::f64::consts::PI;
+/// Variance of a speed that never changes, but for rounding: none of it is to be explained [(rad/s)^2].
+const STEADY: f64 = 1e-9;
 
 /// Error of one wheel, or of both; rpm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -108,7 +110,7 @@ fn errors(pairs: &[Pair<'_>], choose: impl Fn(&LogRow) -> bool) -> Option<[Wheel
             .map(|(row, speed)| (row.speed_rad_s[i] - speed[i]).powi(2))
             .sum::<f64>()
             / n;
-        let r2 = if variance > 0.0 {
+        let r2 = if variance > STEADY {
             1.0 - square / variance
         } else {
             0.0
@@ -123,5 +125,27 @@ fn errors(pairs: &[Pair<'_>], choose: impl Fn(&LogRow) -> bool) -> Option<[Wheel
         None
     } else {
         Some([wheel(0), wheel(1)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row::Window;
+
+    #[test]
+    fn of_a_speed_that_never_changes_nothing_is_explained() {
+        let row = LogRow {
+            at_ms: 0,
+            duty: [0.5; 2],
+            reference_rad_s: [0.0; 2],
+            speed_rad_s: [10.1; 2],
+            range_m: [0.0; 2],
+            window: [Window::default(); 2],
+            edgeless: [false; 2],
+        };
+        let pairs: Vec<Pair<'_>> = (0..199).map(|_| (&row, [8.0; 2])).collect();
+        let [left, right] = errors(&pairs, |_| true).unwrap();
+        assert_eq!([left.r2, right.r2], [0.0; 2]);
     }
 }

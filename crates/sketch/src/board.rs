@@ -1,5 +1,7 @@
 //! The boards that sketches are compiled for, as the core's `boards.txt` describes them.
 
+use crate::diagnostics::Diagnostic;
+
 /// A board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
@@ -31,6 +33,18 @@ pub const BOARDS: [Board; 3] = [
 ];
 
 impl Board {
+    /// An error with what it means on this board, where that is not what it says.
+    pub(crate) fn explained(&self, mut error: Diagnostic) -> Diagnostic {
+        let ports = ["'Serial1'", "'Serial2'", "'Serial3'"];
+        if self.variant != "mega" && ports.iter().any(|port| error.text.starts_with(port)) {
+            let board = self.name;
+            error.notes.push(format!(
+                "it is compiled for the robot's board, `{board}`, which has Serial alone; a Mega has Serial1 to Serial3"
+            ));
+        }
+        error
+    }
+
     /// The board of this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Board> {

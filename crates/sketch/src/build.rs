@@ -275,7 +275,7 @@ impl<'a> Build<'a> {
         let errors = self.complaints.iter();
         let errors: Vec<Diagnostic> = errors
             .filter(|one| one.severity == Severity::Error)
-            .cloned()
+            .map(|one| self.board.explained(one.clone()))
             .collect();
         match errors.is_empty() {
             true => Ok(()),

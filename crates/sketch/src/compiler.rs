@@ -138,10 +138,13 @@ impl Compiler {
         sandbox: Sandbox,
         cache: PathBuf,
     ) -> Result<Self, SketchError> {
-        fs::create_dir_all(&cache).map_err(|error| SketchError::file(&cache, error))?;
-        let cache = cache
-            .canonicalize()
-            .map_err(|error| SketchError::file(&cache, error))?;
+        let unkept = |error: std::io::Error| {
+            let what = "compiled sketches cannot be kept there";
+            let remedy = format!("name another folder in the environment's {CACHE}");
+            SketchError::file(&cache, format!("{what} ({error}); {remedy}"))
+        };
+        fs::create_dir_all(&cache).map_err(unkept)?;
+        let cache = cache.canonicalize().map_err(unkept)?;
         let mut compiler = Self {
             board,
             options,

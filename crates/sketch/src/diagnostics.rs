@@ -120,7 +120,12 @@ fn complaint(line: &str) -> Option<Diagnostic> {
     let name = quoted(name);
     let name = name.as_str();
     let text = match name {
-        "setup" | "loop" => format!("the sketch has no function `void {name}()`"),
+        // It is the core that calls them, from a file that nobody has to see.
+        "setup" | "loop" => {
+            let text =
+                format!("the sketch has no function `void {name}()`; write one, if an empty one");
+            return Some(at("", Severity::Error, text));
+        }
         _ => format!("`{name}` is declared and used, but defined nowhere"),
     };
     Some(at(place, Severity::Error, text))
@@ -256,8 +261,10 @@ mod tests {
              <artificial>:(.text.startup+0x1e): undefined reference to `drive(int)'\n\
              collect2: error: ld returned 1 exit status\n",
         );
-        assert_eq!(found[0].text, "the sketch has no function `void loop()`");
-        assert_eq!(found[0].line, Some(46));
+        assert_eq!(
+            found[0].to_string(),
+            "error: the sketch has no function `void loop()`; write one, if an empty one"
+        );
         assert_eq!(
             found[1].text,
             "`drive(int)` is declared and used, but defined nowhere"

@@ -37,5 +37,5 @@ pub use compiler::{Compiler, EXAMPLE, Image, cache, image_of, image_to_debug};
 pub use diagnostics::{Diagnostic, Severity};
 pub use error::SketchError;
 pub use examples::{example, examples, starter};
-pub use source::{Given, Source, given};
+pub use source::{Given, Source, given, is_program};
 pub use toolchain::Toolchain;

@@ -255,7 +255,21 @@ fn read(path: &Path, name: &str, left: &mut u64) -> Result<Vec<u8>, SketchError>
             MOST_BYTES >> 20
         ))
     })?;
+    // Headers of other programs may be; they lie there and are not included.
+    let is_utf_16 = bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]);
+    if is_utf_16 && matches!(ending(path), Some("ino" | "pde")) {
+        return Err(SketchError::Refused(format!(
+            "{}: is text in UTF-16, which no compiler reads; save it as UTF-8",
+            name.escape_debug()
+        )));
+    }
     Ok(bytes)
+}
+
+/// Whether a file is, by its ending, one that a sketch is made of, or an image.
+#[must_use]
+pub fn is_program(path: &Path) -> bool {
+    ending(path).is_some_and(|own| KINDS.contains(&own) || ["elf", "hex"].contains(&own))
 }
 
 /// The ending of a file's name.
@@ -311,6 +325,16 @@ mod tests {
         ]);
         let expected = ["lib/A/A.h", "src/main.cpp"];
         assert_eq!(names(&given(folder.path(), true).unwrap()), expected);
+    }
+
+    #[test]
+    fn a_sketch_in_utf_16_is_refused_and_a_header_in_it_is_not_looked_at() {
+        let folder = folder(&[("a.ino", "")]);
+        fs::write(folder.path().join("resource.h"), b"\xFF\xFE/\0").unwrap();
+        assert!(given(folder.path(), true).is_ok());
+        fs::write(folder.path().join("a.ino"), b"\xFF\xFE/\0").unwrap();
+        let refused = given(folder.path(), true).unwrap_err().to_string();
+        assert!(refused.contains("save it as UTF-8"), "{refused}");
     }
 
     #[test]

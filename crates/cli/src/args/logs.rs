@@ -94,10 +94,10 @@ pub(crate) struct ExportArgs {
     /// Signals of the figure instead of the usual ones, with commas between them; each unit gets a panel
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) signals: Vec<String>,
-    /// Only from this time on \[s\]; not of a bag
+    /// Only from this time on, in seconds; not of a bag
     #[arg(long = "from", value_name = "S", conflicts_with = "ros2bag")]
     pub(crate) from_s: Option<f64>,
-    /// Only up to this time \[s\]; not of a bag
+    /// Only up to this time, in seconds; not of a bag
     #[arg(long = "to", value_name = "S", conflicts_with = "ros2bag")]
     pub(crate) to_s: Option<f64>,
     /// A bag of ROS 2 instead, or besides: odometry, transforms, sonars, map, joints, battery, diagnostics, events
@@ -125,10 +125,10 @@ pub(crate) struct ExplainArgs {
     /// The log
     #[arg(value_name = "LOG")]
     pub(crate) log: PathBuf,
-    /// From this time on \[s\] [default: the begin]
+    /// From this time on, in seconds [default: the beginning]
     #[arg(long = "from", value_name = "S")]
     pub(crate) from_s: Option<f64>,
-    /// Up to this time \[s\] [default: the end]
+    /// Up to this time, in seconds [default: the end]
     #[arg(long = "to", value_name = "S")]
     pub(crate) to_s: Option<f64>,
     /// As JSON on stdout

@@ -92,7 +92,7 @@ pub(crate) enum Command {
     Prune(PruneArgs),
     /// Begin a sketch that drives to a wall, or the file of a robot of your own
     New(NewArgs),
-    /// List modes, scenarios, worlds, rigs, robots and parameters
+    /// List modes, scenarios, worlds, rigs, robots, sketches and parameters; ports and logs of this computer
     List(ListArgs),
     /// Print a script with which a shell completes the words of `rumbo`
     Completions(CompletionsArgs),
@@ -306,7 +306,11 @@ fn with_negatives(command: clap::Command) -> clap::Command {
 
 /// What the parser of numbers and addresses says of a value, as people say it.
 fn in_words(message: String) -> String {
-    const WORDS: [(&str, &str); 3] = [
+    const WORDS: [(&str, &str); 4] = [
+        (
+            "invalid float literal",
+            "must be a number, with a point before decimals, e.g. 1.5",
+        ),
         (
             "invalid digit found in string",
             "must be a whole number from 0 on",

@@ -1,7 +1,7 @@
 //! Options of the commands that run experiments and fit numbers: `run`, `experiments`, `identify`, `calibrate`.
 
 use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, ProgramName, SeedArgs, SettingArgs};
-use super::values::{line_ending, press, put, timed_text, usb_text};
+use super::values::{at_rest, line_ending, press, put, timed_text, usb_text};
 use clap::{Args, ValueEnum};
 use rumbo_experiment::files::TimedText;
 use rumbo_wire::LineEnding;
@@ -54,7 +54,7 @@ pub(crate) struct RunArgs {
     pub(crate) program: ProgramName,
     #[command(flatten)]
     pub(crate) image: ImageArgs,
-    /// Line of text sent over the link at a time, e.g. 'REF 40@6'; \\x05 in it is that byte; may be repeated
+    /// Line of text sent over the link at a time, e.g. 'REF 40@6'; \x05 in it is that byte; may be repeated
     #[arg(long = "command", value_name = "TEXT@SECONDS", value_parser = timed_text, conflicts_with = "program")]
     pub(crate) commands: Vec<TimedText>,
     /// Line of text typed on the board's USB port (Serial) at a time, e.g. 'go@2'; may be repeated
@@ -155,8 +155,9 @@ Examples:
   rumbo grade assignment.toml my_sketch
   rumbo grade assignment.toml --gradescope autograder.zip
 
-Each folder or file in FOLDER is a hand-in: a sketch, an .ino, an .elf or a .hex. FOLDER may itself be the only one. Sketches are
-compiled in a sandbox (bwrap): no network, no files but their own, bounded time and memory.
+Each folder or file in FOLDER is a hand-in: a sketch, an .ino, an .elf, a .hex, or a .zip of these. FOLDER may itself be the only
+one, or the archive of a class from Moodle or Canvas. Sketches are compiled in a sandbox (bwrap): no network, no files but their
+own, bounded time and memory.
 
 In DIR: index.html, the class; students/NAME.html; marks.csv; junit.xml; gradescope/NAME.json. The same hand-ins give the same bytes.
 
@@ -165,7 +166,7 @@ pub(crate) struct GradeArgs {
     /// The assignment's file
     #[arg(value_name = "ASSIGNMENT.toml")]
     pub(crate) assignment: PathBuf,
-    /// Folder with the hand-ins, or one hand-in
+    /// Folder or .zip with the hand-ins, or one hand-in
     #[arg(value_name = "FOLDER", required_unless_present_any = ["gradescope", "autograder"])]
     pub(crate) folder: Option<PathBuf>,
     /// Grade nothing; write the autograder to upload to Gradescope
@@ -270,12 +271,13 @@ pub(crate) struct IdentifyArgs {
     #[arg(
         long,
         value_name = "VOLTS",
+        value_parser = at_rest,
         requires = "drive",
         conflicts_with = "check"
     )]
     pub(crate) battery: Option<f64>,
-    /// Speed of the port [baud]
-    #[arg(long, value_name = "BAUD", default_value_t = rumbo_session::DEFAULT_BAUD)]
+    /// Speed of the serial port; the robot's is 9600
+    #[arg(long, value_name = "N", default_value_t = rumbo_session::DEFAULT_BAUD)]
     pub(crate) baud: u32,
     /// Folder for the log of the drive [default: that of sessions]
     #[arg(long, value_name = "DIR", requires = "drive", conflicts_with = "check")]

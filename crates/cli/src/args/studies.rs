@@ -106,7 +106,7 @@ pub(crate) struct TuneArgs {
     pub(crate) over: Vec<Over>,
     #[command(flatten)]
     pub(crate) seed: SeedArgs,
-    /// Most runs of the search [default: 500,000 s of driving]
+    /// Runs of the search, or some more; 2000 at least [default: 500,000 s of driving]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub(crate) runs: Option<u32>,
     /// Runs with seeds that the search has not seen

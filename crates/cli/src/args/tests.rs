@@ -10,6 +10,17 @@ fn the_version_is_that_of_the_rumbo_command() {
 }
 
 #[test]
+fn no_mark_of_the_source_is_in_the_help() {
+    let mut command = Cli::command();
+    for subcommand in command.get_subcommands_mut() {
+        let help = subcommand.render_long_help().to_string();
+        for mark in ["\\[", "\\]", "\\\\"] {
+            assert!(!help.contains(mark), "{}: {mark}", subcommand.get_name());
+        }
+    }
+}
+
+#[test]
 fn every_example_of_the_help_is_a_valid_command() {
     let mut command = Cli::command();
     let helps: Vec<String> = command

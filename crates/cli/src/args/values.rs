@@ -74,6 +74,15 @@ pub(super) fn battery(text: &str) -> Result<f64, &'static str> {
     volts.ok_or("must be 5.6 to 12 V")
 }
 
+/// The voltage of a battery at rest, as the plant can have it.
+pub(super) fn at_rest(text: &str) -> Result<f64, &'static str> {
+    let volts = text
+        .parse()
+        .ok()
+        .filter(|volts| (5.0..=13.0).contains(volts));
+    volts.ok_or("must be 5 to 13 V, e.g. 7.62")
+}
+
 /// How many wheels a robot has.
 pub(super) fn wheels(text: &str) -> Result<u8, &'static str> {
     match text {

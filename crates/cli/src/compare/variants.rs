@@ -8,9 +8,8 @@ use crate::interrupt;
 use crate::mark::Mark;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
-use crate::run::{progress_bar, set_threads};
+use crate::run::{check_control, progress_bar, set_threads};
 use crate::sketch;
-use crate::sweep::check_control;
 use rumbo_control::params::ParamId;
 use rumbo_experiment::compare::{Difference, Variant, differences, run_variants};
 use rumbo_experiment::files::{
@@ -134,6 +133,16 @@ fn overrides(scenario: &str, text: &str) -> Result<Overrides, Failure> {
                 overrides.parameters.push((name.to_owned(), number));
             }
         }
+    }
+    let programs = [
+        sketch.is_some(),
+        overrides.firmware.is_some(),
+        overrides.program != NativeProgram::Rumbo,
+    ];
+    if programs.into_iter().filter(|is_one| *is_one).count() > 1 {
+        return Err(Failure::Input(format!(
+            "--with {text}: one program drives; give program, firmware or sketch"
+        )));
     }
     if let Some(sketch) = sketch {
         let board = crate::args::board(overrides.robot.as_deref(), Some(scenario))?;

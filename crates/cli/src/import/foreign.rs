@@ -3,7 +3,7 @@
 use super::columns::{Taken, taken};
 use super::guess::{self, Guess};
 use super::made::{Made, Samples, Signals, rows};
-use super::table::{self, Table};
+use super::table::{self, Table, Unread};
 use crate::args::ImportArgs;
 use crate::column_names::Role;
 use crate::failure::Failure;
@@ -25,6 +25,7 @@ struct Held {
     series: Vec<Series>,
     /// The samples have their times; else the numbers of their rows.
     timed: bool,
+    unread: Unread,
 }
 
 /// Imports a bag or a log of another program: its types say what is what.
@@ -51,6 +52,7 @@ pub(super) fn import_bag(
     let held = Held {
         series,
         timed: true,
+        unread: Unread::default(),
     };
     let asked = match args.columns.is_empty() {
         true => &["auto".to_owned()][..],
@@ -70,14 +72,22 @@ pub(super) fn import_table(
         columns,
         rows,
         left_out,
+        unread,
     }) = table::read(&args.file, text)?
     else {
-        return Ok(false);
+        return match args.columns.is_empty() {
+            true => Ok(false),
+            false => Err(Failure::Input(format!(
+                "{}: is no table: it needs two rows, and most of them with a number and as many cells as the header",
+                args.file.display()
+            ))),
+        };
     };
     left_out.report(&args.file);
     let held = Held {
         series: columns,
         timed: false,
+        unread,
     };
     match args.columns.is_empty() {
         true => held.preview(args, rows)?,
@@ -137,6 +147,8 @@ impl Held {
         ];
         for (index, column) in self.series.iter().enumerate() {
             let values = || column.samples.iter().map(|(_, value)| *value);
+            // A sonar that never heard anything has no values.
+            let figure_of = |value: Option<f64>| value.map_or_else(String::new, figure);
             let is = of(index).map_or_else(String::new, |guess| {
                 let doubt = if guess.is_sure { "" } else { " ?" };
                 format!("{}{doubt}", guess.name)
@@ -144,9 +156,9 @@ impl Held {
             table.push(vec![
                 (index + 1).to_string(),
                 column.name.clone(),
-                values().next().map_or_else(String::new, figure),
-                figure(values().fold(f64::INFINITY, f64::min)),
-                figure(values().fold(f64::NEG_INFINITY, f64::max)),
+                figure_of(values().next()),
+                figure_of(values().reduce(f64::min)),
+                figure_of(values().reduce(f64::max)),
                 is,
             ]);
         }
@@ -176,10 +188,23 @@ impl Held {
         guard.make_equal(out, |place| {
             std::fs::write(place, &log).map_err(|error| place::unwritable(out, &error))
         })?;
-        for note in &made.notes {
+        for note in made.notes.iter().chain(&self.notes_on(&taken)) {
             output::note(&format!("{shown}: {note}"));
         }
         made.sum_up(out, &taken, &self.series, args.json)
+    }
+
+    /// What of the columns that were named could not be read.
+    fn notes_on(&self, taken: &[Taken]) -> Vec<String> {
+        let columns = taken.iter().filter_map(|one| self.series.get(one.column?));
+        let notes = columns.filter_map(|Series { name, .. }| {
+            let (count, first) = self.unread.get(name)?;
+            let values = output::counted(*count, "value");
+            Some(format!(
+                "{name}: {values} left out, the first is `{first}`, no number"
+            ))
+        });
+        notes.collect()
     }
 
     /// Times of all samples \[s\], and what is taken of them.
@@ -214,7 +239,7 @@ impl Held {
         let others = series
             .iter()
             .enumerate()
-            .filter(|(index, _)| !is_taken(*index));
+            .filter(|(index, column)| !is_taken(*index) && !column.samples.is_empty());
         let others: Vec<&Series> = others.map(|(_, column)| column).collect();
         if others.len() > MOST_NUMBERS {
             notes.push(format!(
@@ -363,15 +388,7 @@ fn command(file: &Path, guesses: &[Guess], series: &[Series]) -> String {
     let columns: Vec<String> = period.into_iter().chain(columns).collect();
     format!(
         "rumbo import {} --columns '{}'",
-        quoted(file),
+        output::quoted(file),
         columns.join(",")
     )
-}
-
-fn quoted(file: &Path) -> String {
-    let shown = file.display().to_string();
-    match shown.contains([' ', '\'', '(', ')', '&', ';']) {
-        true => format!("'{}'", shown.replace('\'', "'\\''")),
-        false => shown,
-    }
 }

@@ -125,7 +125,7 @@ impl Made {
                 open.join(",")
             ))?;
         }
-        let log = out.display();
+        let log = output::quoted(out);
         let next = match missing.is_empty() {
             true => format!("`rumbo identify {log} --robot ROBOT` fits a robot to it"),
             false => format!("for `rumbo identify` it lacks {}", missing.join(", ")),

@@ -6,6 +6,8 @@ use crate::failure::Failure;
 use crate::left_out::LeftOut;
 use rumbo_ros::recorded::Series;
 use rumbo_session::plotter_row;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 
 /// The column of the Serial Monitor's times of day.
@@ -14,6 +16,8 @@ pub(crate) const CLOCK: &str = "clock";
 const MOST_COLUMNS: usize = 256;
 /// Values of a table.
 const MOST_VALUES: usize = 20_000_000;
+/// Characters shown of a cell that is no number.
+const LONGEST_CELL: usize = 24;
 const DAY_S: f64 = 86_400.0;
 
 /// A table, by columns.
@@ -22,13 +26,18 @@ pub(crate) struct Table {
     pub(crate) columns: Vec<Series>,
     pub(crate) rows: usize,
     pub(crate) left_out: LeftOut,
+    pub(crate) unread: Unread,
 }
+
+/// Cells that are no numbers: of each column how many, and the first.
+pub(crate) type Unread = BTreeMap<String, (usize, String)>;
 
 /// Reads a table whose cells commas part, or blanks where it has no commas; `None` if most of it is none.
 ///
 /// # Errors
 /// A larger table than is read.
 pub(crate) fn read(path: &Path, text: &str) -> Result<Option<Table>, Failure> {
+    let text = without_comments(text);
     let lines = || {
         let lines = (1..).zip(text.lines());
         lines.filter(|(_, line)| !line.trim().is_empty())
@@ -66,7 +75,7 @@ pub(crate) fn read(path: &Path, text: &str) -> Result<Option<Table>, Failure> {
             .iter()
             .any(|cell| value(cell).is_none() && !cell.is_empty());
         let names: Vec<String> = match is_header {
-            true => header.iter().map(|cell| (*cell).to_owned()).collect(),
+            true => distinct(&header, has_clock),
             false => (1..=header.len()).map(|at| format!("value_{at}")).collect(),
         };
         if names.len() < 2 && !has_clock {
@@ -74,18 +83,53 @@ pub(crate) fn read(path: &Path, text: &str) -> Result<Option<Table>, Failure> {
         }
         table.order(&names, has_clock);
         for (number, line) in lines().skip(usize::from(is_header)) {
-            let row = cells(without_stamp(line));
-            if row.len() != names.len() || row.iter().all(|cell| value(cell).is_none()) {
-                let what = format!("{} values in a row of {} columns", row.len(), names.len());
-                table.left_out.row(number, what);
-                continue;
-            }
-            let row = names.iter().zip(row);
-            let row = row.filter_map(|(name, cell)| Some((name.clone(), value(cell)?)));
-            table.push(stamp(line), row.collect());
+            table.push_cells(number, &names, line);
         }
     }
     table.finish(path)
+}
+
+/// Lines with # before a table are blank here, but for the last if it names the columns, as NumPy writes it.
+fn without_comments(text: &str) -> Cow<'_, str> {
+    let is_comment = |line: &&str| line.trim_start().starts_with('#');
+    let count = text.lines().take_while(is_comment).count();
+    let last = text.lines().take(count).last();
+    let (Some(last), Some(first)) = (last, text.lines().nth(count)) else {
+        return Cow::Borrowed(text);
+    };
+    let names = last.trim_start().trim_start_matches('#').trim();
+    let row = cells(first);
+    let are_names = cells(names).len() == row.len() && row.iter().all(|cell| value(cell).is_some());
+    let header = if are_names { names } else { "" };
+    let comments = text.split_inclusive('\n').take(count);
+    let rest = &text[comments.map(str::len).sum::<usize>()..];
+    // The lines keep their numbers.
+    Cow::Owned(format!("{}{header}\n{rest}", "\n".repeat(count - 1)))
+}
+
+/// The names of a header, each once: the second `rpm` is `rpm_2`. Columns of one name would be taken for one.
+fn distinct(header: &[&str], has_clock: bool) -> Vec<String> {
+    let written: HashSet<&str> = header.iter().copied().collect();
+    let mut seen: HashMap<&str, usize> = HashMap::new();
+    if has_clock {
+        seen.insert(CLOCK, 1);
+    }
+    let mut names = Vec::with_capacity(header.len());
+    for &cell in header {
+        let count = seen.entry(cell).or_default();
+        *count += 1;
+        let mut name = cell.to_owned();
+        // `rpm_2` may be the name of a third one.
+        while *count > 1 {
+            name = format!("{cell}_{count}");
+            if !written.contains(name.as_str()) {
+                break;
+            }
+            *count += 1;
+        }
+        names.push(name);
+    }
+    names
 }
 
 #[derive(Default)]
@@ -96,9 +140,36 @@ struct Builder {
     /// Since midnight of the first day, the last one \[s\].
     clock_s: Option<f64>,
     left_out: LeftOut,
+    unread: Unread,
 }
 
 impl Builder {
+    /// A line below a header; one with more or fewer cells, or without any number, is left out.
+    fn push_cells(&mut self, number: usize, names: &[String], line: &str) {
+        let row = cells(without_stamp(line));
+        let values: Vec<Option<f64>> = row.iter().map(|cell| value(cell)).collect();
+        if row.len() != names.len() {
+            let what = format!("{} values in a row of {} columns", row.len(), names.len());
+            self.left_out.row(number, what);
+            return;
+        }
+        if values.iter().all(Option::is_none) {
+            self.left_out.row(number, "has no number".into());
+            return;
+        }
+        for ((name, cell), value) in names.iter().zip(row).zip(&values) {
+            if value.is_none() && !cell.is_empty() {
+                let unread = self.unread.entry(name.clone());
+                let (count, _) =
+                    unread.or_insert_with(|| (0, cell.chars().take(LONGEST_CELL).collect()));
+                *count += 1;
+            }
+        }
+        let row = names.iter().zip(values);
+        let row = row.filter_map(|(name, value)| Some((name.clone(), value?)));
+        self.push(stamp(line), row.collect());
+    }
+
     fn order(&mut self, names: &[String], has_clock: bool) {
         let clock = has_clock.then(|| CLOCK.to_owned());
         for name in clock.iter().chain(names) {
@@ -159,6 +230,7 @@ impl Builder {
             columns: self.columns,
             rows: self.rows,
             left_out: self.left_out,
+            unread: self.unread,
         }))
     }
 }
@@ -195,5 +267,37 @@ fn without_stamp(line: &str) -> &str {
     match (stamp(line), line.split_once("->")) {
         (Some(_), Some((_, rest))) => rest.trim(),
         _ => line.trim(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{distinct, without_comments};
+
+    #[test]
+    fn comments_before_a_table_are_no_rows_and_may_name_its_columns() {
+        for (text, without) in [
+            ("# by me\n# t v\n0 1\n2 3\n", "\nt v\n0 1\n2 3\n"),
+            ("# by me\nt,v\n0,1\n", "\nt,v\n0,1\n"),
+            ("t,v\n0,1\n", "t,v\n0,1\n"),
+            ("# nothing else", "# nothing else"),
+        ] {
+            assert_eq!(without_comments(text), without);
+        }
+    }
+
+    #[test]
+    fn columns_of_one_name_stay_apart() {
+        for (header, has_clock, names) in [
+            (
+                vec!["t", "rpm", "rpm", "rpm"],
+                false,
+                vec!["t", "rpm", "rpm_2", "rpm_3"],
+            ),
+            (vec!["a", "a", "a_2"], false, vec!["a", "a_3", "a_2"]),
+            (vec!["clock", "a"], true, vec!["clock_2", "a"]),
+        ] {
+            assert_eq!(distinct(&header, has_clock), names);
+        }
     }
 }

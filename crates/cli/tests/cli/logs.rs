@@ -263,6 +263,10 @@ fn a_figure_has_the_signals_and_the_time_that_were_asked_for() {
             text(&refused.stderr)
         );
     }
+    let explained = rumbo(&["explain", "mode5-1.mcap", "--from", "1e4"], folder.path());
+    let said = text(&explained.stderr);
+    assert_eq!(explained.status.code(), Some(2));
+    assert!(said.contains("nothing from 10000 s to its end"), "{said}");
 }
 
 #[test]

@@ -151,6 +151,10 @@ fn a_sweep_without_sense_is_refused_and_nothing_is_written() {
         let said = stderr(&refused);
         assert!(said.contains(why), "{said}");
     }
+    let begin = ["sweep", "mode5", "kv=0.01,0.02", "--out", &text];
+    let unknown = rumbo(&[&begin[..], &["--by", "zzz"]].concat());
+    let said = stderr(&unknown);
+    assert_eq!(said.matches("`rms_rad_s`").count(), 1, "{said}");
     assert!(!folder.exists());
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("index.html"), "mine").unwrap();
@@ -284,6 +288,10 @@ fn wrong_variants_are_refused() {
             &["mode1", "--with", "program=baseline,front_kp=5"],
             "does not drive here",
         ),
+        (
+            &["mode1", "--with", "sketch=mine,firmware=mine.elf"],
+            "one program drives",
+        ),
     ] {
         let refused = rumbo(&[&["compare"][..], arguments].concat());
         assert_eq!(refused.status.code(), Some(2), "{arguments:?}");
@@ -355,6 +363,14 @@ fn a_tuning_without_sense_is_refused() {
         (
             &["--over", "front_kp", "--for", "settling_s < x"],
             "its limit is not a number",
+        ),
+        (
+            &["--over", "front_kp", "--for", "settling_s < 1,5"],
+            "`5`: write metrics and limits",
+        ),
+        (
+            &["--over", "battery.open_circuit_v"],
+            "is a number of the plant",
         ),
         (&["--over", "front_kp", "--runs", "5"], "at least 2000 runs"),
     ] {

@@ -110,11 +110,14 @@ fn rig(
     overrides: &Overrides,
     whose: &str,
 ) -> Result<Mounts, FileError> {
-    // A robot of one's own in a scenario for another has its own sonars.
+    // A robot of one's own in a scenario for another has its own sonars; of several rigs the first where nothing is
+    // asked of the robot.
+    let is_own = overrides.robot.is_some();
+    let is_free = is_own && scenario.commands.is_empty() && scenario.limits.is_empty();
     if overrides.rig.is_none()
-        && (scenario.rig.is_empty() || overrides.robot.is_some())
+        && (scenario.rig.is_empty() || is_own)
         && !robot.rigs.contains_key(&scenario.rig)
-        && robot.rigs.len() < 2
+        && (robot.rigs.len() < 2 || is_free)
     {
         scenario.rig = robot.rigs.keys().next().cloned().unwrap_or_default();
     }

@@ -25,11 +25,21 @@ pub fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The same for a text.
+/// The same for a text: UTF-8, or UTF-16 with its mark, as Windows' PowerShell redirects what a command prints.
 ///
 /// # Errors
-/// As [`read_at_most`], or that it is not UTF-8.
+/// As [`read_at_most`], or that it is neither.
 pub fn read_text(path: &Path) -> Result<String> {
     let bytes = read_at_most(path, LONGEST_TEXT)?;
-    String::from_utf8(bytes).map_err(|_| Error::new(ErrorKind::InvalidData, "no text in UTF-8"))
+    let wide = |unit: fn([u8; 2]) -> u16| {
+        let units = bytes[2..].chunks_exact(2);
+        let units: Vec<u16> = units.map(|pair| unit([pair[0], pair[1]])).collect();
+        String::from_utf16(&units).ok()
+    };
+    let text = match bytes.get(..2) {
+        Some([0xFF, 0xFE]) => wide(u16::from_le_bytes),
+        Some([0xFE, 0xFF]) => wide(u16::from_be_bytes),
+        _ => str::from_utf8(&bytes).ok().map(str::to_owned),
+    };
+    text.ok_or_else(|| Error::new(ErrorKind::InvalidData, "neither UTF-8 nor UTF-16"))
 }

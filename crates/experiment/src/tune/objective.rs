@@ -57,7 +57,8 @@ impl std::str::FromStr for Objective {
                 !name.is_empty() && name.chars().all(is_part)
             };
             let Some(at) = part.find(['<', '>']) else {
-                if !is_name(part) {
+                // Of `settling_s < 1,5` the comma made it a part.
+                if !is_name(part) || part.parse::<f64>().is_ok() {
                     return Err(ObjectiveError::Part(part.to_owned()));
                 }
                 objective.aims.push(part.to_owned());

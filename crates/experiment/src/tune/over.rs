@@ -4,6 +4,7 @@ use crate::files::parameters::exact;
 use crate::files::{FileError, ScenarioFile, Setup, unknown};
 use crate::sweep::Axis;
 use rumbo_control::params::{ParamId, ParamKind};
+use rumbo_plant::params::Params;
 
 /// What to search over: names, or axes `NAME=FROM:TO`.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,11 @@ impl std::str::FromStr for Over {
     fn from_str(text: &str) -> Result<Self, FileError> {
         let name = text.split_once('=').map_or(text, |(name, _)| name).trim();
         let Some(id) = ParamId::from_name(name) else {
+            if Params::limits().iter().any(|limit| limit.key == name) {
+                return Err(FileError::Setting(format!(
+                    "{name}: is a number of the plant, which no program changes; `rumbo sweep` shows what it does"
+                )));
+            }
             let known = ParamId::ALL.map(ParamId::name);
             return Err(unknown("parameter of the control core", name, known));
         };

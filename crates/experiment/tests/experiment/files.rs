@@ -634,6 +634,28 @@ fn a_rig_of_the_scenario_that_the_robot_lacks_is_said_with_both() {
 }
 
 #[test]
+fn a_file_that_powershell_redirected_is_read() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("utf16.toml");
+    let units = [0xFEFF].into_iter().chain(SCENARIO.encode_utf16());
+    let bytes: Vec<u8> = units.flat_map(u16::to_le_bytes).collect();
+    std::fs::write(&path, bytes).unwrap();
+    Library::new().scenario(path.to_str().unwrap()).unwrap();
+}
+
+#[test]
+fn every_robot_stands_in_a_scenario_that_asks_nothing_of_it() {
+    let library = Library::new();
+    for robot in library.list(Kind::Robot) {
+        let overrides = Overrides {
+            robot: Some(robot.clone()),
+            ..Overrides::default()
+        };
+        let setup = library.setup("free", &overrides);
+        assert!(setup.is_ok(), "{robot}: {:?}", setup.err());
+    }
+}
+
+#[test]
 fn a_sonar_that_the_rig_lacks_cannot_fail() {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_sonar.toml");
     let setup = |text: String| {

@@ -54,6 +54,19 @@ fn every_example_compiles_and_is_fresh_the_second_time() {
 }
 
 #[test]
+fn a_cache_that_cannot_be_made_is_said_with_the_way_to_another() {
+    let Ok(toolchain) = Toolchain::find() else {
+        return;
+    };
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let sandbox = Sandbox::trusting(Limits::default());
+    let below = file.path().join("sketches");
+    let refused = Compiler::new(BOARDS[0], toolchain, sandbox, below);
+    let Err(error) = refused else { panic!("made") };
+    assert!(error.to_string().contains("RUMBO_CACHE"), "{error}");
+}
+
+#[test]
 fn the_library_and_a_servo_are_there_on_every_board() {
     let both = "#include <RumboRobot.h>\nRumboRobot robot;\nServo other;\n\
                 void setup() { robot.begin(); robot.look(90); other.attach(11); }\nvoid loop() { robot.update(); }\n";
@@ -74,7 +87,12 @@ fn the_library_and_a_servo_are_there_on_every_board() {
             "void setup() { Serial1.begin(9600); }\nvoid loop() { }\n",
         )],
     );
-    assert!(refused(&compiler, &second).contains("'Serial1' was not declared"));
+    let said = refused(&compiler, &second);
+    assert!(
+        said.contains("'Serial1' was not declared")
+            && said.contains("`uno`, which has Serial alone"),
+        "{said}"
+    );
 }
 
 #[test]

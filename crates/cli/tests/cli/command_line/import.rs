@@ -72,7 +72,11 @@ fn a_csv_that_a_spanish_spreadsheet_saved_is_imported_and_another_log_of_its_nam
     assert!(import("plain.csv", RECORDING).status.success());
     let other = import("plain.csv", &RECORDING.replace(",5,", ",6,"));
     assert_eq!(other.status.code(), Some(2));
-    assert!(stderr(&other).contains("--out"), "{}", stderr(&other));
+    assert!(
+        stderr(&other).contains("another place"),
+        "{}",
+        stderr(&other)
+    );
 }
 
 #[test]
@@ -255,6 +259,53 @@ fn a_table_of_another_program_is_shown_with_the_command_that_imports_it() {
 }
 
 #[test]
+fn a_table_that_shares_some_names_with_the_original_s_is_one_of_another_program() {
+    let table = b"t_s,x_m,y_m,heading_deg,state\n0,0,0,0,1\n1,0.1,0,0,1\n2,0.2,0,5,1\n";
+    let import = Import::of("table.csv", table);
+    let said = stdout(&import.run(&["import", "table.csv"]));
+    assert!(
+        said.contains("t_s=t_s,x_m=x_m,y_m=y_m,heading_deg=heading_deg"),
+        "{said}"
+    );
+}
+
+#[test]
+fn two_columns_of_one_name_are_two() {
+    let table = b"millis,rpm,rpm,pwm,pwm\n0,10,20,100,110\n20,10,20,100,110\n40,10,20,100,110\n";
+    let import = Import::of("table.csv", table);
+    let columns = "t_ms=millis,left_rpm=rpm,right_rpm=rpm_2,left_pwm=#4,right_pwm=#5";
+    let output = import.run(&["import", "table.csv", "--columns", columns]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let last = import.exported("table.mcap").pop().unwrap();
+    assert!(
+        (2.0 * last["left_rad_s"] - last["right_rad_s"]).abs() < 1e-3,
+        "{last:?}"
+    );
+    assert_eq!([last["left_pwm"], last["right_pwm"]], [100.0, 110.0]);
+}
+
+#[test]
+fn a_column_without_values_has_no_least_and_no_largest() {
+    let import = Import::of("table.csv", b"millis,range_left_m\n0,\n20,\n40,\n");
+    let said = stdout(&import.run(&["import", "table.csv"]));
+    assert!(
+        said.contains("range_left_m") && !said.contains("inf"),
+        "{said}"
+    );
+}
+
+#[test]
+fn cells_that_are_no_numbers_are_said() {
+    let table = b"t_ms;left_rpm;right_rpm\n0;1.234,5;1\n20;1.234,5;\n40;7;2\n";
+    let import = Import::of("table.csv", table);
+    let output = import.run(&["import", "table.csv", "--columns", "auto"]);
+    assert_eq!(
+        stderr(&output),
+        "note: table.csv: left_rpm: 2 values left out, the first is `1.234.5`, no number\n"
+    );
+}
+
+#[test]
 fn counts_are_speeds_by_what_a_turn_counts_and_rows_of_the_serial_monitor_have_its_times() {
     // 748 counts in a second to the right, half as many to the left; a row each 5 ms.
     let rows: Vec<String> = (0..300)
@@ -337,6 +388,17 @@ fn what_columns_are_missing_or_unclear_is_said_with_what_there_is() {
             "{columns}: {}",
             stderr(&refused)
         );
+    }
+}
+
+#[test]
+fn columns_of_what_is_no_table_are_refused_with_what_a_table_is() {
+    for table in ["a,b\n", "a,b\n1,2\n", "a,b\n1,2,5\n2,3,5\n3,4,5\n"] {
+        let import = Import::of("table.csv", table.as_bytes());
+        let refused = import.run(&["import", "table.csv", "--columns", "t_ms=a"]);
+        let said = stderr(&refused);
+        assert!(said.contains("as many cells as the header"), "{said}");
+        assert_eq!(refused.status.code(), Some(2));
     }
 }
 

@@ -18,7 +18,13 @@ fn every_subcommand_shows_an_example_in_its_help() {
 #[test]
 fn list_names_what_there_is() {
     let all = stdout(&rumbo(&["list"]));
-    for name in ["mode1", "obstacles", "memoria", "front_distance"] {
+    for name in [
+        "mode1",
+        "obstacles",
+        "memoria",
+        "front_distance",
+        "wall_uno",
+    ] {
         assert!(all.contains(name), "{name} is not in\n{all}");
     }
     let widest = all.lines().map(|line| line.chars().count()).max();

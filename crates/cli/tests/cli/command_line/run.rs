@@ -17,6 +17,20 @@ fn objects(output: &Output) -> Vec<serde_json::Value> {
 }
 
 #[test]
+fn a_parameter_of_another_program_is_said_to_be_in_vain() {
+    let run = |program: &str| {
+        let parameter = ["--program", program, "--param", "front_kp=5"];
+        rumbo(&[&["run", "mode1", "--no-record"][..], &parameter].concat())
+    };
+    assert_eq!(stderr(&run("rumbo")), "");
+    let said = stderr(&run("baseline"));
+    assert!(
+        said.starts_with("note: --param front_kp: is a parameter of Rumbo's"),
+        "{said}"
+    );
+}
+
+#[test]
 fn a_run_is_one_object_and_the_same_on_any_number_of_threads() {
     let run = |threads: &str| {
         rumbo(&[

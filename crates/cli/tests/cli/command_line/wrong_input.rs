@@ -32,7 +32,7 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         "comma.toml",
         "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 0,5\n",
     );
-    let cases: [(&[&str], &str); 31] = [
+    let cases: [(&[&str], &str); 34] = [
         (
             &["run", "typos.toml"],
             "error: typos.toml:5: mode = font_distance: unknown mode; did you mean `front_distance` (1)?",
@@ -123,6 +123,24 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         (
             &["lab", "--speed", "-1"],
             "error: invalid value '-1' for '--speed <X>': must be a number of times real time, within 0..100, e.g. 4 or 0.5; see `rumbo lab --help`",
+        ),
+        (
+            &["export", "a.mcap", "--from", "1,5"],
+            "error: invalid value '1,5' for '--from <S>': must be a number, with a point before decimals, e.g. 1.5; see `rumbo export --help`",
+        ),
+        (
+            &["identify", "--drive", "lab", "--battery", "76"],
+            "error: invalid value '76' for '--battery <VOLTS>': must be 5 to 13 V, e.g. 7.62; see `rumbo identify --help`",
+        ),
+        (
+            &[
+                "new",
+                "robot",
+                "x",
+                "--pins",
+                "left_forward=7,left_forward=4",
+            ],
+            "error: --pins: left_forward is given twice; give each signal once",
         ),
         (
             &["lab", "--seed", "-1"],

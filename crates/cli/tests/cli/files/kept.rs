@@ -247,3 +247,22 @@ fn a_calibration_replaces_no_parameters_but_those_of_a_calibration() {
         assert_eq!(status(&output), 0, "{}", stderr(&output));
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn what_is_begun_and_cannot_be_written_is_not_in_the_way_of_the_next_attempt() {
+    let folder = tempfile::tempdir().unwrap();
+    // A file may have 1 KB at most, as on a disk that is full.
+    let limited = "trap '' XFSZ; ulimit -f 1; exec \"$0\" \"$@\"";
+    for (what, name) in [("robot", "mine.toml"), ("sketch", "mine")] {
+        let output = std::process::Command::new("sh")
+            .args(["-c", limited, env!("CARGO_BIN_EXE_rumbo")])
+            .args(["new", what, name])
+            .args(["--like", if what == "robot" { "uno" } else { "wall" }])
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        assert_eq!(status(&output), 2, "{}", stderr(&output));
+        assert!(!folder.path().join(name).exists(), "{what}");
+    }
+}
