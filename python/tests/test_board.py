@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import importlib.metadata
 import pathlib
 import pickle
 import re
@@ -208,7 +209,10 @@ def test_bad(rumbo_sim):
     rumbo_sim(firmware={str(image)!r}).serial.expect("steady", within_s=0.3)
 """
     )
-    words = ["-m", "pytest", "-p", "rumbo.pytest_plugin", "-p", "no:cacheprovider", "-q", "test_it.py"]
+    # An installed package brings the plugin by itself.
+    is_installed = "rumbo" in importlib.metadata.entry_points(group="pytest11").names
+    plugin = [] if is_installed else ["-p", "rumbo.pytest_plugin"]
+    words = ["-m", "pytest", *plugin, "-p", "no:cacheprovider", "-q", "test_it.py"]
     ran = subprocess.run([sys.executable, *words], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert "1 failed, 1 passed" in ran.stdout, ran.stdout + ran.stderr
     folder = tmp_path / "rumbo-failures" / "test_it.py_test_bad"
