@@ -296,6 +296,50 @@ fn an_editor_breaks_steps_reads_and_changes_a_sketch() {
 }
 
 #[test]
+fn steps_lead_from_setup_to_loop_and_into_the_core_only_if_asked() {
+    let (sketch, _) = kinds("own_code");
+    // The functions and files of steps from the beginning on, until one is in another function.
+    let walk = |arguments: Value, step: &str| {
+        let mut editor = Editor::launch(&[&sketch], arguments)?;
+        editor.ask("configurationDone", json!({}));
+        editor.stop();
+        let mut seen = Vec::new();
+        while seen.last().is_none_or(|(name, _)| name == "setup") {
+            let frame = editor.frames().remove(0);
+            let text = |value: &Value| value.as_str().unwrap().to_owned();
+            seen.push((text(&frame["name"]), text(&frame["source"]["name"])));
+            assert!(seen.len() < 50, "{seen:?}");
+            editor.go(step);
+        }
+        Some((editor, seen))
+    };
+    let own = json!({"stopOnEntry": true});
+    let Some((mut editor, over)) = walk(own.clone(), "next") else {
+        return;
+    };
+    let there = ("loop".to_owned(), "own_code.ino".to_owned());
+    assert_eq!(over.last(), Some(&there));
+    let back: Vec<_> = (0..2)
+        .map(|_| {
+            editor.go("stepBack");
+            editor.frames().remove(0)["name"].take()
+        })
+        .collect();
+    assert_eq!(back, ["loop", "setup"]);
+    let (_, into) = walk(own, "stepIn").unwrap();
+    assert!(
+        into.iter().all(|(_, file)| file == "own_code.ino"),
+        "{into:?}"
+    );
+    let all = json!({"stopOnEntry": true, "justMyCode": false});
+    let (_, into) = walk(all, "stepIn").unwrap();
+    assert!(
+        into.iter().any(|(_, file)| file != "own_code.ino"),
+        "{into:?}"
+    );
+}
+
+#[test]
 fn steps_back_are_the_steps_forward_in_reverse_with_the_same_values() {
     let (sketch, file) = kinds("kinds");
     let Some(mut editor) = Editor::launch(&[&sketch], json!({})) else {

@@ -16,12 +16,14 @@ impl<W: DebuggedWorld> Debugger<W> {
             _ => {
                 let (stops, cfa, inside) = self.lines_back();
                 let symbols = &self.symbols;
+                let here = symbols.function(self.address());
                 let accept = &mut |chip: &Chip| {
-                    let there = symbols.cfa(chip);
+                    let (there, word) = (symbols.cfa(chip), chip.cpu().program_counter());
                     match cfa {
                         None => true,
                         Some(cfa) if there == Some(cfa) => {
-                            inside.contains(&chip.cpu().program_counter())
+                            let is_beside = here.is_some_and(|here| !here.contains(2 * word));
+                            is_beside || inside.contains(&word)
                         }
                         Some(cfa) => there.is_some_and(|there| there > cfa),
                     }
@@ -40,6 +42,12 @@ impl<W: DebuggedWorld> Debugger<W> {
             .symbols
             .function(self.address())
             .map(|function| calls(function, self.address()));
+        let is_own = self.is_own(self.address());
+        let mut called = frames.iter().skip(1);
+        if is_own && !called.any(|frame| self.is_own(frame.address_in_code())) {
+            // The core called it, and the one before.
+            stops = self.own_lines();
+        }
         for (index, frame) in frames.iter().enumerate() {
             let Some(function) = self.symbols.function(frame.address_in_code()) else {
                 continue;
@@ -49,6 +57,9 @@ impl<W: DebuggedWorld> Debugger<W> {
                 .iter()
                 .flat_map(|range| self.symbols.lines.begins(range.clone()));
             for row in rows {
+                if is_own && !self.own.contains(&row.file) {
+                    continue;
+                }
                 let depth = calls(function, row.address).len();
                 stops.insert(row.address / 2);
                 if index == 0 && own.as_ref().is_some_and(|own| depth <= own.len()) {

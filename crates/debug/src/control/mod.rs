@@ -69,6 +69,10 @@ struct Plan {
     returns: Option<u32>,
     /// Words of calls that are to be followed.
     calls: BTreeSet<u32>,
+    /// It began in the files of the program, not of the core or a library, and ends in them.
+    own: bool,
+    /// The stops hold in outer frames too.
+    outwards: bool,
 }
 
 /// A program under a debugger.
@@ -80,13 +84,17 @@ pub struct Debugger<W> {
     pub(crate) data: Vec<DataBreakpoint>,
     /// What breakpoints have written.
     logged: Vec<String>,
+    /// The files beside that of `setup`, or else of `main`.
+    own: BTreeSet<usize>,
 }
 
 impl<W: DebuggedWorld> Debugger<W> {
     /// The program stands where the world does.
     pub fn new(symbols: Symbols, world: W) -> Self {
         let history = History::new(world);
+        let own = symbols.files_of_program();
         Debugger {
+            own,
             symbols,
             history,
             motion: None,
@@ -150,14 +158,18 @@ impl<W: DebuggedWorld> Debugger<W> {
         self.arm(BTreeSet::new());
     }
 
+    /// Whether steps that begin in the program's own files end in them, as they do at first.
+    pub fn set_just_own_code(&mut self, just_own_code: bool) {
+        self.own = match just_own_code {
+            true => self.symbols.files_of_program(),
+            false => BTreeSet::new(),
+        };
+    }
+
     /// Lets it run to the first line of `setup`, or else of `main`.
     pub fn go_to_entry(&mut self) {
-        let mut entries = ["setup", "main"]
-            .into_iter()
-            .filter_map(|name| self.symbols.functions_named(name).next());
-        let stops = entries
-            .next()
-            .map(|function| self.symbols.body(function) / 2);
+        let entry = self.symbols.entry();
+        let stops = entry.map(|function| self.symbols.body(function) / 2);
         self.follow(Plan {
             stops: stops.into_iter().collect(),
             ..Plan::default()
@@ -238,12 +250,13 @@ impl<W: DebuggedWorld> Debugger<W> {
         let Some(frame) = frames.first() else {
             return Err("the program stands nowhere".into());
         };
+        let at = self.address();
         let mut plan = Plan {
             cfa: frame.cfa,
+            own: self.is_own(at),
             returns: frames.get(1).map(|caller| caller.program_counter / 2),
             ..Plan::default()
         };
-        let at = self.address();
         let Some(function) = self.symbols.function(at) else {
             return Ok(plan);
         };
@@ -282,6 +295,21 @@ impl<W: DebuggedWorld> Debugger<W> {
             return Err("nothing has called this function: there is no step out of it".into());
         }
         Ok(plan)
+    }
+
+    /// Whether an instruction is of the program's own files.
+    fn is_own(&self, address: u32) -> bool {
+        let row = self.symbols.lines.row(address);
+        row.is_some_and(|row| self.own.contains(&row.file))
+    }
+
+    /// The beginnings of all lines of the program's own files.
+    fn own_lines(&self) -> BTreeSet<u32> {
+        let ranges = self.symbols.functions.iter();
+        let ranges = ranges.flat_map(|function| &function.ranges);
+        let rows = ranges.flat_map(|range| self.symbols.lines.begins(range.clone()));
+        let own = rows.filter(|row| self.own.contains(&row.file));
+        own.map(|row| row.address / 2).collect()
     }
 
     /// The words of a function at which it calls another, or jumps to it.
@@ -341,22 +369,34 @@ impl<W: DebuggedWorld> Debugger<W> {
         let hit = self.hit(2 * word);
         if let Some(Motion::Step(plan)) = self.motion.clone() {
             if self.ends(&plan) {
+                if plan.own && hit.is_empty() && !self.is_own(2 * word) {
+                    // The core called it, and calls the next one.
+                    self.follow(Plan {
+                        stops: self.own_lines(),
+                        cfa: plan.cfa,
+                        own: true,
+                        outwards: true,
+                        ..Plan::default()
+                    });
+                    return None;
+                }
                 return Some(if hit.is_empty() {
                     Reason::Step
                 } else {
                     Reason::Breakpoint(hit)
                 });
             }
-            if hit.is_empty() && plan.calls.contains(&word) && self.is_in(plan.cfa) {
+            if hit.is_empty() && plan.calls.contains(&word) && self.is_in(&plan) {
                 return self.enter(plan);
             }
         }
         (!hit.is_empty()).then_some(Reason::Breakpoint(hit))
     }
 
-    /// Whether it stands in the frame with this CFA.
-    fn is_in(&self, cfa: Option<u16>) -> bool {
-        cfa.is_none() || self.symbols.cfa(self.chip()) == cfa
+    /// Whether it stands in the frame of a step.
+    fn is_in(&self, plan: &Plan) -> bool {
+        let here = self.symbols.cfa(self.chip());
+        plan.cfa.is_none() || here == plan.cfa || plan.outwards && here > plan.cfa
     }
 
     fn ends(&self, plan: &Plan) -> bool {
@@ -364,7 +404,7 @@ impl<W: DebuggedWorld> Debugger<W> {
         let word = cpu.program_counter();
         let returned =
             plan.returns == Some(word) && plan.cfa.is_none_or(|cfa| cpu.stack_pointer() >= cfa);
-        returned || plan.stops.contains(&word) && self.is_in(plan.cfa)
+        returned || plan.stops.contains(&word) && self.is_in(plan)
     }
 
     /// Follows a call into a function with lines, where it may stand already; over any other.
@@ -375,7 +415,8 @@ impl<W: DebuggedWorld> Debugger<W> {
         let function = self
             .symbols
             .function(entry)
-            .filter(|function| function.entry == entry);
+            .filter(|function| function.entry == entry)
+            .filter(|function| !plan.own || self.is_own(self.symbols.body(function)));
         let body = function.map(|function| self.symbols.body(function));
         let next = match body.filter(|_| entry / 2 != before) {
             Some(body) if body == entry => {

@@ -87,6 +87,8 @@ pub struct Launch {
     pub stop_on_entry: bool,
     /// The program as it runs otherwise, optimised.
     pub optimised: Option<bool>,
+    /// Steps that begin in the program's own files end in them; `false`: in those of the core and of libraries too.
+    pub just_my_code: Option<bool>,
 }
 
 #[derive(Debug, Default, Deserialize)]

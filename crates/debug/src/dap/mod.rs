@@ -363,7 +363,8 @@ impl<H: LaunchHost> Adapter<H> {
 
     fn launch(&mut self, launch: Launch) -> Result<Value, String> {
         let (debugger, notes) = self.host.launch(&launch)?;
-        self.debugger = Some(debugger);
+        let debugger = self.debugger.insert(debugger);
+        debugger.set_just_own_code(launch.just_my_code != Some(false));
         self.launch = launch;
         for note in notes {
             self.event(

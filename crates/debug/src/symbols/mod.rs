@@ -18,8 +18,9 @@ use dies::{Bytes, Dies};
 use gimli::{EndianSlice, LittleEndian, SectionId, constants};
 use object::{Object, ObjectSection};
 use rumbo_emulator::image::Image;
+use std::collections::BTreeSet;
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why an image cannot be debugged.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -141,6 +142,28 @@ impl Symbols {
                     .strip_suffix(name)
                     .is_some_and(|rest| rest.ends_with("::"))
         })
+    }
+
+    /// Where a program begins for who wrote it: `setup`, or else `main`.
+    pub(crate) fn entry(&self) -> Option<&Scope> {
+        let mut entries = ["setup", "main"].into_iter();
+        entries.find_map(|name| self.functions_named(name).next())
+    }
+
+    /// The files beside and below that of the entry: not those of the core and of libraries.
+    pub(crate) fn files_of_program(&self) -> BTreeSet<usize> {
+        let row = self
+            .entry()
+            .and_then(|entry| self.lines.row(self.body(entry)));
+        let Some(folder) = row.and_then(|row| Path::new(&self.lines.files[row.file].name).parent())
+        else {
+            return BTreeSet::new();
+        };
+        let is_below =
+            |name: &Path| name.starts_with(folder) && name.is_absolute() == folder.is_absolute();
+        let files = self.lines.files.iter().enumerate();
+        let own = files.filter(|(_, file)| is_below(Path::new(&file.name)));
+        own.map(|(number, _)| number).collect()
     }
 
     /// The globals to list: each name once, and not the constants of headers, which every file has.
