@@ -50,7 +50,7 @@ rare('each mode has its own machine, with every state in a box', async () => {
 });
 
 rare('the link shows its rate, its load, what was lost, and its bytes frame by frame', async () => {
-  await page.getByRole('tab', { name: 'States' }).focus();
+  await page.getByRole('tab', { name: 'Causes' }).focus();
   await page.keyboard.press('ArrowRight');
   const figures = page.locator('#link-figures');
   await figures.locator('dd', { hasText: /^2\d(\.\d)? Hz$/ }).waitFor();
