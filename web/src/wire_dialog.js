@@ -44,6 +44,7 @@ export class WireDialog {
   #board = create('select', { id: 'wire-board' });
   #driver = create('select', { id: 'wire-driver' });
   #wheels = create('input', { type: 'checkbox', id: 'wire-wheels' });
+  #battery = create('input', { type: 'number', id: 'wire-battery', min: '5.6', max: '12', step: '0.1', placeholder: '6' });
   #rows = create('div', { id: 'wire-rows' });
   #add = create('select', { id: 'wire-add' });
   #drawing = create('ol', { id: 'wire-pins' });
@@ -78,14 +79,14 @@ export class WireDialog {
     folder.addEventListener('change', () => this.#read([...folder.files ?? []]));
     this.#dialog.body.append(
       create('p', { className: 'hint', textContent: t('Say where its wires go, by number or as A0; or drag a name onto the board. Then choose the sketch that drives it.') }),
-      create('div', { className: 'row' }, label(t('begin with'), this.#like), label(t('name'), this.#name), label(t('board'), this.#board), label(t('motor driver'), this.#driver), label(t('four wheels'), this.#wheels)),
+      create('div', { className: 'row' }, label(t('begin with'), this.#like), label(t('name'), this.#name), label(t('board'), this.#board), label(t('motor driver'), this.#driver), label(t('four wheels'), this.#wheels), label(t('battery [V]'), this.#battery)),
       create('div', { id: 'wire-parts' }, create('div', { className: 'stack' }, this.#rows, label(t('add'), this.#add)), this.#drawing),
       this.#problem, this.#remarks,
       create('div', { className: 'row' }, open, fileButton(t('Files…'), '.ino,.cpp,.c,.h,.hpp,.S,.elf,.hex', (_, files) => this.#read(files), true), folder, this.#program, create('span', { className: 'spacer' }), this.#save, this.#drive),
       create('details', {}, create('summary', { textContent: t('The robot file') }), this.#text),
     );
     for (const field of [this.#like, this.#board, this.#driver]) field.addEventListener('change', () => this.#begin(field === this.#like));
-    for (const field of [this.#name, this.#wheels]) field.addEventListener('input', () => this.#changed());
+    for (const field of [this.#name, this.#wheels, this.#battery]) field.addEventListener('input', () => this.#changed());
     this.#add.addEventListener('change', () => {
       this.#wired.push(added(this.#add.value, this.#wired));
       this.#show();
@@ -146,7 +147,7 @@ export class WireDialog {
       this.#name.value = known.name.replace(/^kit_/, 'my_');
       this.#wired = Object.entries(known.pins).map(([signal, pin]) => ({ signal, pin }));
     }
-    for (const field of [this.#board, this.#driver, this.#wheels]) field.disabled = known !== undefined;
+    for (const field of [this.#board, this.#driver, this.#wheels, this.#battery]) field.disabled = known !== undefined;
     const driver = this.#driverNow;
     if (driver && !known) this.#wired = rowsOf(driver, this.#wired);
     this.#show();
@@ -217,7 +218,7 @@ export class WireDialog {
     if (!board || !driver) return;
     const asked = ++this.#asked;
     const open = this.#wired.filter(({ signal, pin }) => driver.needed.includes(signal) && pin.trim() === '').map(({ signal }) => words(signal));
-    const about = { name: this.#name.value, like: this.#like.value || null, board: board.name, driver: driver.name, four_wheels: this.#wheels.checked };
+    const about = { name: this.#name.value, like: this.#like.value || null, board: board.name, driver: driver.name, four_wheels: this.#wheels.checked, battery_v: this.#battery.valueAsNumber || null };
     const wrong = this.#wired.find(({ pin, kind }) => !kind && pin.trim() !== '' && !/^m\d$/i.test(pin.trim()) && pinOf(board, pin) === null);
     const local = open.length > 0 ? t('still without a pin: {}', open.join('; ')) : wrong ? t('{}: the {} has no pin {}', words(wrong.signal), board.title, wrong.pin) : null;
     /** @type {Answer} */

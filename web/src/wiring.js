@@ -37,7 +37,7 @@ export function added(what, rows) {
 
 /**
  * What the station is asked.
- * @param {{name: string, like: string | null, board: string, driver: string, four_wheels: boolean}} about
+ * @param {{name: string, like: string | null, board: string, driver: string, four_wheels: boolean, battery_v: number | null}} about
  * @param {Row[]} rows
  */
 export function request(about, rows) {
@@ -71,7 +71,7 @@ export function byPin(board, rows, on = {}) {
 }
 
 /** The ending of what a sketch is made of. */
-const SOURCE = /\.(ino|pde|c|cc|cpp|h|hh|hpp|s)$/i;
+const SOURCE = /^platformio\.ini$|\.(ino|pde|c|cc|cpp|h|hh|hpp|s)$/i;
 
 /** Whether a sketch is made of such a file. @param {string} path */
 export const isSource = (path) => SOURCE.test(path);

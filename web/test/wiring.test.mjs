@@ -2,7 +2,7 @@
 /** The wiring of one's own robot. No browser is needed. */
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { added, byPin, pinOf, request, rowsOf } from '../src/wiring.js';
+import { added, byPin, isSource, pinOf, request, rowsOf } from '../src/wiring.js';
 
 const UNO = { name: 'uno', title: 'Arduino Uno', pins: Array.from({ length: 20 }, (_, pin) => ({ name: pin < 14 ? String(pin) : `A${pin - 14}`, pwm: false })) };
 const L298N = { name: 'l298n', title: '', jumpers: false, standby: false, needed: ['left_enable', 'left_forward', 'left_backward', 'right_enable', 'right_forward', 'right_backward'] };
@@ -20,8 +20,13 @@ test('sensors and parts are numbered; what has no pin is not asked', () => {
   const rows = [{ signal: 'left_forward', pin: ' 7 ' }, { signal: 'servo', pin: ' ' }];
   for (const what of ['line', 'line', 'button', 'mpu6050']) rows.push(added(what, rows));
   assert.deepEqual(rows.slice(2), [{ signal: 'line_1', pin: '' }, { signal: 'line_2', pin: '' }, { signal: 'button_1', kind: 'button', pin: '' }, { signal: 'mpu6050_1', kind: 'mpu6050', pin: '0x68' }]);
-  const { plan } = request({ name: 'a', like: null, board: 'uno', driver: 'l298n', four_wheels: false }, rows);
+  const { plan } = request({ name: 'a', like: null, board: 'uno', driver: 'l298n', four_wheels: false, battery_v: 7.4 }, rows);
   assert.deepEqual([plan.pins, plan.parts], [[['left_forward', '7']], [['mpu6050_1', 'mpu6050', '0x68']]]);
+});
+
+test('a sketch is made of sources, and a project of PlatformIO says how', () => {
+  const names = ['car.ino', 'src/main.cpp', 'platformio.ini', 'lib/a/platformio.ini', 'readme.md'];
+  assert.deepEqual(names.filter(isSource), ['car.ino', 'src/main.cpp', 'platformio.ini']);
 });
 
 test('a pin has a number or a name, and may have several signals', () => {

@@ -6,6 +6,7 @@ use crate::calibrate;
 use crate::failure::Failure;
 use crate::logs;
 use crate::output;
+use crate::sketch;
 use crate::tune;
 use crate::wired;
 use crate::workshop::{self, Workshop};
@@ -44,6 +45,8 @@ fn fleet(args: &LabArgs) -> Result<Option<ScenarioFile>, Failure> {
 
 /// The simulated robot.
 fn simulated(args: &mut LabArgs) -> Result<SimulatedRobot, Failure> {
+    // The page's sketches may want them too.
+    sketch::take_libraries(&std::mem::take(&mut args.image.libraries))?;
     let robot = args.setting.robot.as_deref();
     args.image.compile(robot, Some(&args.scenario))?;
     let mut robot = SimulatedRobot::new(overrides(args), choice(args, &args.scenario))?;

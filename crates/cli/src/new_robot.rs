@@ -4,7 +4,9 @@ use crate::args::{NewArgs, driver_named, driver_names};
 use crate::failure::Failure;
 use crate::output;
 use crate::place;
-use rumbo_experiment::files::new_robot::{JUMPERS, NewRobot, counted, looks_like, needed, remarks};
+use rumbo_experiment::files::new_robot::{
+    JUMPERS, Measured, NewRobot, counted, looks_like, needed, remarks,
+};
 use rumbo_experiment::files::{Kind, Library};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::DRIVERS;
@@ -173,6 +175,7 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
             }
         }
     }
+    let sonars = sonars(args, &pins)?;
     Ok(NewRobot {
         name,
         board,
@@ -180,9 +183,29 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
         jumpers,
         pins,
         four_wheels: args.wheels == 4,
-        battery_v: args.battery,
+        sonars,
+        measured: Measured {
+            battery_v: args.battery,
+            base_m: args.base,
+            wheel_m: args.wheel,
+            edges: args.edges,
+        },
         parts: args.parts.clone(),
     })
+}
+
+/// Where sonars are, each of which has pins.
+fn sonars(args: &NewArgs, pins: &[(String, String)]) -> Result<Vec<(String, [f64; 3])>, Failure> {
+    let is_wired = |sonar: &str| {
+        let trigger = format!("{sonar}_trigger");
+        pins.iter().any(|(signal, _)| *signal == trigger)
+    };
+    match args.sonars.iter().find(|(sonar, _)| !is_wired(sonar)) {
+        None => Ok(args.sonars.clone()),
+        Some((sonar, _)) => Err(Failure::Input(format!(
+            "--sonars {sonar}: that sonar has no pins; say --pins {sonar}_trigger=4,{sonar}_echo=A0 or the like"
+        ))),
+    }
 }
 
 /// Asks until the answer is one.

@@ -1,7 +1,9 @@
 //! The robot that a page of the lab wires: what there is to choose from, and the file that its choices make, checked.
 
 use crate::args::{driver_named, drivers, pin};
-use rumbo_experiment::files::new_robot::{JUMPERS, NewRobot, looks_like, needed, remarks};
+use rumbo_experiment::files::new_robot::{
+    JUMPERS, Measured, NewRobot, looks_like, needed, remarks,
+};
 use rumbo_experiment::files::{FileError, Kind, Library, RobotFile};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::bus::DeviceKind;
@@ -27,6 +29,7 @@ struct Plan {
     board: String,
     driver: String,
     four_wheels: bool,
+    battery_v: Option<f64>,
     pins: Vec<(String, String)>,
     parts: Vec<[String; 3]>,
 }
@@ -157,7 +160,11 @@ fn new(plan: Plan) -> Result<NewRobot, String> {
         jumpers,
         pins: plan.pins,
         four_wheels: plan.four_wheels,
-        battery_v: None,
+        sonars: Vec::new(),
+        measured: Measured {
+            battery_v: plan.battery_v,
+            ..Measured::default()
+        },
         parts: plan.parts,
     })
 }
@@ -206,6 +213,7 @@ mod tests {
     fn plan(changes: Value) -> Value {
         let mut plan = json!({
             "name": "my car", "like": null, "board": "uno", "driver": "l298n-jumpers", "four_wheels": false, "parts": [],
+            "battery_v": null,
             "pins": [["left_forward", "5"], ["left_backward", "6"], ["right_forward", "9"], ["right_backward", "10"]],
         });
         let (plan_fields, changes) = (plan.as_object_mut().unwrap(), changes.as_object().unwrap());
@@ -221,6 +229,14 @@ mod tests {
             "{good}"
         );
         assert_eq!(good["on"]["10"], "right_backward");
+        let charged = plan(json!({ "battery_v": 7.4 }));
+        assert!(
+            charged["toml"]
+                .as_str()
+                .unwrap()
+                .contains("open_circuit_v = 7.4"),
+            "{charged}"
+        );
         for (wrong, why) in [
             (json!({ "driver": "l297" }), "no such driver"),
             (json!({ "board": "due" }), "no board due"),
@@ -233,6 +249,7 @@ mod tests {
                 json!({ "parts": [["go", "button", "5"]] }),
                 "left_forward is on that pin",
             ),
+            (json!({ "battery_v": 40 }), "open_circuit_v = 40"),
             (json!({ "extra": 1 }), "unknown field"),
         ] {
             let problem = plan(wrong.clone());

@@ -254,7 +254,7 @@ section! {
         /// Edges per turn of the motor shaft.
         edges_per_motor_turn = 8.0, 1.0 => 32.0, "count";
         /// Slots of a disc on the wheel itself, each of which gives two edges; 0: the disc is on the motor's shaft.
-        slots = 0.0, 0.0 => 400.0, "count";
+        slots = 0.0, 0.0 => 4000.0, "count";
         /// Largest deviation of an edge from even spacing, relative to that spacing.
         spacing_error = 0.05, 0.0 => 0.45, "1";
     }

@@ -151,8 +151,12 @@ impl<'a> Build<'a> {
             core.join("cores/arduino"),
             core.join("variants").join(self.board.variant),
         ];
+        // A project may ask for another standard, of one of the languages.
+        let is_cpp = !matches!(ending(file), Some("c" | "S"));
+        let suits = |flag: &&str| !flag.starts_with("-std=") || flag.contains("++") == is_cpp;
+        let flags: Vec<&str> = flags.iter().copied().filter(suits).collect();
         let board = &self.board.options[..];
-        let options = [board, self.options.common, flags, language].concat();
+        let options = [board, self.options.common, language, &flags[..]].concat();
         let mut args: Vec<OsString> = options.into_iter().map(OsString::from).collect();
         for folder in folders.iter().chain(&self.libraries) {
             args.extend(["-I".into(), OsString::from(folder)]);

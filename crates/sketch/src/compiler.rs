@@ -10,6 +10,7 @@ use crate::layout::Layout;
 use crate::libraries::read;
 use crate::limits::Limits;
 use crate::options::{C, CPP, DEBUG, Options, RUN};
+use crate::platformio;
 use crate::preprocess;
 use crate::sandbox::Sandbox;
 use crate::source::{Given, Source, given};
@@ -21,6 +22,10 @@ use std::path::{Path, PathBuf};
 
 /// Part of every key: products of another layout are another's.
 const LAYOUT: &str = "missed headers";
+
+/// Standards of C++ that a compiler knows from this version on.
+const LATE: [&str; 4] = ["++17", "++1z", "++20", "++2a"];
+const KNOWS_LATE: u32 = 7;
 
 /// Compiles sketches.
 #[derive(Clone, Debug)]
@@ -183,6 +188,9 @@ impl Compiler {
     /// If the compiler rejects it, or it exceeds a limit.
     pub fn compile(&self, source: &Source, macros: &[&str]) -> Result<Image, SketchError> {
         source.check()?;
+        let project = platformio::flags(source);
+        let flags: Vec<&str> = project.iter().map(String::as_str).collect();
+        let macros = &[&flags[..], macros].concat();
         let layout = Layout::of(source);
         let main = preprocess::join(source, layout.main);
         if main.is_none() && !layout.own.iter().any(|name| is_source(name)) {
@@ -202,7 +210,9 @@ impl Compiler {
             build.put(SKETCH, name, bytes)?;
         }
         self.objects(&mut build, source, &layout, main.as_deref(), macros)?;
-        build.finish().map_err(|error| self.with_places(error))?;
+        build
+            .finish()
+            .map_err(|error| self.with_advice(error, macros))?;
         build.link(&self.core)?;
         build.keep(IMAGE, &image)?;
         Ok(Image {
@@ -285,8 +295,8 @@ impl Compiler {
         )
     }
 
-    /// The error, with where a missing header was looked for.
-    fn with_places(&self, error: SketchError) -> SketchError {
+    /// The error, with where a missing header was looked for, or that the compiler is older than what the project wants.
+    fn with_advice(&self, error: SketchError, flags: &[&str]) -> SketchError {
         let SketchError::Rejected(mut errors) = error else {
             return error;
         };
@@ -298,6 +308,20 @@ impl Compiler {
                     self.toolchain.libraries_in_words()
                 );
             }
+        }
+        let is_late = |flag: &&&str| LATE.iter().any(|late| flag.ends_with(*late));
+        let version = &self.toolchain.compiler;
+        let major = version
+            .split('.')
+            .next()
+            .and_then(|major| major.parse().ok());
+        if let (Some(standard), Some(first)) = (flags.iter().find(is_late), errors.first_mut())
+            && major.is_some_and(|major: u32| major < KNOWS_LATE)
+        {
+            first.text += &format!(
+                "; the project's {standard} is more than avr-gcc {version} knows: Arduino's does, \
+                 `arduino-cli core install arduino:avr`"
+            );
         }
         SketchError::Rejected(errors)
     }

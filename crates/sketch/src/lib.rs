@@ -25,6 +25,7 @@ mod layout;
 mod libraries;
 pub mod limits;
 mod options;
+mod platformio;
 mod preprocess;
 mod product;
 pub mod sandbox;

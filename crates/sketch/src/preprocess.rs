@@ -18,7 +18,13 @@ pub(crate) fn join(source: &Source, folder: &str) -> Option<String> {
     let mut parts: Vec<(&String, &Vec<u8>)> =
         files.filter(|(name, _)| inside(name).is_some()).collect();
     let main = format!("{folder}{}.ino", source.name);
-    parts.sort_by_key(|(name, _)| **name != main);
+    let is_named = parts.iter().any(|(name, _)| **name == main);
+    // A folder that was renamed, as one that GitHub packs, has none of its name.
+    let is_main = |(name, bytes): &(&String, &Vec<u8>)| match is_named {
+        true => **name == main,
+        false => has_setup(bytes),
+    };
+    parts.sort_by_key(|part| !is_main(part));
     let mut text = String::from("#include <Arduino.h>\n");
     for (name, bytes) in &parts {
         let bytes = String::from_utf8_lossy(bytes);
@@ -28,6 +34,13 @@ pub(crate) fn join(source: &Source, folder: &str) -> Option<String> {
         );
     }
     (!parts.is_empty()).then_some(text)
+}
+
+/// Whether a part of a sketch is that with `setup()`.
+fn has_setup(bytes: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(bytes);
+    let mut lines = text.lines();
+    lines.any(|line| line.trim_start().starts_with("void setup("))
 }
 
 /// Headers that a source includes, or imports, which the compiler takes too, or names in a macro.
@@ -281,6 +294,24 @@ fn literal(text: &str, quote: char) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_part_of_the_folder_s_name_is_first_or_that_with_setup() {
+        let files = [("a.ino", "int a;"), ("car.ino", "void setup() { }")];
+        let first = |folder: &str, more: &str| {
+            let files = files.into_iter().chain([(more, "int more;")]);
+            let source = Source {
+                name: folder.into(),
+                files: files
+                    .map(|(name, text)| (name.into(), text.into()))
+                    .collect(),
+            };
+            let joined = join(&source, "").unwrap();
+            joined.lines().nth(1).unwrap().to_owned()
+        };
+        assert_eq!(first("car-main", "b.ino"), "#line 1 \"car.ino\"");
+        assert_eq!(first("b", "b.ino"), "#line 1 \"b.ino\"");
+    }
 
     #[test]
     fn a_macro_of_several_lines_is_no_function() {

@@ -19,6 +19,8 @@ const LONGEST: usize = 200;
 const DEEPEST: usize = 6;
 /// Of a path with nothing at it.
 const NOWHERE: &str = "no such file or folder; `rumbo new sketch NAME` begins a sketch, and example:NAME takes an example";
+/// The file of a PlatformIO project, in its folder.
+pub(crate) const PROJECT: &str = "platformio.ini";
 /// What a compiler reads, and what else may be included.
 const KINDS: [&str; 14] = [
     "ino", "pde", "c", "cpp", "cc", "cxx", "h", "hpp", "hh", "hxx", "inc", "ipp", "tpp", "S",
@@ -71,7 +73,12 @@ fn is_name(path: &str) -> bool {
     path.chars().count() <= LONGEST
         && path.split('/').count() <= DEEPEST + 1
         && path.split('/').all(is_part)
-        && ending(Path::new(path)).is_some_and(|own| KINDS.contains(&own))
+        && is_taken(path)
+}
+
+/// Whether a file belongs to a sketch, by its path there.
+fn is_taken(path: &str) -> bool {
+    path == PROJECT || ending(Path::new(path)).is_some_and(|own| KINDS.contains(&own))
 }
 
 /// What is at a path: a folder with a sketch or an image, an `.ino`, an `.elf` or a `.hex`. The `.ino` of a folder of
@@ -155,7 +162,7 @@ fn is_platformio(folder: &Path) -> bool {
     let is = |name: &str, what: fn(&fs::Metadata) -> bool| {
         fs::symlink_metadata(folder.join(name)).is_ok_and(|about| what(&about))
     };
-    is("platformio.ini", fs::Metadata::is_file) && is("src", fs::Metadata::is_dir)
+    is(PROJECT, fs::Metadata::is_file) && is("src", fs::Metadata::is_dir)
 }
 
 fn directly_in(folder: &Path) -> Result<Option<Given>, SketchError> {
@@ -210,7 +217,7 @@ fn collect(
         let inner = format!("{prefix}{name}");
         if about.is_dir() {
             collect(&path, &format!("{inner}/"), depth + 1, source, left, seen)?;
-        } else if about.is_file() && ending(&path).is_some_and(|own| KINDS.contains(&own)) {
+        } else if about.is_file() && is_taken(&inner) {
             let bytes = read(&path, &inner, left)?;
             source.files.insert(inner, bytes);
         }
@@ -323,7 +330,7 @@ mod tests {
             ("src/main.cpp", "x"),
             ("lib/A/A.h", ""),
         ]);
-        let expected = ["lib/A/A.h", "src/main.cpp"];
+        let expected = ["lib/A/A.h", "platformio.ini", "src/main.cpp"];
         assert_eq!(names(&given(folder.path(), true).unwrap()), expected);
     }
 

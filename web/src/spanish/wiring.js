@@ -6,7 +6,7 @@ export const WIRING = {
   'Your robot': 'Tu robot', 'A robot of your own: its board, driver and pins, driven by your sketch': 'Un robot tuyo: su placa, su controlador de motores y sus pines, conducido por tu sketch',
   'Say where its wires go, by number or as A0; or drag a name onto the board. Then choose the sketch that drives it.':
     'Di adónde van sus cables, con un número o como A0, o arrastra un nombre a la placa. Después elige el sketch que lo conduce.',
-  'begin with': 'empezar por', 'my own wiring': 'mi propio cableado', board: 'placa', 'motor driver': 'controlador de motores', 'four wheels': 'cuatro ruedas', add: 'añadir',
+  'begin with': 'empezar por', 'my own wiring': 'mi propio cableado', board: 'placa', 'motor driver': 'controlador de motores', 'four wheels': 'cuatro ruedas', 'battery [V]': 'batería [V]', add: 'añadir',
   '{}, enables on jumpers': '{}, habilitaciones con puentes', Remove: 'Quitar', 'Remove {}': 'Quitar {}',
   'Sketch folder…': 'Carpeta del sketch…', 'Files…': 'Archivos…', 'Drive it': 'Conducirlo', 'The robot file': 'El archivo del robot',
   'Choose its sketch first': 'Elige primero su sketch', 'Pins of the {}; ~ has PWM': 'Pines de la placa {}; ~ tiene PWM',

@@ -85,7 +85,7 @@ pub(crate) struct ImageArgs {
     #[arg(long, value_name = "FOLDER", group = "image")]
     pub(crate) sketch: Option<String>,
     /// Folder of Arduino libraries, which come before those of the Arduino IDE; may be repeated
-    #[arg(long, value_name = "DIR", requires = "sketch")]
+    #[arg(long, value_name = "DIR")]
     pub(crate) libraries: Vec<PathBuf>,
     /// Wiring of that board, of the robot file [default: the report's for the experiment; `final` for our own firmware]
     #[arg(long, value_name = "NAME", requires = "image")]
@@ -103,9 +103,17 @@ impl ImageArgs {
         robot: Option<&str>,
         scenario: Option<&str>,
     ) -> Result<(), Failure> {
-        if let Some(given) = &self.sketch {
-            sketch::take_libraries(&self.libraries)?;
-            self.firmware = Some(sketch::image(given, board(robot, scenario)?)?);
+        match &self.sketch {
+            Some(given) => {
+                sketch::take_libraries(&self.libraries)?;
+                self.firmware = Some(sketch::image(given, board(robot, scenario)?)?);
+            }
+            None if self.libraries.is_empty() => {}
+            None => {
+                return Err(Failure::input(
+                    "--libraries: there is no --sketch that they are for",
+                ));
+            }
         }
         Ok(())
     }

@@ -126,6 +126,11 @@ pub(crate) struct ExportPolicyArgs {
     pub(crate) overwrite: OverwriteArgs,
 }
 
+/// What a robot that is like another one has from it.
+const OF_NEW_ROBOTS: [&str; 10] = [
+    "board", "driver", "pins", "parts", "wheels", "battery", "base", "wheel", "edges", "sonars",
+];
+
 /// Options of `rumbo new`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -163,11 +168,23 @@ pub(crate) struct NewArgs {
     /// Voltage of the battery, 5.6 to 12: 6 of four AA cells, 7.4 or 11.1 of Li-ion ones [default: 6; of four wheels 7.4]
     #[arg(long, value_name = "V", value_parser = values::battery)]
     pub(crate) battery: Option<f64>,
+    /// Between the middles of the tyres, in m [default: 0.13; of servos 0.105]
+    #[arg(long, value_name = "M")]
+    pub(crate) base: Option<f64>,
+    /// Diameter of the wheels, in m [default: 0.065]
+    #[arg(long, value_name = "M")]
+    pub(crate) wheel: Option<f64>,
+    /// Edges of an encoder's output in a turn of the wheel, half of them rising: 748 of 11 pulses behind gears of 34:1 [default: 40]
+    #[arg(long, value_name = "COUNT", value_parser = values::edges)]
+    pub(crate) edges: Option<u16>,
+    /// Where sonars sit, x and y in m, and look, in degrees: left=0.08:0.07:90,right=-0.02:0.07:90 are two on the left side
+    #[arg(long, value_name = "SONAR=X:Y:DEG", value_delimiter = ',', value_parser = values::sonar)]
+    pub(crate) sonars: Vec<(String, [f64; 3])>,
     /// Parts of the robot at a pin or an address, e.g. start=button:8,go=button:9:5v,remote=infrared:2,screen=ssd1306:0x3c
     #[arg(long, value_name = "NAME=KIND:PLACE", value_delimiter = ',', value_parser = values::part)]
     pub(crate) parts: Vec<[String; 3]>,
     /// Begin with the file of this robot (`rumbo list robots`), or with this example (`rumbo list sketches`)
-    #[arg(long, value_name = "ROBOT", conflicts_with_all = ["board", "driver", "pins", "parts", "wheels", "battery"])]
+    #[arg(long, value_name = "ROBOT", conflicts_with_all = OF_NEW_ROBOTS)]
     pub(crate) like: Option<String>,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
-use rumbo_experiment::files::new_robot::{JUMPERS, LINE, LINK_BAUD, OBSTACLE, SHARP};
+use rumbo_experiment::files::new_robot::{JUMPERS, LINE, LINK_BAUD, OBSTACLE, SHARP, SONARS};
 use rumbo_experiment::files::{TimedText, TypedPort, check_line, parameters, placed, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Driver};
@@ -81,6 +81,26 @@ pub(super) fn at_rest(text: &str) -> Result<f64, &'static str> {
         .ok()
         .filter(|volts| (5.0..=13.0).contains(volts));
     volts.ok_or("must be 5 to 13 V, e.g. 7.62")
+}
+
+/// Where a sonar sits and looks: `left=0.05:0.07:90`.
+pub(super) fn sonar(text: &str) -> Result<(String, [f64; 3]), &'static str> {
+    let read = text.split_once('=').and_then(|(name, place)| {
+        let numbers = place.split(':').map(|number| number.trim().parse().ok());
+        let numbers: Option<Vec<f64>> = numbers.collect();
+        Some((name.trim().to_owned(), numbers?.try_into().ok()?))
+    });
+    read.filter(|(name, _)| SONARS.iter().any(|(sonar, _)| name == sonar))
+        .ok_or("write it as left=0.05:0.07:90, x and y in m and the direction in degrees, of front, left or right")
+}
+
+/// What an output of an encoder gives in a turn of the wheel: it falls as often as it rises.
+pub(super) fn edges(text: &str) -> Result<u16, &'static str> {
+    let edges = text
+        .parse()
+        .ok()
+        .filter(|edges: &u16| *edges > 0 && edges.is_multiple_of(2));
+    edges.ok_or("must be an even number")
 }
 
 /// How many wheels a robot has.

@@ -4,7 +4,9 @@
 //! with constant k, resistance R and gear efficiency e, k w = V - R i and e k (V/R - i) = T, so R is the smaller root of
 //! `i^2 R^2 - (2 V i + T w/e) R + V^2 = 0`. The friction is `e k i`; a second speed at a lower voltage tells dry from viscous.
 
+use super::RobotFile;
 use rumbo_sim::drivers::{Direction, Driver};
+use rumbo_sim::wiring::Wiring;
 use std::f64::consts::PI;
 
 /// Newton metres in a kilogram-force centimetre.
@@ -79,15 +81,68 @@ impl GearMotor {
     }
 }
 
+/// What somebody measured or knows of a robot, in place of the usual.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Measured {
+    /// Voltage of its battery \[V\].
+    pub battery_v: Option<f64>,
+    /// Between the middles of its tyres, of four wheels those of an axle \[m\].
+    pub base_m: Option<f64>,
+    /// Diameter of its wheels \[m\].
+    pub wheel_m: Option<f64>,
+    /// What an output of an encoder gives in a turn of the wheel \[edges\].
+    pub edges: Option<u16>,
+}
+
 /// The plant of a robot on two wheels and a castor, at 6 V, the voltage of its motors' figures, or on four wheels.
-pub(super) fn plant(driver: &Driver, four_wheels: bool, battery_v: Option<f64>) -> String {
+pub(super) fn plant(driver: &Driver, four_wheels: bool, measured: &Measured) -> String {
+    let radius_m = measured.wheel_m.map_or(RADIUS_M, |diameter| diameter / 2.0);
+    let base_m = |usual: f64| measured.base_m.unwrap_or(usual);
     let body = match four_wheels {
-        true => self::four_wheels(),
-        false if driver.direction == Direction::Pulse => two_wheels(&SERVO, 0.105),
-        false => two_wheels(&TT, 0.13),
+        true => self::four_wheels(base_m(TRACK_M), radius_m),
+        false if driver.direction == Direction::Pulse => {
+            two_wheels(&SERVO, base_m(0.105), radius_m)
+        }
+        false => two_wheels(&TT, base_m(TRACK_M), radius_m),
     };
-    let battery_v = battery_v.or((!four_wheels).then_some(6.0));
+    let battery_v = measured.battery_v.or((!four_wheels).then_some(6.0));
     body + &battery_v.map(battery).unwrap_or_default()
+}
+
+/// The encoders: each slot of a disc gives two edges.
+pub(super) fn encoder(measured: &Measured) -> String {
+    let (about, slots) = match measured.edges {
+        Some(edges) => (
+            "As many slots as each output rises in a turn of the wheel.",
+            edges / 2,
+        ),
+        None => (
+            "A disc on the wheel; of a sensor on the motor's shaft edges_per_motor_turn, and gear_ratio in [plant.motor].",
+            20,
+        ),
+    };
+    format!("\n# {about}\n[plant.encoder]\nslots = {slots}\n")
+}
+
+/// What a turn of a wheel counts, of a robot with encoders.
+#[must_use]
+pub fn counted(robot: &RobotFile) -> Option<String> {
+    let has = |wiring: &Wiring| {
+        wiring
+            .pins
+            .keys()
+            .any(|signal| signal.ends_with("_encoder"))
+    };
+    robot.wirings.values().any(has).then(|| {
+        let edges = match robot.plant.encoder.slots {
+            0.0 => robot.plant.encoder.edges_per_motor_turn * robot.plant.motor.gear_ratio,
+            slots => 2.0 * slots,
+        };
+        format!(
+            "a turn of a wheel gives {edges} edges on each output of its encoder, half of them rising: [plant.encoder], and \
+             gear_ratio in [plant.motor]; the sketch must count with the same"
+        )
+    })
 }
 
 /// What a seed draws the battery from: from nearly empty to full.
@@ -99,8 +154,8 @@ fn battery(volts: f64) -> String {
     )
 }
 
-/// Two wheels of 65 mm, so far apart, on such motors.
-fn two_wheels(motor: &GearMotor, base_m: f64) -> String {
+/// Two wheels of this radius, so far apart, on such motors.
+fn two_wheels(motor: &GearMotor, base_m: f64, radius_m: f64) -> String {
     let [ohm, back_emf, dry, viscous] = motor.derived();
     let GearMotor {
         title,
@@ -111,7 +166,7 @@ fn two_wheels(motor: &GearMotor, base_m: f64) -> String {
         ..
     } = motor;
     let wheel = format!(
-        "radius_m = 0.0325\ncoulomb_forward_n_m = {dry:.4}\ncoulomb_backward_n_m = {dry:.4}\nviscous_n_m_s = {viscous:.5}\n"
+        "radius_m = {radius_m}\ncoulomb_forward_n_m = {dry:.4}\ncoulomb_backward_n_m = {dry:.4}\nviscous_n_m_s = {viscous:.5}\n"
     );
     format!(
         "
@@ -120,7 +175,7 @@ fn two_wheels(motor: &GearMotor, base_m: f64) -> String {
 [plant.body]
 base_m = {base_m:<16} # between the middles of the tyres
 length_m = 0.20
-width_m = 0.15
+width_m = {:.2}
 centre_ahead_m = 0.03
 
 [plant.motor]
@@ -133,7 +188,8 @@ inertia_kg_m2 = {inertia_kg_m2}
 [plant.wheels.left]
 {wheel}
 [plant.wheels.right]
-{wheel}"
+{wheel}",
+        (base_m + 0.02).max(0.15)
     )
 }
 
@@ -150,16 +206,16 @@ const FRICTION: f64 = 0.6;
 /// Turning on the spot at w each tyre slides aside at w l/2 and along at v - w b/2, and its friction points against that. The
 /// moments balance where along is to aside as l to b: v = w/2 (b + l^2/b), so the wheels act as far apart as b + l^2/b. The force along,
 /// of a side 0.6 m g/2 l / sqrt(l^2 + b^2), loads its wheels.
-fn four_wheels() -> String {
-    let base_m = TRACK_M + AXLES_M * AXLES_M / TRACK_M;
-    let aside = AXLES_M / (AXLES_M * AXLES_M + TRACK_M * TRACK_M).sqrt();
-    let scrub_n_m = FRICTION * MASS_KG * 9.81 / 2.0 * aside * RADIUS_M;
+fn four_wheels(track_m: f64, radius_m: f64) -> String {
+    let base_m = track_m + AXLES_M * AXLES_M / track_m;
+    let aside = AXLES_M / (AXLES_M * AXLES_M + track_m * track_m).sqrt();
+    let scrub_n_m = FRICTION * MASS_KG * 9.81 / 2.0 * aside * radius_m;
     let wheel = format!(
-        "radius_m = {RADIUS_M}\ncoulomb_forward_n_m = 0.016\ncoulomb_backward_n_m = 0.016\nviscous_n_m_s = 0.003\n"
+        "radius_m = {radius_m}\ncoulomb_forward_n_m = 0.016\ncoulomb_backward_n_m = 0.016\nviscous_n_m_s = 0.003\n"
     );
     format!(
         "
-# Four wheels, the two of a side as one: by track b = {TRACK_M} m, axles l = {AXLES_M} m apart, mass and a friction of {FRICTION}.
+# Four wheels, the two of a side as one: by track b = {track_m} m, axles l = {AXLES_M} m apart, mass and a friction of {FRICTION}.
 # Nothing is identified: measure it, `rumbo identify` fits it.
 [plant.body]
 mass_kg = {MASS_KG}

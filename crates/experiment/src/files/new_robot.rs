@@ -1,12 +1,14 @@
 //! A robot file to start from: a board, a driver and pins as text with comments, and which known robot that looks like.
 
 use super::error::FileError;
-use super::new_plant::plant;
+use super::new_plant::{encoder, plant};
 use super::{Kind, Library, RobotFile};
 use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::{Direction, Driver};
 use rumbo_sim::wiring::{SIGNALS, Wiring, is_driver_input};
 use std::fmt::Write;
+
+pub use super::new_plant::{Measured, counted};
 
 /// A driver that is chosen with its enables held by jumpers.
 pub const JUMPERS: &str = "-jumpers";
@@ -15,6 +17,12 @@ const ALIKE: f64 = 0.5;
 /// Name of the wiring and the rig.
 const OWN: &str = "own";
 
+/// The sonars, and where each usually sits and looks: x and y \[m\], and the direction \[deg\].
+pub const SONARS: [(&str, [f64; 3]); 3] = [
+    ("front", [0.11, 0.0, 0.0]),
+    ("left", [0.05, 0.07, 90.0]),
+    ("right", [0.05, -0.07, -90.0]),
+];
 /// How the name of a line sensor begins among the pins, before a name of its own.
 pub const LINE: &str = "line_";
 /// What may be said of all line sensors in place of one, and the key that says it: `line_dark=low`.
@@ -52,8 +60,10 @@ pub struct NewRobot {
     pub pins: Vec<(String, String)>,
     /// It has four wheels, the two of a side driven alike.
     pub four_wheels: bool,
-    /// Its battery's voltage \[V\], where that is not the usual one.
-    pub battery_v: Option<f64>,
+    /// Where sonars sit and look, where that is not the usual place: x and y \[m\], and the direction \[deg\].
+    pub sonars: Vec<(String, [f64; 3])>,
+    /// What is known of its body.
+    pub measured: Measured,
     /// Parts: name, kind, and pin or address.
     pub parts: Vec<[String; 3]>,
 }
@@ -134,15 +144,16 @@ impl NewRobot {
             text.push_str(&line);
             text.push('\n');
         };
-        for (sonar, place) in [
-            ("front", "x_m = 0.11"),
-            ("left", "x_m = 0.05\ny_m = 0.07\nangle_deg = 90"),
-            ("right", "x_m = 0.05\ny_m = -0.07\nangle_deg = -90"),
-        ] {
+        for (sonar, usual) in SONARS {
             if given(&format!("{sonar}_trigger")) {
+                let own = self.sonars.iter().find(|(name, _)| name == sonar);
+                let [x_m, y_m, angle_deg] = own.map_or(usual, |(_, place)| *place);
                 put(format!(
-                    "\n# Where that sonar sits: measure it.\n[rig.{OWN}.{sonar}]\n{place}"
+                    "\n# Where that sonar sits: measure it.\n[rig.{OWN}.{sonar}]\nx_m = {x_m}"
                 ));
+                if [y_m, angle_deg] != [0.0; 2] {
+                    put(format!("y_m = {y_m}\nangle_deg = {angle_deg}"));
+                }
                 if sonar == "front" && given("servo") {
                     put("on_servo = true".into());
                 }
@@ -195,12 +206,9 @@ impl NewRobot {
         }
         text.push_str(&self.line_sensors());
         text.push_str(&self.obstacle_sensors());
-        text.push_str(&plant(driver, self.four_wheels, self.battery_v));
+        text.push_str(&plant(driver, self.four_wheels, &self.measured));
         if given("left_encoder") || given("right_encoder") {
-            text.push_str(
-                "\n# A disc on the wheel; of a sensor on the motor's shaft edges_per_motor_turn, and gear_ratio in [plant.motor].\n\
-                 [plant.encoder]\nslots = 20\n",
-            );
+            text.push_str(&encoder(&self.measured));
         }
         text
     }
@@ -359,27 +367,6 @@ pub fn remarks(wiring: &Wiring) -> Vec<String> {
         }
     }
     remarks
-}
-
-/// What a turn of a wheel counts, of a robot with encoders.
-#[must_use]
-pub fn counted(robot: &RobotFile) -> Option<String> {
-    let has = |wiring: &Wiring| {
-        wiring
-            .pins
-            .keys()
-            .any(|signal| signal.ends_with("_encoder"))
-    };
-    robot.wirings.values().any(has).then(|| {
-        let edges = match robot.plant.encoder.slots {
-            0.0 => robot.plant.encoder.edges_per_motor_turn * robot.plant.motor.gear_ratio,
-            slots => 2.0 * slots,
-        };
-        format!(
-            "a turn of a wheel gives {edges} edges on each output of its encoder, half of them rising: [plant.encoder], and \
-             gear_ratio in [plant.motor]; the sketch must count with the same"
-        )
-    })
 }
 
 /// The signal of the same side for another input.

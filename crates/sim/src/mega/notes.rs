@@ -13,6 +13,17 @@ use rumbo_emulator::devices::{Cause, Unmodelled};
 /// The USARTs as a sketch calls them, and the module on other pins.
 const NAMES: [&str; PARTS as usize] = ["Serial (USB)", "Serial1", "Serial2", "Serial3", "its pins"];
 
+/// What sensors tell the program.
+const READ: [&str; 7] = [
+    "left_encoder",
+    "left_encoder_b",
+    "right_encoder",
+    "right_encoder_b",
+    "left_echo",
+    "right_echo",
+    "front_echo",
+];
+
 /// What a program did that people wonder about.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Oddities {
@@ -105,7 +116,8 @@ impl Mega {
         let strange = self.chip.unmodelled().iter().map(line);
         let strange = strange.chain(self.standstill()).chain(self.restarted());
         let strange = strange.chain(self.unsent()).chain(self.misframed());
-        let strange = strange.chain(self.floating()).map(Note::from);
+        let strange = strange.chain(self.floating()).chain(self.overdriven());
+        let strange = strange.map(Note::from);
         let notes = strange.chain(self.oddities.notes()).chain(self.silence());
         notes
             .chain(self.bus.notes().into_iter().map(Note::from))
@@ -200,6 +212,25 @@ impl Mega {
                     "{} on pin {} closes to GND, and the program switches no pull-up on, so that open and closed read alike: use INPUT_PULLUP, or say what resistor there is, to = \"5v\" where pressed is HIGH, else to = \"gnd\"",
                     part.name,
                     board.shown(part.pin)
+                )
+            })
+        })
+    }
+
+    /// A sensor at a pin that the program drives itself; of a sonar with one line for both it does so by turns.
+    fn overdriven(&self) -> impl Iterator<Item = String> {
+        READ.into_iter().filter_map(move |signal| {
+            let number = self.firmware.number_of(signal)?;
+            let trigger = signal.strip_suffix("_echo");
+            let trigger = trigger.map(|sonar| format!("{sonar}_trigger"));
+            let by_turns = trigger.is_some_and(|trigger| self.firmware.number_of(&trigger) == Some(number));
+            let board = self.firmware.board();
+            let driven = matches!(self.chip.devices().drive(board.pin(number)?), Drive::Low | Drive::High);
+            let shown = board.shown(number);
+            (driven && !by_turns).then(|| {
+                format!(
+                    "{signal}: pin {shown} is an output of the program, which reads there what it writes, and not the sensor: \
+                     pinMode({shown}, INPUT)"
                 )
             })
         })

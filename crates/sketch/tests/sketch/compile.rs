@@ -365,3 +365,38 @@ fn libraries_are_taken_by_their_headers_from_beside_the_sketch_and_from_folders(
     ];
     compiler.compile(&source("honk", &files), &[]).unwrap();
 }
+
+#[test]
+fn what_a_project_says_in_its_build_flags_reaches_its_program() {
+    let Some((compiler, _cache)) = compiler() else {
+        return;
+    };
+    let main = "#include <Arduino.h>\nextern \"C\" int speed(void);\nauto half = [](auto x) { return x / 2; };\n\
+                void setup() { half(speed()); }\nvoid loop() { }\n";
+    let files = |said: &str| {
+        let project = format!("[env:mega]\nplatform = atmelavr\nbuild_flags = {said}\n");
+        let files = [
+            ("platformio.ini", &project[..]),
+            ("src/main.cpp", main),
+            ("src/speed.c", "int speed(void) { return SPEED; }\n"),
+        ];
+        source("flags", &files)
+    };
+    let image = compiler.compile(&files("-std=gnu++14\n  -D SPEED=7"), &[]);
+    assert_eq!(image.unwrap().warnings, []);
+    let without = refused(&compiler, &files("-D OTHER"));
+    assert!(
+        without.contains("SPEED") && without.contains("'auto'"),
+        "{without}"
+    );
+    if compiler.toolchain().compiler.starts_with("5.") {
+        let mut new = files("-std=gnu++17 -DSPEED=7");
+        let newer = "template <class... T> int sum(T... all) { return (all + ...); }\n";
+        new.files.insert("src/new.cpp".into(), newer.into());
+        let hint = refused(&compiler, &new);
+        assert!(
+            hint.contains("-std=gnu++17 is more than avr-gcc 5."),
+            "{hint}"
+        );
+    }
+}

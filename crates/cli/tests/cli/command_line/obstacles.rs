@@ -103,3 +103,89 @@ fn a_button_to_the_supply_and_a_car_s_remote_are_options_of_a_new_robot() {
         "{said}"
     );
 }
+
+#[test]
+fn an_echo_that_the_program_drives_itself_is_named() {
+    let Some(bench) = bench("own_echo") else {
+        return;
+    };
+    let pins = "--pins=left_forward=5,left_backward=6,right_forward=9,right_backward=10,front_trigger=2,front_echo=3";
+    new(&bench, "own", "bts7960-jumpers", &[pins]);
+    let sketch = "const byte pins[] = {2, 5, 6, 9, 10};\nvoid setup() { for (byte pin : pins) pinMode(pin, OUTPUT); pinMode(3, MODE); }\n\
+                  void loop() {\n  digitalWrite(2, HIGH); delayMicroseconds(10); digitalWrite(2, LOW);\n\
+                  bool far = pulseIn(3, HIGH, 30000) > 3000;\n\
+                  digitalWrite(5, far); digitalWrite(9, far); delay(50);\n}\n";
+    let named = "front_echo: pin 3 is an output of the program";
+    let (metrics, said) = run(&bench, "own.toml", &sketch.replace("MODE", "OUTPUT"), &[]);
+    assert_eq!(metrics["path_m"], Value::Null, "{said}");
+    assert!(said.contains(named), "{said}");
+    let (metrics, said) = run(&bench, "own.toml", &sketch.replace("MODE", "INPUT"), &[]);
+    assert!(metrics["path_m"].as_f64().unwrap() > 0.3, "{said}");
+    assert!(!said.contains(named), "{said}");
+}
+
+#[test]
+fn a_pair_of_sonars_and_what_was_measured_are_options_of_a_new_robot() {
+    let Some(bench) = bench("measured") else {
+        return;
+    };
+    let motors = "--pins=left_forward=5,left_backward=6,right_forward=9,right_backward=10";
+    let pins = format!(
+        "{motors},left_encoder=2,right_encoder=3,left_trigger=4,left_echo=A0,right_trigger=7,right_echo=A1"
+    );
+    let more = [
+        &pins[..],
+        "--sonars=left=0.08:0.07:90,right=-0.04:0.07:90",
+        "--base=0.2",
+        "--wheel=0.08",
+        "--edges=748",
+    ];
+    new(&bench, "own", "bts7960-jumpers", &more);
+    // A turn of the left wheel along a wall on the left, which both see.
+    let sketch = "volatile int edges;\nvoid count() { edges++; }\n\
+                  bool near(int trigger, int echo) {\n  digitalWrite(trigger, HIGH); delayMicroseconds(10);\n\
+                  \x20 digitalWrite(trigger, LOW);\n  long us = pulseIn(echo, HIGH, 30000); delay(20);\n\
+                  \x20 return us > 2000 && us < 4500;\n}\n\
+                  const byte pins[] = {4, 5, 6, 7, 9, 10};\nvoid setup() {\n  for (byte pin : pins) pinMode(pin, OUTPUT);\n\
+                  \x20 attachInterrupt(digitalPinToInterrupt(2), count, CHANGE);\n}\n\
+                  void loop() {\n  bool drives = near(4, A0) && near(7, A1) && edges < 748;\n\
+                  \x20 analogWrite(5, drives ? 100 : 0); analogWrite(9, drives ? 100 : 0);\n}\n";
+    std::fs::write(bench.join("car.ino"), sketch).unwrap();
+    let run = rumbo(
+        &bench,
+        &[
+            "run",
+            "free",
+            "--world",
+            "wall_side",
+            "--robot",
+            "own.toml",
+            "--sketch",
+            "car.ino",
+            "--json",
+            "--no-record",
+        ],
+    );
+    let result: Value = serde_json::from_str(&stdout(&run)).unwrap_or_default();
+    let path_m = result["metrics"]["path_m"].as_f64();
+    assert!(
+        path_m.is_some_and(|path_m| (0.24..0.4).contains(&path_m)),
+        "{}{}",
+        stdout(&run),
+        stderr(&run)
+    );
+    let unwired = [
+        "new",
+        "robot",
+        "b",
+        "--board=uno",
+        "--driver=l298n-jumpers",
+        "--sonars=front=0.1:0:0",
+        motors,
+    ];
+    let refused = stderr(&rumbo(&bench, &unwired));
+    assert!(
+        refused.contains("--sonars front: that sonar has no pins"),
+        "{refused}"
+    );
+}
