@@ -39,6 +39,7 @@ export const PROGRAM = {
   ', unless a jumper holds it: then write "high" in the wiring': ', salvo que lo sujete un puente: entonces escribe "high" en el cableado', '{} was never high{}': '{} nunca estuvo alto{}',
   '{} and {} were never high': '{} y {} nunca estuvieron altos', '{} and {} never differed while it was enabled': '{} y {} nunca fueron distintos mientras estuvo habilitado',
   '{} is on pin {}, which has no PWM on the {}: analogWrite() there only switches; PWM is on {}': '{} está en el pin {}, que no tiene PWM en el {}: analogWrite() ahí solo conmuta; hay PWM en {}',
+  '{}: pin {} is an output of the program, which reads there what it writes, and not the sensor: pinMode({}, INPUT)': '{}: el pin {} es una salida del programa, que lee ahí lo que escribe, y no el sensor: pinMode({}, INPUT)',
   '{} on pin {} closes to GND, and the program switches no pull-up on, so that open and closed read alike: use INPUT_PULLUP, or say what resistor there is, to = "5v" where pressed is HIGH, else to = "gnd"': '{}, en el pin {}, cierra a GND y el programa no activa ningún pull-up, así que abierto y cerrado se leen igual: usa INPUT_PULLUP, o di qué resistencia hay, to = "5v" si pulsado es HIGH, si no to = "gnd"',
   // What of the robot was not identified.
   'motor driver: {}': 'driver de motores: {}', '{}, by {}, not identified': '{}, según {}, sin identificar', 'driver with a direction and a PWM input': 'driver con una entrada de dirección y una de PWM',

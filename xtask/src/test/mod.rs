@@ -392,13 +392,8 @@ fn warnings(messages: &str) -> Vec<String> {
 
 /// Links to what is private are for those who read the source; in the documentation they are words.
 fn doc(project: &Project) -> Result<(), Stop> {
-    let mut doc = project.cargo(&[
-        "doc",
-        "--workspace",
-        "--no-deps",
-        "--locked",
-        "--keep-going",
-    ]);
+    let words = "doc --workspace --no-deps --locked --keep-going";
+    let mut doc = project.cargo(&words.split(' ').collect::<Vec<_>>());
     let flags = "-D warnings -A rustdoc::private-intra-doc-links";
     Ok(run_command(doc.env("RUSTDOCFLAGS", flags))?)
 }

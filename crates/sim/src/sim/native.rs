@@ -266,8 +266,8 @@ impl Sim {
         }
     }
 
-    fn tick(&mut self, native: &mut Native) {
-        let now_us = self.now_us();
+    /// Hands the robot the bytes that have come; gives those that are recorded.
+    fn receive(&mut self, native: &mut Native, now_us: u64) -> Vec<u8> {
         let mut received = Vec::new();
         if native.is_unlinked {
             native.robot.stay_alive();
@@ -282,6 +282,12 @@ impl Sim {
                 received.push(byte);
             }
         }
+        received
+    }
+
+    fn tick(&mut self, native: &mut Native) {
+        let now_us = self.now_us();
+        let received = self.receive(native, now_us);
         let echo = native
             .board
             .echo(now_us)
