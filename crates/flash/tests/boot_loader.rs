@@ -36,6 +36,8 @@ struct Board {
     lines: bool,
     /// DTR reaches the reset.
     resets: bool,
+    /// How often the programmer has pulled the line.
+    pulls: u32,
     /// The cable is pulled out after so many bytes to the board.
     cable: usize,
     /// Changes what the board sends.
@@ -52,6 +54,7 @@ impl Board {
             chip: Chip::new(&Image::of_flash(&flash)),
             lines: false,
             resets: true,
+            pulls: 0,
             cable: usize::MAX,
             noise: |_, byte| byte,
             sent: 0,
@@ -81,6 +84,7 @@ impl Board {
     }
 
     fn lines(&mut self, pulled: bool) {
+        self.pulls += u32::from(pulled && !self.lines);
         if pulled && !std::mem::replace(&mut self.lines, pulled) && self.resets {
             // The flash stays.
             self.chip = Chip::new(&Image::of_flash(self.chip.cpu().flash()));
@@ -255,6 +259,7 @@ fn a_board_that_is_not_there_or_is_not_reset_is_reported() {
     let mut first = programmer(&program(PAGE));
     assert_eq!(absent.write(&mut first).1, Err(FlashError::NoAnswer));
     assert_eq!(first.aftermath(), "");
+    assert_eq!(absent.pulls, 5);
     // Its program runs, and no boot loader.
     let mut deaf = Board::new(&boot_loader, &HALT);
     deaf.resets = false;

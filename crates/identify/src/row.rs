@@ -47,3 +47,28 @@ impl LogRow {
         0.5 * (self.range_m[0] + self.range_m[1])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speeds_are_measured_when_the_later_wheel_s_are() {
+        let ends = |end_ms| Window {
+            end_ms,
+            length_ms: 40,
+        };
+        for window in [[ends(80), ends(95)], [ends(95), ends(80)]] {
+            let row = LogRow {
+                at_ms: 100,
+                duty: [0.0; 2],
+                reference_rad_s: [0.0; 2],
+                speed_rad_s: [0.0; 2],
+                range_m: [0.0; 2],
+                window,
+                edgeless: [false; 2],
+            };
+            assert_eq!(row.measured_ms(), 95);
+        }
+    }
+}

@@ -230,6 +230,7 @@ fn an_editor_breaks_steps_reads_and_changes_a_sketch() {
         ("path[1].y", "1.875"),
         ("(&path[2])->x", "3"),
         ("mode == DRIVE", "1"),
+        ("round_ != 4", "1"),
         (
             "filter",
             "{<Base> = {made = true}, share = 0.25, state = 369.722656, count = 4}",

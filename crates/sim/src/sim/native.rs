@@ -267,7 +267,7 @@ impl Sim {
     }
 
     /// Hands the robot the bytes that have come; gives those that are recorded.
-    fn receive(&mut self, native: &mut Native, now_us: u64) -> Vec<u8> {
+    fn take_uplink(&mut self, native: &mut Native, now_us: u64) -> Vec<u8> {
         let mut received = Vec::new();
         if native.is_unlinked {
             native.robot.stay_alive();
@@ -287,7 +287,7 @@ impl Sim {
 
     fn tick(&mut self, native: &mut Native) {
         let now_us = self.now_us();
-        let received = self.receive(native, now_us);
+        let received = self.take_uplink(native, now_us);
         let echo = native
             .board
             .echo(now_us)
