@@ -9,4 +9,5 @@ test('a legend shows the last value up to the time, however the curve is thinned
   for (let line = 0; line < 6_000; line++) table.push(line / 25, { a: line, b: line % 3 === 0 ? line : undefined });
   assert.deepEqual([42.01, 42, Infinity, -1].map((t_s) => table.at('a', t_s)), [1050, 1050, 5_999, undefined]);
   assert.equal(table.at('b', 42.05), 1050);
+  assert.deepEqual([42, 42.01].map((t_s) => table.indexAt(t_s)), [1050, 1051]);
 });

@@ -142,7 +142,7 @@ mod tests {
         assert!(lease.admit(&ARM, first).is_err());
         // A page without control releases none by leaving.
         lease.leave(first);
-        assert!(lease.admit(&ARM, second).is_ok());
+        assert_eq!(lease.view(second).seat, Seat::Driver);
         let watching = lease.view(viewer);
         assert_eq!((watching.holder, watching.pages), (Some(second), 2));
         // A page may release control and stay.

@@ -254,6 +254,12 @@ mod tests {
     }
 
     #[test]
+    fn what_each_file_says_again_is_said_once() {
+        let (header, own) = ("pid.h:2:1: error: one\n", "b.cpp:3:1: error: other\n");
+        assert_eq!(parse(&[header, own, header].concat()).len(), 2);
+    }
+
+    #[test]
     fn a_function_that_is_missing_is_named_by_the_linker() {
         let found = parse(
             "/tmp/ccA.ltrans0.ltrans.o: In function `main':\n\

@@ -163,7 +163,7 @@ mod tests {
             ("Steering/library.properties", "architectures=avr, sam\n"),
             ("Horn/src/Horn.h", ""),
             ("Horn/src/avr/Horn.cpp", ""),
-            ("Horn/library.properties", "name=Horn\n"),
+            ("Horn/library.properties", "name=Horn\narchitectures=*\n"),
             ("AnotherHorn/Horn.h", ""),
             ("Radio/Radio.h", ""),
             ("Radio/library.properties", "architectures=esp32\n"),

@@ -38,6 +38,7 @@ fn the_page_itself_is_no_secret_and_is_served_with_care() {
     for header in [
         "content-security-policy: default-src 'self'",
         "x-content-type-options: nosniff",
+        "x-frame-options: DENY",
         "referrer-policy: no-referrer",
         "cache-control: no-store",
     ] {
