@@ -84,7 +84,7 @@ pub struct Debugger<W> {
     pub(crate) data: Vec<DataBreakpoint>,
     /// What breakpoints have written.
     logged: Vec<String>,
-    /// The files beside that of `setup`, or else of `main`.
+    /// The files of a sketch, in which its steps end.
     own: BTreeSet<usize>,
 }
 

@@ -150,11 +150,11 @@ impl Symbols {
         entries.find_map(|name| self.functions_named(name).next())
     }
 
-    /// The files beside and below that of the entry: not those of the core and of libraries.
+    /// The files beside and below that of a sketch's `setup`: not those of the core and of libraries. None of an image
+    /// without it, whose parts may lie anywhere.
     pub(crate) fn files_of_program(&self) -> BTreeSet<usize> {
-        let row = self
-            .entry()
-            .and_then(|entry| self.lines.row(self.body(entry)));
+        let setup = self.functions_named("setup").next();
+        let row = setup.and_then(|setup| self.lines.row(self.body(setup)));
         let Some(folder) = row.and_then(|row| Path::new(&self.lines.files[row.file].name).parent())
         else {
             return BTreeSet::new();

@@ -5,24 +5,13 @@ use super::firmware::LinkLanguage;
 use super::{CYCLES_PER_US, Mega, PARTS, TRIGGER_CYCLES};
 use crate::bus::DeviceKind;
 use crate::floor::FloorReading;
-use crate::wiring::PartKind;
+use crate::wiring::{PartKind, SIGNALS};
 use rumbo_emulator::cpu::Standstill;
 use rumbo_emulator::devices::ports::Drive;
 use rumbo_emulator::devices::{Cause, Unmodelled};
 
 /// The USARTs as a sketch calls them, and the module on other pins.
 const NAMES: [&str; PARTS as usize] = ["Serial (USB)", "Serial1", "Serial2", "Serial3", "its pins"];
-
-/// What sensors tell the program.
-const READ: [&str; 7] = [
-    "left_encoder",
-    "left_encoder_b",
-    "right_encoder",
-    "right_encoder_b",
-    "left_echo",
-    "right_echo",
-    "front_echo",
-];
 
 /// What a program did that people wonder about.
 #[derive(Clone, Copy, Debug, Default)]
@@ -219,7 +208,8 @@ impl Mega {
 
     /// A sensor at a pin that the program drives itself; of a sonar with one line for both it does so by turns.
     fn overdriven(&self) -> impl Iterator<Item = String> {
-        READ.into_iter().filter_map(move |signal| {
+        let is_read = |signal: &&str| signal.contains("_encoder") || signal.ends_with("_echo");
+        SIGNALS.into_iter().filter(is_read).filter_map(move |signal| {
             let number = self.firmware.number_of(signal)?;
             let trigger = signal.strip_suffix("_echo");
             let trigger = trigger.map(|sonar| format!("{sonar}_trigger"));
