@@ -231,4 +231,20 @@ mod tests {
         let error = recorder.trouble().unwrap().to_string();
         assert!(error.contains("is the disk full?"), "{error}");
     }
+    #[test]
+    fn the_end_of_a_robot_s_log_says_what_its_last_second_left_out() {
+        let manifest = Manifest {
+            kind: LogKind::Robot,
+            ..Manifest::default()
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let mut recorder = Recorder::in_folder(folder.path(), &manifest).unwrap();
+        (0..1_000).for_each(|number| recorder.record(burst(number)));
+        let path = recorder.path().to_owned();
+        drop(recorder);
+        let log = crate::log_file::read(&path).unwrap();
+        let recorded: usize = log.link.iter().map(|burst| burst.bytes.len()).sum();
+        let left_out = format!("; {} bytes of the link", 100_000 - recorded);
+        assert!(log.events().any(|(.., text)| text.contains(&left_out)));
+    }
 }
