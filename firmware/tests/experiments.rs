@@ -80,13 +80,8 @@ fn what_passes_natively_passes(setups: Vec<Setup>) -> Vec<(String, String)> {
 
 /// The furthest that the servo turned to the right and to the left.
 fn looked_rad(result: &RunResult) -> [f64; 2] {
-    let angles = || {
-        result
-            .trace
-            .between(0.0, f64::MAX)
-            .iter()
-            .map(|sample| sample.servo_rad)
-    };
+    let samples = result.trace.between(0.0, f64::MAX);
+    let angles = || samples.iter().map(|sample| sample.servo_rad);
     [angles().fold(0.0, f64::min), angles().fold(0.0, f64::max)]
 }
 

@@ -231,6 +231,7 @@ mod tests {
         let error = recorder.trouble().unwrap().to_string();
         assert!(error.contains("is the disk full?"), "{error}");
     }
+
     #[test]
     fn the_end_of_a_robot_s_log_says_what_its_last_second_left_out() {
         let manifest = Manifest {

@@ -26,7 +26,7 @@ def main():
     peer.must("/rumbo/arm")
     client = ActionClient(peer.node, NavigateToPose, "/rumbo/navigate_to_pose")
     assert client.wait_for_server(PATIENCE_S)
-    outcomes = []
+    outcomes, places = [], []
     for x, stops in ((0.6, False), (-1.0, True)):
         goal = NavigateToPose.Goal()
         goal.pose.header.frame_id = "odom"
@@ -39,9 +39,11 @@ def main():
             peer.must("/rumbo/stop")
         wait_for("the end", result.done)
         outcomes.append(result.result())
+        places.append(place(odometry))
     there, stopped = outcomes
     assert [each.status for each in outcomes] == [GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_ABORTED], outcomes
-    assert math.dist(place(odometry), (0.6, 0.0)) < 0.3, place(odometry)
+    # The second goal may have moved the robot before it was stopped.
+    assert math.dist(places[0], (0.6, 0.0)) < 0.3, places
     if distribution == "kilted":
         assert (there.result.error_code, there.result.error_msg) == (0, ""), there
         assert stopped.result.error_code == 9000 and stopped.result.error_msg, stopped
