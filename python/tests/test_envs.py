@@ -106,6 +106,7 @@ def test_without_autoreset_the_caller_resets_by_a_mask() -> None:
         vector.step(np.zeros((3, 3), np.float32))
     mask = np.array([True, True, True])
     _, before = vector.reset(options={"reset_mask": mask})
+    assert len(set(before["seed"])) == 3
     _, after = vector.reset(options={"reset_mask": np.array([False, True, False])})
     assert (before["seed"] != after["seed"]).tolist() == [False, True, False]
     assert after["_seed"].tolist() == [False, True, False]
