@@ -1,8 +1,8 @@
-//! Rounds that need not run again: a loop waits on as before an event that it does not look at, such as an interrupt that
-//! counts elsewhere, or the caller's end.
+//! Rounds that need not run again: behind an event that a loop does not look at, such as an interrupt that counts
+//! elsewhere or the caller's end, it waits on as before.
 //!
-//! Of a closed round ([`super::wait`]) is kept what it began with and what it found. Where the loop begins with the same
-//! and finds the same, its next rounds are that one.
+//! Of a closed round ([`super::wait`]) is kept what it began with and what it read. Where the loop begins with the same
+//! and would read the same, its next rounds are that one.
 
 use super::Cpu;
 use super::lanes::Step;
@@ -24,8 +24,8 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// Of a round that has just closed, with interrupts on at its begin; it stored to `stores`. `None` where a peripheral is
-    /// about to read otherwise.
+    /// Of a round that has just closed and stored to `stores`. `None` where a peripheral is about to read otherwise, and
+    /// with interrupts off, where the next event may be hidden.
     pub(super) fn of<I: Io>(
         cpu: &Cpu,
         io: &mut I,
@@ -78,7 +78,7 @@ impl Kept {
 }
 
 impl Cpu {
-    /// At a known loop: leaves out its rounds before `limit` if they are as one that was kept; returns whether they are.
+    /// At a known loop: leaves out its rounds before `limit` if they are as the kept one; returns whether they are.
     pub(super) fn recall<I: Io>(&mut self, io: &mut I, limit: u64, kept: &Kept) -> bool {
         let Some(rounds) = kept.rounds(self, io, limit) else {
             return false;

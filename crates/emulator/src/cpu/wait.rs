@@ -16,8 +16,8 @@ use crate::io::Io;
 use crate::registers::{EIND, RAMPZ, SPH, SPL, SREG};
 use crate::status::Status;
 
-/// Instructions of one search, and after how many without coming round it begins again from where it then is: where a loop
-/// is known, and elsewhere; the next time after twice as many.
+/// Instructions of one search, and after how many without coming round it begins again from where it then is: where a
+/// loop is known, and elsewhere; the next time after twice as many.
 const SEARCH: usize = 320;
 const PATIENCE: [usize; 2] = [128, 64];
 /// Bytes stored in a round at most.
