@@ -8,8 +8,8 @@
 //! thus grows with what happens, not with what exists.
 //!
 //! Instructions of one kind in a row are a run, done at once if its last one starts before the limit ([`runs`]); rounds of
-//! a loop that waits are left out ([`wait`]). Under observation, and instruction by instruction, neither is done: that
-//! is the plain interpreter, the reference of both.
+//! a loop that waits are left out ([`wait`], [`recall`]). Under observation, and instruction by instruction, neither is
+//! done: that is the plain interpreter, the reference of both.
 //!
 //! Instruction timing: 2549Q (ATmega640/1280/1281/2560/2561), section 34; interrupts take 5 cycles to enter, 5 more
 //! out of sleep, and the instruction after SEI or RETI always runs first (sections 7.7 and 7.8). With a program counter
@@ -19,6 +19,7 @@ mod astray;
 mod bus;
 mod execute;
 mod lanes;
+mod recall;
 mod runs;
 pub mod touch;
 mod uses;

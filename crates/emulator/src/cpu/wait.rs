@@ -9,15 +9,17 @@
 
 use super::Cpu;
 use super::lanes::{Alike, Ran, Step};
+use super::recall::Kept;
 use super::uses::S;
 use crate::decode::{Code, Op};
 use crate::io::Io;
 use crate::registers::{EIND, RAMPZ, SPH, SPL, SREG};
 use crate::status::Status;
 
-/// Instructions of one search, and after which of them it begins again from where it then is.
+/// Instructions of one search, and after how many without coming round it begins again from where it then is: where a
+/// loop is known, and elsewhere; the next time after twice as many.
 const SEARCH: usize = 320;
-const FRESH_STARTS: [usize; 2] = [64, 192];
+const PATIENCE: [usize; 2] = [128, 64];
 /// Bytes stored in a round at most.
 const STORES: usize = 64;
 /// Shorter spans to the next event are not worth a search [cycles].
@@ -50,6 +52,8 @@ pub(super) struct Search {
 struct Loop {
     word: u32,
     failures: u8,
+    /// Its last closed round that began there.
+    kept: Option<Kept>,
 }
 
 impl Default for Search {
@@ -67,14 +71,45 @@ impl Default for Search {
 }
 
 impl Search {
-    /// Operations were decoded again, maybe a marked one.
+    /// Operations were decoded again, maybe a marked one, or one of a round that was kept.
     pub(super) fn unmark(&mut self) {
         self.marked = false;
+        self.loops.iter_mut().for_each(|known| known.kept = None);
     }
 
     /// A known loop has this as its lowest word.
     pub(super) fn begins_at(&self, word: u32) -> bool {
         self.loops.iter().any(|known| known.word == word)
+    }
+
+    fn known(&mut self, word: u32) -> Option<&mut Loop> {
+        self.loops.iter_mut().find(|known| known.word == word)
+    }
+
+    fn keep(&mut self, word: u32, kept: Option<Kept>) {
+        if let Some(known) = self.known(word) {
+            known.kept = kept;
+        }
+    }
+}
+
+/// What the CPU itself holds.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Held {
+    registers: [u8; 32],
+    status: u8,
+    stack_pointer: u16,
+    extended: [u8; 2],
+}
+
+impl Held {
+    pub(super) fn by(cpu: &Cpu) -> Held {
+        Held {
+            registers: *cpu.registers(),
+            status: cpu.status.bits(),
+            stack_pointer: cpu.stack_pointer(),
+            extended: [cpu.rampz, cpu.eind],
+        }
     }
 }
 
@@ -88,10 +123,7 @@ struct Round {
     /// The lowest word in it, by which a loop is known.
     lowest: u32,
     cycle: u64,
-    registers: [u8; 32],
-    status: u8,
-    stack_pointer: u16,
-    extended: [u8; 2],
+    held: Held,
     /// Addresses in SRAM that were stored to, and what was there before.
     stores: [(u16, u8); STORES],
     stored: usize,
@@ -107,10 +139,7 @@ impl Round {
             counter: None,
             lowest: cpu.program_counter,
             cycle: cpu.cycle,
-            registers: *cpu.registers(),
-            status: cpu.status.bits(),
-            stack_pointer: cpu.stack_pointer(),
-            extended: [cpu.rampz, cpu.eind],
+            held: Held::by(cpu),
             stores: [(0, 0); STORES],
             stored: 0,
             steady_until: u64::MAX,
@@ -126,16 +155,15 @@ impl Round {
 
     /// The stack and what only long jumps change are as they were.
     fn is_level(&self, cpu: &Cpu) -> bool {
-        self.stack_pointer == cpu.stack_pointer()
-            && self.extended == [cpu.rampz, cpu.eind]
+        self.held.stack_pointer == cpu.stack_pointer()
+            && self.held.extended == [cpu.rampz, cpu.eind]
             && !cpu.shadow
     }
 
     /// All else is too.
     fn is_closed(&self, cpu: &Cpu) -> bool {
         self.counter.is_none()
-            && self.registers == *cpu.registers()
-            && self.status == cpu.status.bits()
+            && self.held == Held::by(cpu)
             && self
                 .stores()
                 .all(|(address, before)| cpu.in_sram(address) == Some(before))
@@ -192,8 +220,7 @@ impl Round {
                 }
                 (Some(_), _) | (None, SREG) => {}
                 (None, _) if touch.writes => return None,
-                (None, 0..32 | SPL | SPH) => {}
-                (None, RAMPZ | EIND) if cpu.is_far => {}
+                (None, own) if cpu.has_own(own) => {}
                 (None, _) => {
                     let until = io.steady_until(address, cpu.cycle);
                     if until == 0 {
@@ -213,6 +240,12 @@ impl Cpu {
     /// Cycles so far that did not run, since they are rounds of a loop that waits.
     pub fn cycles_left_out(&self) -> u64 {
         self.search.left_out
+    }
+
+    /// The CPU itself has this register, besides SREG, which an instruction may also write.
+    pub(super) fn has_own(&self, address: u16) -> bool {
+        matches!(address, 0..32 | SPL | SPH | SREG)
+            || self.is_far && matches!(address, RAMPZ | EIND)
     }
 
     pub(super) fn in_sram(&self, address: u16) -> Option<u8> {
@@ -237,16 +270,34 @@ impl Cpu {
     #[inline(never)]
     fn leave_out_rounds<I: Io>(&mut self, io: &mut I, until: u64) {
         let known = std::mem::take(&mut self.search.arrived).then_some(self.program_counter);
+        if let Some(word) = known
+            && let Some(kept) = self.search.known(word).and_then(|known| known.kept.take())
+        {
+            let limit = io.deadline(self.status.interrupts).min(until);
+            if self.recall(io, limit, &kept) {
+                self.search.keep(word, Some(kept));
+            }
+            // Behind an event a round may differ only by what came before: that one is not worth a record.
+            if self.cycle < limit {
+                self.step_until(io, self.cycle, self.cycle + 1);
+            }
+            return;
+        }
         let steps = std::mem::take(&mut self.search.steps);
         let mut round = Round::from(self, steps);
-        let found = self.search_rounds(io, until, &mut round);
+        let patience = PATIENCE[usize::from(known.is_none())];
+        let found = self.search_rounds(io, until, &mut round, patience);
         round.steps.clear();
         self.search.steps = round.steps;
         let search = &mut self.search;
         match (known, found) {
             (None, Some(word)) if !search.begins_at(word) => {
                 search.pause = PAUSE;
-                search.loops.push(Loop { word, failures: 0 });
+                search.loops.push(Loop {
+                    word,
+                    failures: 0,
+                    kept: None,
+                });
                 let oldest = (search.loops.len() > LOOPS).then(|| search.loops.remove(0));
                 self.predecode_around(word);
                 if let Some(oldest) = oldest {
@@ -306,10 +357,16 @@ impl Cpu {
 
     /// Runs some instructions; if they are rounds of a loop that waits, leaves out the next ones. Returns the word by which
     /// the loop is known.
-    fn search_rounds<I: Io>(&mut self, io: &mut I, until: u64, round: &mut Round) -> Option<u32> {
+    fn search_rounds<I: Io>(
+        &mut self,
+        io: &mut I,
+        until: u64,
+        round: &mut Round,
+        mut patience: usize,
+    ) -> Option<u32> {
         let restarts = self.restarts;
         let (mut counter, mut again) = (None, false);
-        for count in 0..SEARCH {
+        for _ in 0..SEARCH {
             let limit = io.deadline(self.status.interrupts).min(until);
             let held = self.shadow;
             if self.cycle >= limit && !held {
@@ -329,6 +386,11 @@ impl Cpu {
                 if round.is_level(self) {
                     let limit = limit.min(round.steady_until);
                     if round.is_closed(self) {
+                        if self.search.begins_at(round.program_counter) {
+                            let stores = round.stores().collect();
+                            let kept = Kept::of(self, io, &round.steps, stores);
+                            self.search.keep(round.program_counter, kept);
+                        }
                         let period = self.cycle - round.cycle;
                         self.leave_out(limit.saturating_sub(self.cycle) / period * period);
                         return Some(round.lowest);
@@ -348,7 +410,8 @@ impl Cpu {
                 counter = round.counter.filter(|word| *word != round.program_counter);
                 again = true;
                 round.restart(self);
-            } else if FRESH_STARTS.contains(&count) || counter == Some(self.program_counter) {
+            } else if round.steps.len() > patience || counter == Some(self.program_counter) {
+                patience *= 2;
                 (counter, again) = (None, false);
                 round.restart(self);
             }
@@ -356,7 +419,7 @@ impl Cpu {
         None
     }
 
-    fn leave_out(&mut self, cycles: u64) {
+    pub(super) fn leave_out(&mut self, cycles: u64) {
         self.cycle += cycles;
         self.search.left_out += cycles;
     }

@@ -37,6 +37,8 @@ impl Coupling {
     }
 
     /// Wheel speeds after `dt_s` under these torques and at most this much dry friction.
+    /// Inline as `Winding::current` is.
+    #[inline(always)]
     pub(crate) fn speeds_after(
         &self,
         old: [f64; 2],

@@ -38,7 +38,7 @@ type Lane = [u8; LANES];
 #[derive(Clone, Debug)]
 pub(super) struct Step {
     op: Op,
-    cycle: u64,
+    pub(super) cycle: u64,
     registers: [u8; 32],
     status: Status,
     pub(super) touch: Option<Touch>,

@@ -3,7 +3,8 @@
 use super::assembler::*;
 use super::plain::{Pair, is_full};
 use super::program::Random;
-use crate::common::{RETI, SEI, chip_of};
+use crate::common::{RETI, SEI, chip_of, pin};
+use rumbo_emulator::devices::Input;
 
 /// TCNT0 and SREG among the I/O registers; TCNT1 in the data space.
 const TCNT0: u8 = 0x26;
@@ -138,4 +139,61 @@ fn rounds_that_count_are_left_out_and_leave_the_same() {
         left_out > cycles / 4,
         "{left_out} of {cycles} cycles are left out"
     );
+}
+
+/// A round of 244 cycles polls PB0 and a variable; an interrupt every 2,048 cycles counts elsewhere, every sixteenth time also
+/// in the variable.
+fn polls() -> Vec<u16> {
+    let (other, polled) = (DATA, DATA + 1);
+    let mut words = vec![0x940C, START as u16];
+    words.resize(OVERFLOW, RETI);
+    let (save, restore) = (one(0x920F, 16), one(0x900F, 16));
+    words.extend([save, input(16, SREG), save]);
+    words.extend(lds(16, other));
+    words.push(one(0x9403, 16));
+    words.extend(sts(other, 16));
+    // The lower half is zero.
+    words.extend([immediate(0x7000, 16, 0x0F), branch(0xF400, 1, 2)]);
+    words.extend(sts(polled, 0));
+    words.extend([restore, output(SREG, 16), restore, RETI]);
+    words.resize(START, RETI);
+    // r0 is 1; timer 0 over 8.
+    words.extend([ldi(16, 1), mov(0, 16)]);
+    words.extend(sts(0x6E, 16));
+    words.push(ldi(16, 2));
+    words.extend(sts(0x45, 16));
+    words.push(SEI);
+    let begin = words.len();
+    words.extend(lds(17, polled));
+    words.extend([input(18, 3), immediate(0x7000, 18, 1)]);
+    for _ in 0..58 {
+        words.extend([one(0x920F, 17), one(0x900F, 19)]);
+    }
+    words.extend([two(0x2800, 17, 18), branch(0xF400, 1, 1)]);
+    words.push(relative(0xC000, begin as i16 - words.len() as i16 - 1));
+    // Both are noticed: the one is taken back, the other toggles PB7 until it is low again.
+    words.extend(sts(polled, 1));
+    words.push(bit_of_io(0x9A00, 3, 7));
+    words.push(relative(0xC000, begin as i16 - words.len() as i16 - 1));
+    words
+}
+
+#[test]
+fn a_loop_waits_on_behind_an_interrupt_without_another_round() {
+    let mut random = Random(5);
+    let mut pair = Pair::new(chip_of(&polls()));
+    let last = 4_000_000;
+    for begin in (0..last).step_by(100_000) {
+        for level in [true, false] {
+            let at = begin + 1_000 * u64::from(level) + u64::from(random.below(1_000));
+            pair.input(at, Input::Pin(pin('B', 0), Some(!level)));
+        }
+        for pause in 1..=20 {
+            let until = begin + 5_000 * pause - u64::from(random.below(1_000));
+            assert!(pair.agree_at(until, "polling"));
+        }
+    }
+    // Of a search behind each event, a third of the cycles would run.
+    let left_out = pair.fast.cpu().cycles_left_out();
+    assert!(left_out > last / 4 * 3, "{left_out} of {last} cycles");
 }

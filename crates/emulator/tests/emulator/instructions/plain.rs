@@ -39,7 +39,7 @@ impl Pair {
         change(&mut self.plain);
     }
 
-    fn input(&mut self, cycle: u64, input: Input) {
+    pub(super) fn input(&mut self, cycle: u64, input: Input) {
         self.both(|chip| chip.input(cycle, input));
     }
 
