@@ -10,6 +10,7 @@ use rumbo_experiment::files::new_robot::{
 use rumbo_experiment::files::{Kind, Library};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::DRIVERS;
+use rumbo_sim::wiring::SIGNALS;
 use std::collections::HashSet;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
@@ -175,7 +176,7 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
             }
         }
     }
-    let sonars = sonars(args, &pins)?;
+    let sensors = sensors(args, &pins)?;
     Ok(NewRobot {
         name,
         board,
@@ -183,7 +184,7 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
         jumpers,
         pins,
         four_wheels: args.wheels == 4,
-        sonars,
+        sensors,
         measured: Measured {
             battery_v: args.battery,
             base_m: args.base,
@@ -194,17 +195,24 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
     })
 }
 
-/// Where sonars are, each of which has pins.
-fn sonars(args: &NewArgs, pins: &[(String, String)]) -> Result<Vec<(String, [f64; 3])>, Failure> {
-    let is_wired = |sonar: &str| {
-        let trigger = format!("{sonar}_trigger");
-        pins.iter().any(|(signal, _)| *signal == trigger)
+/// Where sensors are, each of which has pins.
+fn sensors(args: &NewArgs, pins: &[(String, String)]) -> Result<Vec<(String, [f64; 3])>, Failure> {
+    let trigger = |sensor: &str| format!("{sensor}_trigger");
+    let is_wired = |sensor: &str| {
+        pins.iter()
+            .any(|(signal, _)| signal == sensor || *signal == trigger(sensor))
     };
-    match args.sonars.iter().find(|(sonar, _)| !is_wired(sonar)) {
-        None => Ok(args.sonars.clone()),
-        Some((sonar, _)) => Err(Failure::Input(format!(
-            "--sonars {sonar}: that sonar has no pins; say --pins {sonar}_trigger=4,{sonar}_echo=A0 or the like"
-        ))),
+    match args.sensors.iter().find(|(sensor, _)| !is_wired(sensor)) {
+        None => Ok(args.sensors.clone()),
+        Some((sensor, _)) => {
+            let pins = match SIGNALS.contains(&&trigger(sensor)[..]) {
+                true => format!("{sensor}_trigger=4,{sensor}_echo=A0"),
+                false => format!("{sensor}=4"),
+            };
+            Err(Failure::Input(format!(
+                "--sensors {sensor}: that sensor has no pins; say --pins {pins} or the like"
+            )))
+        }
     }
 }
 

@@ -160,7 +160,7 @@ fn new(plan: Plan) -> Result<NewRobot, String> {
         jumpers,
         pins: plan.pins,
         four_wheels: plan.four_wheels,
-        sonars: Vec::new(),
+        sensors: Vec::new(),
         measured: Measured {
             battery_v: plan.battery_v,
             ..Measured::default()

@@ -197,11 +197,14 @@ fn functions(text: &str) -> Vec<(usize, String)> {
     found
 }
 
-/// `type name(arguments)`, and neither a class, an interrupt routine, an initialiser, a member nor a type.
+/// `type name(arguments)`, and neither a class, an interrupt routine, an initialiser, a member nor a type; the brace of
+/// `QTRSensorsRC lines((byte[]) {2, 4}, 2)` stands within the parentheses.
 fn is_function(head: &str) -> bool {
     let name = head.split('(').next().unwrap_or_default();
     let own = name.split_whitespace().next_back().unwrap_or_default();
+    let count = |character| head.matches(character).count();
     head.ends_with(')')
+        && count('(') == count(')')
         && !head.starts_with("typedef")
         && !name.ends_with("__attribute__")
         && !name.ends_with("__attribute__ ")
@@ -322,6 +325,12 @@ mod tests {
             made.contains("b(); }\n#line 4 \"a.ino\"\nint f();\n#line 4"),
             "{made}"
         );
+    }
+
+    #[test]
+    fn a_list_among_arguments_is_no_function_s_body() {
+        let text = "#line 1 \"a.ino\"\nLine border ((byte[]) {8, 12}, 2);\nvoid setup() { }\n";
+        assert_eq!(functions(text).len(), 1);
     }
 
     #[test]

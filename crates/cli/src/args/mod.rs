@@ -128,7 +128,7 @@ pub(crate) struct ExportPolicyArgs {
 
 /// What a robot that is like another one has from it.
 const OF_NEW_ROBOTS: [&str; 10] = [
-    "board", "driver", "pins", "parts", "wheels", "battery", "base", "wheel", "edges", "sonars",
+    "board", "driver", "pins", "parts", "wheels", "battery", "base", "wheel", "edges", "sensors",
 ];
 
 /// Options of `rumbo new`.
@@ -159,7 +159,8 @@ pub(crate) struct NewArgs {
     pub(crate) driver: Option<(&'static Driver, bool)>,
     /// Pins of the robot's signals, e.g. left_forward=7,servo=9,front_echo=A1; line sensors from left to right, by names of yours,
     /// as line_left=2,line_right=A1; of all of them line_dark=low, line_rc=true (QTR-RC), line_light_v=0.2, line_dark_v=4.8; so
-    /// infrared ones for obstacles, obstacle_left=3, and sharp_front=A0; link_baud=38400 is the rate of a Bluetooth module
+    /// infrared ones for obstacles, obstacle_left=3, of all of them obstacle_seen=high, obstacle_reach_m=0.3; and sharp_front=A0;
+    /// link_baud=38400 is the rate of a Bluetooth module
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,
     /// Wheels, 2 or 4; the two of a side are driven alike
@@ -177,9 +178,10 @@ pub(crate) struct NewArgs {
     /// Edges of an encoder's output in a turn of the wheel, half of them rising: 748 of 11 pulses behind gears of 34:1 [default: 40]
     #[arg(long, value_name = "COUNT", value_parser = values::edges)]
     pub(crate) edges: Option<u16>,
-    /// Where sonars sit, x and y in m, and look, in degrees: left=0.08:0.07:90,right=-0.02:0.07:90 are two on the left side
-    #[arg(long, value_name = "SONAR=X:Y:DEG", value_delimiter = ',', value_parser = values::sonar)]
-    pub(crate) sonars: Vec<(String, [f64; 3])>,
+    /// Where sensors sit, x and y in m, and look, in degrees: left=0.08:0.07:90,right=-0.02:0.07:90 are two sonars on the left
+    /// side, line_rear=-0.05:0 is a line sensor behind the wheels, obstacle_rear=-0.1:0:180 looks back
+    #[arg(long, alias = "sonars", value_name = "SENSOR=X:Y:DEG", value_delimiter = ',', value_parser = values::sensor)]
+    pub(crate) sensors: Vec<(String, [f64; 3])>,
     /// Parts of the robot at a pin or an address, e.g. start=button:8,go=button:9:5v,remote=infrared:2,screen=ssd1306:0x3c
     #[arg(long, value_name = "NAME=KIND:PLACE", value_delimiter = ',', value_parser = values::part)]
     pub(crate) parts: Vec<[String; 3]>,

@@ -83,15 +83,28 @@ pub(super) fn at_rest(text: &str) -> Result<f64, &'static str> {
     volts.ok_or("must be 5 to 13 V, e.g. 7.62")
 }
 
-/// Where a sonar sits and looks: `left=0.05:0.07:90`.
-pub(super) fn sonar(text: &str) -> Result<(String, [f64; 3]), &'static str> {
+/// Where a sensor sits and looks: `left=0.05:0.07:90`, ahead without a direction.
+pub(super) fn sensor(text: &str) -> Result<(String, [f64; 3]), &'static str> {
     let read = text.split_once('=').and_then(|(name, place)| {
         let numbers = place.split(':').map(|number| number.trim().parse().ok());
         let numbers: Option<Vec<f64>> = numbers.collect();
-        Some((name.trim().to_owned(), numbers?.try_into().ok()?))
+        let place = match numbers?[..] {
+            [x_m, y_m] => [x_m, y_m, 0.0],
+            [x_m, y_m, angle_deg] => [x_m, y_m, angle_deg],
+            _ => return None,
+        };
+        Some((name.trim().to_owned(), place))
     });
-    read.filter(|(name, _)| SONARS.iter().any(|(sonar, _)| name == sonar))
-        .ok_or("write it as left=0.05:0.07:90, x and y in m and the direction in degrees, of front, left or right")
+    let is_sonar = |name: &str| SONARS.iter().any(|(sonar, _)| name == *sonar);
+    let is_named = |name: &str| {
+        [LINE, OBSTACLE, SHARP]
+            .iter()
+            .any(|begin| name.starts_with(begin))
+    };
+    read.filter(|(name, _)| is_sonar(name) || is_named(name)).ok_or(
+        "write it as left=0.05:0.07:90 or line_rear=-0.05:0, x and y in m and the direction in degrees; of the sonars front, left \
+         and right, and of line_NAME, obstacle_NAME, sharp_NAME",
+    )
 }
 
 /// What an output of an encoder gives in a turn of the wheel: it falls as often as it rises.

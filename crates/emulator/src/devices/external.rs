@@ -4,7 +4,7 @@
 //! it. Low level is no flag: it requests as long as it lasts.
 
 use super::interrupts::Interrupts;
-use super::ports::Ports;
+use super::ports::{Pin, Ports};
 use crate::model::{Model, PinChange};
 use crate::registers::{EICRA, EICRB, EIFR, EIMSK, PCICR, PCIFR, PCMSK0, PCMSK1, PCMSK2};
 
@@ -106,6 +106,14 @@ impl External {
                 self.change_flags |= 1 << group;
             }
         }
+    }
+
+    /// Whether a change of this pin raises an interrupt.
+    pub(crate) fn awaits(&self, pin: Pin) -> bool {
+        self.model.pin_changes.iter().any(|change| {
+            let mask = (pin.mask() & change.pins) << change.shift & self.change_masks[change.group];
+            change.port == pin.port() && mask != 0 && self.change_enabled & 1 << change.group != 0
+        })
     }
 
     /// The flag of INT0 is up.

@@ -197,6 +197,11 @@ impl Devices {
             .receiving_baud(&self.core)
     }
 
+    /// Whether a change of this pin raises an interrupt, as where SoftwareSerial receives.
+    pub fn awaits(&self, pin: Pin) -> bool {
+        self.external.awaits(pin)
+    }
+
     /// The first instruction \[words\] that wrote a byte to this USART while its transmitter was off: the byte is lost.
     pub fn unsent_at(&self, usart: u8) -> Option<u32> {
         self.usarts.get(usize::from(usart))?.unsent_at()

@@ -20,6 +20,7 @@ mod names;
 pub(crate) mod near;
 mod new_plant;
 pub mod new_robot;
+mod new_sensors;
 mod obstacle;
 pub mod parameters;
 mod parts;

@@ -98,14 +98,15 @@ pub struct Measured {
 pub(super) fn plant(driver: &Driver, four_wheels: bool, measured: &Measured) -> String {
     let radius_m = measured.wheel_m.map_or(RADIUS_M, |diameter| diameter / 2.0);
     let base_m = |usual: f64| measured.base_m.unwrap_or(usual);
-    let body = match four_wheels {
-        true => self::four_wheels(base_m(TRACK_M), radius_m),
-        false if driver.direction == Direction::Pulse => {
-            two_wheels(&SERVO, base_m(0.105), radius_m)
-        }
-        false => two_wheels(&TT, base_m(TRACK_M), radius_m),
+    let servos = driver.direction == Direction::Pulse;
+    let body = match (four_wheels, servos) {
+        (true, servos) => self::four_wheels(&pair(servos), base_m(TRACK_M), radius_m),
+        (false, true) => two_wheels(&SERVO, base_m(0.105), radius_m),
+        (false, false) => two_wheels(&TT, base_m(TRACK_M), radius_m),
     };
-    let battery_v = measured.battery_v.or((!four_wheels).then_some(6.0));
+    let battery_v = measured
+        .battery_v
+        .or((servos || !four_wheels).then_some(6.0));
     body + &battery_v.map(battery).unwrap_or_default()
 }
 
@@ -201,18 +202,42 @@ const MASS_KG: f64 = 1.1;
 const RADIUS_M: f64 = 0.0325;
 const FRICTION: f64 = 0.6;
 
+/// The motors of a side as one: the lines of its table, and its wheel's friction.
+fn pair(servos: bool) -> [String; 2] {
+    if !servos {
+        return [
+            "resistance_ohm = 2.0\ninductance_h = 0.00075\ninertia_kg_m2 = 0.0028".into(),
+            "coulomb_forward_n_m = 0.016\ncoulomb_backward_n_m = 0.016\nviscous_n_m_s = 0.003"
+                .into(),
+        ];
+    }
+    let [ohm, back_emf, dry, viscous] = SERVO.derived();
+    [
+        format!(
+            "resistance_ohm = {:.2}\ninductance_h = {}\nback_emf_v_s = {back_emf:.3}\ngear_ratio = {:.0}\ninertia_kg_m2 = {}",
+            ohm / 2.0,
+            SERVO.inductance_h / 2.0,
+            SERVO.gear_ratio,
+            SERVO.inertia_kg_m2 * 2.0
+        ),
+        format!(
+            "coulomb_forward_n_m = {0:.4}\ncoulomb_backward_n_m = {0:.4}\nviscous_n_m_s = {1:.5}",
+            dry * 2.0,
+            viscous * 2.0
+        ),
+    ]
+}
+
 /// The plant of a car on four wheels, as two: those of a side turn alike, and slide aside as it turns.
 ///
 /// Turning on the spot at w each tyre slides aside at w l/2 and along at v - w b/2, and its friction points against that. The
 /// moments balance where along is to aside as l to b: v = w/2 (b + l^2/b), so the wheels act as far apart as b + l^2/b. The force along,
 /// of a side 0.6 m g/2 l / sqrt(l^2 + b^2), loads its wheels.
-fn four_wheels(track_m: f64, radius_m: f64) -> String {
+fn four_wheels([motor, friction]: &[String; 2], track_m: f64, radius_m: f64) -> String {
     let base_m = track_m + AXLES_M * AXLES_M / track_m;
     let aside = AXLES_M / (AXLES_M * AXLES_M + track_m * track_m).sqrt();
     let scrub_n_m = FRICTION * MASS_KG * 9.81 / 2.0 * aside * radius_m;
-    let wheel = format!(
-        "radius_m = {radius_m}\ncoulomb_forward_n_m = 0.016\ncoulomb_backward_n_m = 0.016\nviscous_n_m_s = 0.003\n"
-    );
+    let wheel = format!("radius_m = {radius_m}\n{friction}\n");
     format!(
         "
 # Four wheels, the two of a side as one: by track b = {track_m} m, axles l = {AXLES_M} m apart, mass and a friction of {FRICTION}.
@@ -225,9 +250,7 @@ width_m = 0.15
 centre_ahead_m = 0.0
 
 [plant.motor]           # two side by side
-resistance_ohm = 2.0
-inductance_h = 0.00075
-inertia_kg_m2 = 0.0028
+{motor}
 
 [plant.floor]
 rolling_n_m = 0.02

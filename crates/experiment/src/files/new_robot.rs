@@ -2,13 +2,14 @@
 
 use super::error::FileError;
 use super::new_plant::{encoder, plant};
+use super::new_sensors::{line_sensors, obstacle_sensors, place_of, quoted};
 use super::{Kind, Library, RobotFile};
 use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::{Direction, Driver};
 use rumbo_sim::wiring::{SIGNALS, Wiring, is_driver_input};
-use std::fmt::Write;
 
 pub use super::new_plant::{Measured, counted};
+pub use super::new_sensors::{LINE, OBSTACLE, SHARP};
 
 /// A driver that is chosen with its enables held by jumpers.
 pub const JUMPERS: &str = "-jumpers";
@@ -23,27 +24,8 @@ pub const SONARS: [(&str, [f64; 3]); 3] = [
     ("left", [0.05, 0.07, 90.0]),
     ("right", [0.05, -0.07, -90.0]),
 ];
-/// How the name of a line sensor begins among the pins, before a name of its own.
-pub const LINE: &str = "line_";
-/// What may be said of all line sensors in place of one, and the key that says it: `line_dark=low`.
-const OF_LINES: [(&str, &str); 4] = [
-    ("line_dark", "dark"),
-    ("line_rc", "rc"),
-    ("line_light_v", "light_v"),
-    ("line_dark_v", "dark_v"),
-];
 /// Rate of the Bluetooth module in place of a pin \[baud\].
 pub const LINK_BAUD: &str = "link_baud";
-/// Line sensors are so far apart \[m\]; two stand beside the tape, one on each side.
-const PITCH_M: f64 = 0.015;
-const ASTRIDE_M: f64 = 0.04;
-/// How the name of an infrared switch for obstacles begins.
-pub const OBSTACLE: &str = "obstacle_";
-/// How that of a Sharp begins, which gives a voltage.
-pub const SHARP: &str = "sharp_";
-/// Those for obstacles are so far apart \[m\], and look so far apart \[deg\].
-const APART_M: f64 = 0.05;
-const APART_DEG: f64 = 30.0;
 
 /// What a robot is made of.
 #[derive(Clone, Debug)]
@@ -60,8 +42,8 @@ pub struct NewRobot {
     pub pins: Vec<(String, String)>,
     /// It has four wheels, the two of a side driven alike.
     pub four_wheels: bool,
-    /// Where sonars sit and look, where that is not the usual place: x and y \[m\], and the direction \[deg\].
-    pub sonars: Vec<(String, [f64; 3])>,
+    /// Where sensors sit and look, where that is not the usual place: x and y \[m\], and the direction \[deg\].
+    pub sensors: Vec<(String, [f64; 3])>,
     /// What is known of its body.
     pub measured: Measured,
     /// Parts: name, kind, and pin or address.
@@ -146,8 +128,7 @@ impl NewRobot {
         };
         for (sonar, usual) in SONARS {
             if given(&format!("{sonar}_trigger")) {
-                let own = self.sonars.iter().find(|(name, _)| name == sonar);
-                let [x_m, y_m, angle_deg] = own.map_or(usual, |(_, place)| *place);
+                let [x_m, y_m, angle_deg] = place_of(&self.sensors, sonar).unwrap_or(usual);
                 put(format!(
                     "\n# Where that sonar sits: measure it.\n[rig.{OWN}.{sonar}]\nx_m = {x_m}"
                 ));
@@ -169,8 +150,7 @@ impl NewRobot {
                 .map(|(_, pin)| pin);
             let value = match (pin, held) {
                 (_, true) => "\"high\"".to_owned(),
-                (Some(pin), _) if pin.parse::<u8>().is_ok() => pin.clone(),
-                (Some(pin), _) => format!("{pin:?}"),
+                (Some(pin), _) => quoted(pin),
                 (None, _) => continue,
             };
             let about = match held {
@@ -204,91 +184,11 @@ impl NewRobot {
             };
             put(format!("parts.{name} = {{ {kind} = {place}{more} }}"));
         }
-        text.push_str(&self.line_sensors());
-        text.push_str(&self.obstacle_sensors());
+        text.push_str(&line_sensors(OWN, &self.pins, &self.sensors));
+        text.push_str(&obstacle_sensors(OWN, &self.pins, &self.sensors));
         text.push_str(&plant(driver, self.four_wheels, &self.measured));
         if given("left_encoder") || given("right_encoder") {
             text.push_str(&encoder(&self.measured));
-        }
-        text
-    }
-
-    /// Line sensors, from left to right as they were given.
-    fn line_sensors(&self) -> String {
-        let of_lines = |signal: &str| OF_LINES.iter().find(|(own, _)| *own == signal);
-        // Voltages are those of the analogue ones.
-        let said = |analogue: bool| -> String {
-            let said = self.pins.iter().filter_map(|(signal, value)| {
-                let key = of_lines(signal)?.1;
-                let is_plain = value == "true" || value.parse::<f64>().is_ok();
-                let value = if is_plain {
-                    value.clone()
-                } else {
-                    format!("{value:?}")
-                };
-                (analogue || !key.ends_with("_v")).then(|| format!(", {key} = {value}"))
-            });
-            said.collect()
-        };
-        let rc = self.pins.iter().any(|(signal, _)| signal == "line_rc");
-        let sensors = self
-            .pins
-            .iter()
-            .filter(|(signal, _)| of_lines(signal).is_none());
-        let sensors = sensors.filter_map(|(signal, pin)| Some((signal.strip_prefix(LINE)?, pin)));
-        let sensors: Vec<_> = sensors.collect();
-        let mut text = String::new();
-        if !sensors.is_empty() {
-            let _ = write!(
-                text,
-                "\n# Sensors that look down, from left to right: measure where they are. Over a dark floor they are high, unless\n\
-                 # dark = \"low\".\n[wiring.{OWN}.line]\n"
-            );
-        }
-        for (index, (name, pin)) in sensors.iter().enumerate() {
-            let pitch_m = if sensors.len() == 2 {
-                ASTRIDE_M
-            } else {
-                PITCH_M
-            };
-            let y_m = pitch_m * from_left(index, sensors.len());
-            let analogue = pin.parse::<u8>().is_err() && !rc;
-            let kind = if analogue { ", analogue = true" } else { "" };
-            let said = said(analogue);
-            let pin = quoted(pin);
-            let _ = writeln!(
-                text,
-                "{name} = {{ pin = {pin}, x_m = 0.09, y_m = {y_m:.4}{kind}{said} }}"
-            );
-        }
-        text
-    }
-
-    /// Infrared sensors for obstacles, from left to right as they were given.
-    fn obstacle_sensors(&self) -> String {
-        let sensors = self.pins.iter().filter_map(|(signal, pin)| {
-            let switch = signal.strip_prefix(OBSTACLE).map(|name| (name, ""));
-            let sharp = signal.strip_prefix(SHARP);
-            let sharp = sharp.map(|name| (name, ", analogue = true"));
-            let (name, kind) = switch.or(sharp)?;
-            Some((name, kind, quoted(pin)))
-        });
-        let sensors: Vec<_> = sensors.collect();
-        let mut text = String::new();
-        if !sensors.is_empty() {
-            let _ = write!(
-                text,
-                "\n# Infrared sensors for obstacles, from left to right: measure where they are and look. One is low where something is\n\
-                 # nearer than reach_m = 0.15, unless seen = \"high\"; an analogue one is a Sharp GP2Y0A21YK.\n[wiring.{OWN}.obstacle]\n"
-            );
-        }
-        for (index, (name, kind, pin)) in sensors.iter().enumerate() {
-            let aside = from_left(index, sensors.len());
-            let (y_m, angle_deg) = (APART_M * aside, APART_DEG * aside);
-            let _ = writeln!(
-                text,
-                "{name} = {{ pin = {pin}, x_m = 0.11, y_m = {y_m:.3}, angle_deg = {angle_deg}{kind} }}"
-            );
         }
         text
     }
@@ -302,19 +202,6 @@ impl NewRobot {
         let file = RobotFile::parse(&self.name, &format!("{}.toml", self.name), &text)?;
         Ok((text, file))
     }
-}
-
-/// A pin as a file has it: a number, or a name in quotes.
-fn quoted(pin: &str) -> String {
-    match pin.parse::<u8>() {
-        Ok(_) => pin.to_owned(),
-        Err(_) => format!("{pin:?}"),
-    }
-}
-
-/// Where the sensor of a number is of so many in a row, from the middle to the left, in steps from one to the next.
-fn from_left(index: usize, of: usize) -> f64 {
-    0.5 * (of as f64 - 1.0) - index as f64
 }
 
 /// What does not suit a wiring's board, though a robot may be built so, a line each.

@@ -2,6 +2,7 @@
 
 use super::console::Console;
 use super::firmware::LinkLanguage;
+use super::pins::LinkOn;
 use super::{CYCLES_PER_US, Mega, PARTS, TRIGGER_CYCLES};
 use crate::bus::DeviceKind;
 use crate::floor::FloorReading;
@@ -255,6 +256,7 @@ impl Mega {
         let spoke = |usart: usize| self.consoles.get(usart).is_some_and(Console::has_spoken);
         if let Some(link) = self.firmware.link_usart().map(usize::from)
             && !spoke(link)
+            && !self.receives()
         {
             let others: Vec<&str> = (0..NAMES.len())
                 .filter(|usart| spoke(*usart))
@@ -271,5 +273,15 @@ impl Mega {
             });
         }
         silence
+    }
+
+    /// Whether the program receives what comes over the link: one that only obeys says nothing.
+    fn receives(&self) -> bool {
+        let devices = self.chip.devices();
+        match self.wires().link {
+            Some(LinkOn::Usart(usart)) => devices.receiving_baud(usart).is_some(),
+            Some(LinkOn::Pins { receive, .. }) => receive.is_some_and(|pin| devices.awaits(pin)),
+            None => false,
+        }
     }
 }

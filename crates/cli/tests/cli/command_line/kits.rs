@@ -336,8 +336,25 @@ void loop() { if (phone.available() && phone.read() == 'F') { analogWrite(5, 150
             .status
             .success()
     );
-    // The module as it is sold, and a sketch that sends faster.
+    // One that only obeys is on the right pins; a module on others gets nothing.
+    std::fs::write(
+        bench.join("car.ino"),
+        sketch.replace("phone.println(\"Forward\");", ""),
+    )
+    .unwrap();
     let robot = std::fs::read_to_string(bench.join("robot.toml")).unwrap();
+    let silent = "nothing came over the Bluetooth link";
+    for (pins, is_silent) in [
+        ("link_rx = 2\nlink_tx = 3", false),
+        ("link_rx = 9\nlink_tx = 12", true),
+    ] {
+        let wired = robot.replace("link_rx = 2\nlink_tx = 3", pins);
+        std::fs::write(bench.join("robot.toml"), wired).unwrap();
+        let run = drive(&bench, &letter);
+        let told = stdout(&run) + &stderr(&run);
+        assert_eq!(told.contains(silent), is_silent, "{told}");
+    }
+    // The module as it is sold, and a sketch that sends faster.
     std::fs::write(
         bench.join("robot.toml"),
         robot.replace("link_baud = 38400\n", ""),

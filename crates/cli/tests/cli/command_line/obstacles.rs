@@ -58,10 +58,18 @@ fn a_switch_and_a_sharp_see_the_wall_in_time() {
         "l9110s",
         &[&pins("sharp_front=A0"), "--battery=7.4"],
     );
+    // One that is high, beside one that looks back.
+    let both = pins("obstacle_front=A0,obstacle_rear=A1,obstacle_seen=high,obstacle_reach_m=0.3");
+    let rear = "--sensors=obstacle_rear=-0.1:0:180";
+    new(&bench, "high", "l9110s", &[&both, rear, "--battery=7.4"]);
     // 15 cm, and 30 cm: 0.92 V.
     for (robot, seen) in [
         ("switch.toml", "digitalRead(A0) == LOW"),
         ("sharp.toml", "analogRead(A0) > 188"),
+        (
+            "high.toml",
+            "digitalRead(A0) == HIGH || digitalRead(A1) == HIGH",
+        ),
     ] {
         let (metrics, said) = run(&bench, robot, &until(seen), &[]);
         assert_eq!(metrics["contacts"], 0.0, "{said}");
@@ -135,7 +143,7 @@ fn a_pair_of_sonars_and_what_was_measured_are_options_of_a_new_robot() {
     );
     let more = [
         &pins[..],
-        "--sonars=left=0.08:0.07:90,right=-0.04:0.07:90",
+        "--sensors=left=0.08:0.07:90,right=-0.04:0.07:90",
         "--base=0.2",
         "--wheel=0.08",
         "--edges=748",
@@ -174,18 +182,25 @@ fn a_pair_of_sonars_and_what_was_measured_are_options_of_a_new_robot() {
         stdout(&run),
         stderr(&run)
     );
+    let servos = ["--pins=left_servo=5,right_servo=6", "--wheels=4"];
+    new(&bench, "servos", "continuous-servos", &servos);
+    let text = std::fs::read_to_string(bench.join("servos.toml")).unwrap();
+    assert!(
+        text.contains("scrub_n_m") && text.contains("gear_ratio = 250\n"),
+        "{text}"
+    );
     let unwired = [
         "new",
         "robot",
         "b",
         "--board=uno",
         "--driver=l298n-jumpers",
-        "--sonars=front=0.1:0:0",
+        "--sensors=front=0.1:0",
         motors,
     ];
     let refused = stderr(&rumbo(&bench, &unwired));
     assert!(
-        refused.contains("--sonars front: that sonar has no pins"),
+        refused.contains("--sensors front: that sensor has no pins; say --pins front_trigger="),
         "{refused}"
     );
 }

@@ -1,0 +1,157 @@
+//! The sensors of a robot file to start from that look down or for obstacles: in a row from left to right, as they were
+//! given, or where somebody says that they are.
+
+use std::fmt::Write;
+
+/// How the name of a line sensor begins among the pins, before a name of its own.
+pub const LINE: &str = "line_";
+/// How the name of an infrared switch for obstacles begins.
+pub const OBSTACLE: &str = "obstacle_";
+/// How that of a Sharp begins, which gives a voltage.
+pub const SHARP: &str = "sharp_";
+
+/// What may be said of all sensors of a kind in place of one, and the key that says it: `line_dark=low`.
+const OF_LINES: [(&str, &str); 4] = [
+    ("line_dark", "dark"),
+    ("line_rc", "rc"),
+    ("line_light_v", "light_v"),
+    ("line_dark_v", "dark_v"),
+];
+const OF_OBSTACLES: [(&str, &str); 2] =
+    [("obstacle_seen", "seen"), ("obstacle_reach_m", "reach_m")];
+
+/// Line sensors are so far ahead, and so far apart \[m\]; two stand beside the tape, one on each side.
+const LINE_AHEAD_M: f64 = 0.09;
+const PITCH_M: f64 = 0.015;
+const ASTRIDE_M: f64 = 0.04;
+/// Those for obstacles are so far ahead, so far apart \[m\], and look so far apart \[deg\].
+const AHEAD_M: f64 = 0.11;
+const APART_M: f64 = 0.05;
+const APART_DEG: f64 = 30.0;
+
+/// Signals and their pins, or what is said of all sensors of a kind.
+type Pins = [(String, String)];
+/// Where sensors are by their signals: x and y \[m\], and the direction \[deg\].
+type Places = [(String, [f64; 3])];
+
+/// Where a sensor is, if that was said.
+pub(super) fn place_of(places: &Places, signal: &str) -> Option<[f64; 3]> {
+    let own = places.iter().find(|(name, _)| name == signal);
+    own.map(|(_, place)| *place)
+}
+
+/// The table of the line sensors, empty without any.
+pub(super) fn line_sensors(wiring: &str, pins: &Pins, places: &Places) -> String {
+    let rc = pins.iter().any(|(signal, _)| signal == "line_rc");
+    let sensors = of_kind(pins, &OF_LINES, |signal| signal.starts_with(LINE));
+    let row = in_row(&sensors, places);
+    let pitch_m = if row.len() == 2 { ASTRIDE_M } else { PITCH_M };
+    let mut text = String::new();
+    if !sensors.is_empty() {
+        let _ = write!(
+            text,
+            "\n# Sensors that look down, from left to right: measure where they are. Over a dark floor they are high, unless\n\
+             # dark = \"low\".\n[wiring.{wiring}.line]\n"
+        );
+    }
+    for (signal, pin) in sensors {
+        let usual = || [LINE_AHEAD_M, pitch_m * aside(signal, &row), 0.0];
+        let [x_m, y_m, _] = place_of(places, signal).unwrap_or_else(usual);
+        let analogue = pin.parse::<u8>().is_err() && !rc;
+        let kind = if analogue { ", analogue = true" } else { "" };
+        // Voltages are those of the analogue ones.
+        let said = said(pins, &OF_LINES, |key| analogue || !key.ends_with("_v"));
+        let (name, pin) = (&signal[LINE.len()..], quoted(pin));
+        let _ = writeln!(
+            text,
+            "{name} = {{ pin = {pin}, x_m = {x_m}, y_m = {y_m:.4}{kind}{said} }}"
+        );
+    }
+    text
+}
+
+/// The table of the infrared sensors for obstacles, empty without any.
+pub(super) fn obstacle_sensors(wiring: &str, pins: &Pins, places: &Places) -> String {
+    let sensors = of_kind(pins, &OF_OBSTACLES, |signal| {
+        signal.starts_with(OBSTACLE) || signal.starts_with(SHARP)
+    });
+    let row = in_row(&sensors, places);
+    let mut text = String::new();
+    if !sensors.is_empty() {
+        let _ = write!(
+            text,
+            "\n# Infrared sensors for obstacles, from left to right: measure where they are and look. One is low where something is\n\
+             # nearer than reach_m = 0.15, unless seen = \"high\"; an analogue one is a Sharp GP2Y0A21YK.\n[wiring.{wiring}.obstacle]\n"
+        );
+    }
+    for (signal, pin) in sensors {
+        let aside = aside(signal, &row);
+        let usual = [AHEAD_M, APART_M * aside, APART_DEG * aside];
+        let [x_m, y_m, angle_deg] = place_of(places, signal).unwrap_or(usual);
+        let (name, more) = match signal.strip_prefix(SHARP) {
+            Some(name) => (name, ", analogue = true".to_owned()),
+            None => (
+                &signal[OBSTACLE.len()..],
+                said(pins, &OF_OBSTACLES, |_| true),
+            ),
+        };
+        let pin = quoted(pin);
+        let _ = writeln!(
+            text,
+            "{name} = {{ pin = {pin}, x_m = {x_m}, y_m = {y_m:.3}, angle_deg = {angle_deg}{more} }}"
+        );
+    }
+    text
+}
+
+/// Sensors of a kind, without what is said of all of them.
+fn of_kind<'a>(
+    pins: &'a Pins,
+    of_all: &[(&str, &str)],
+    is_kind: impl Fn(&str) -> bool,
+) -> Vec<(&'a str, &'a str)> {
+    let signals = pins.iter().map(|(signal, pin)| (&signal[..], &pin[..]));
+    let own = signals
+        .filter(|(signal, _)| is_kind(signal) && of_all.iter().all(|(all, _)| all != signal));
+    own.collect()
+}
+
+/// The signals whose place is that in a row, as nobody said another.
+fn in_row<'a>(sensors: &[(&'a str, &str)], places: &Places) -> Vec<&'a str> {
+    let signals = sensors.iter().map(|(signal, _)| *signal);
+    signals
+        .filter(|signal| place_of(places, signal).is_none())
+        .collect()
+}
+
+/// Where a signal is in a row, from the middle to the left, in steps from one to the next.
+fn aside(signal: &str, row: &[&str]) -> f64 {
+    let index = row
+        .iter()
+        .position(|own| *own == signal)
+        .unwrap_or_default();
+    0.5 * (row.len() as f64 - 1.0) - index as f64
+}
+
+/// What is said of all sensors of a kind, as keys of one.
+fn said(pins: &Pins, of_all: &[(&str, &str)], has: impl Fn(&str) -> bool) -> String {
+    let said = pins.iter().filter_map(|(signal, value)| {
+        let (_, key) = of_all.iter().find(|(own, _)| own == signal)?;
+        let is_plain = value == "true" || value.parse::<f64>().is_ok();
+        let value = if is_plain {
+            value.clone()
+        } else {
+            format!("{value:?}")
+        };
+        has(key).then(|| format!(", {key} = {value}"))
+    });
+    said.collect()
+}
+
+/// A pin as a file has it: a number, or a name in quotes.
+pub(super) fn quoted(pin: &str) -> String {
+    match pin.parse::<u8>() {
+        Ok(_) => pin.to_owned(),
+        Err(_) => format!("{pin:?}"),
+    }
+}
