@@ -110,6 +110,8 @@ def run(
     rig: str | None = None,
     program: Program = "rumbo",
     firmware: str | os.PathLike[str] | None = None,
+    sketch: str | os.PathLike[str] | None = None,
+    libraries: Iterable[str | os.PathLike[str]] = (),
     randomize: bool | None = None,
     threads: int | None = None,
     trace: bool = False,
@@ -127,7 +129,8 @@ def run(
         robot, world, policy: In place of the scenario's: names, paths or dictionaries.
         rig: Another sensor layout of the robot.
         program: ``"rumbo"``, or ``"baseline"`` for the report's program.
-        firmware: An image for the emulated Mega in place of the program: path of an ELF or HEX file.
+        firmware: An image for the emulated board in place of the program: path of an ELF or HEX file.
+        sketch, libraries: An Arduino sketch in its place, and what it includes: as for `compile_sketch`.
         randomize: Whether each seed draws its own robot; as the scenario says by default.
         threads: At most this many; one on each core by default. It does not change the numbers.
         trace: Keep the ground truth of each run, about 10 KB for each second of simulated time; see `Run.trace`.
@@ -149,6 +152,8 @@ def run(
         parameters=parameters,
         program=program,
         firmware=firmware,
+        sketch=sketch,
+        libraries=libraries,
         randomize=randomize,
     )
     numbers = make_seeds(seeds)

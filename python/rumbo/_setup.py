@@ -93,9 +93,13 @@ def make_setup(
     parameters: Parameters | None = None,
     program: Program = "rumbo",
     firmware: str | os.PathLike[str] | None = None,
+    sketch: str | os.PathLike[str] | None = None,
+    libraries: Iterable[str | os.PathLike[str]] = (),
     randomize: bool | None = None,
 ) -> _rumbo.Setup:
     """The setup of these; errors as for `rumbo.run`."""
+    if sketch is not None:
+        firmware = image_of(sketch, firmware, scenario=scenario, robot=robot, libraries=libraries)
     held = _Held()
     if isinstance(scenario, Mapping):
         # Its robot, world and policy may be dictionaries, too.
@@ -153,6 +157,20 @@ def compile_sketch(
     if said:
         warnings.warn("\n".join(said), stacklevel=2)
     return pathlib.Path(image)
+
+
+def image_of(
+    sketch: str | os.PathLike[str],
+    firmware: str | os.PathLike[str] | None,
+    *,
+    scenario: Source,
+    robot: Source | None,
+    libraries: Iterable[str | os.PathLike[str]],
+) -> pathlib.Path:
+    """The image of a sketch that is a robot's only program."""
+    if firmware is not None:
+        raise ValueError("a robot has one program: give sketch= or firmware=, not both")
+    return compile_sketch(sketch, scenario=scenario, robot=robot, libraries=libraries)
 
 
 def pack_setup(setup: _rumbo.Setup) -> tuple[dict[str, Any], bytes | None]:

@@ -21,7 +21,7 @@ from ._setup import (
     Program,
     Source,
     check_version,
-    compile_sketch,
+    image_of,
     make_index,
     make_seeds,
     make_setup,
@@ -357,9 +357,7 @@ class Sim:
             raise TypeError("what is it to drive? Give a scenario, or the sketch= or firmware= of an emulated board")
         scenario = "free" if scenario is None else scenario
         if sketch is not None:
-            if firmware is not None:
-                raise ValueError("a robot has one program: give sketch= or firmware=, not both")
-            firmware = compile_sketch(sketch, scenario=scenario, robot=robot, libraries=libraries)
+            firmware = image_of(sketch, firmware, scenario=scenario, robot=robot, libraries=libraries)
         self._batch = Batch(
             scenario,
             seeds=[seed],

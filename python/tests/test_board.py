@@ -46,16 +46,31 @@ void loop() {
 
 
 @pytest.fixture(scope="session")
-def image(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+def sketch(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
     folder = tmp_path_factory.mktemp("sketches") / "hello"
     folder.mkdir()
     (folder / "hello.ino").write_text(SKETCH)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def image(sketch: pathlib.Path) -> pathlib.Path:
     try:
-        return rumbo.compile_sketch(folder)
+        return rumbo.compile_sketch(sketch)
     except ValueError as error:
         if "arduino" in str(error):
             pytest.skip(str(error))
         raise
+
+
+def test_a_run_and_a_sweep_take_a_sketch_as_they_take_its_image(sketch: pathlib.Path, image: pathlib.Path) -> None:
+    run = rumbo.run("mode1", sketch=sketch, trace=True)[0]
+    of_image = rumbo.run("mode1", firmware=image, trace=True)[0]
+    assert run.metrics == of_image.metrics and run.trace is not None and not run.passed
+    swept = rumbo.sweep("mode1", {"battery.open_circuit_v": [7.4]}, seeds=1, sketch=sketch)
+    assert not swept.passed.any()
+    with pytest.raises(ValueError, match="one program: give sketch= or firmware=, not both"):
+        rumbo.run("mode1", sketch=sketch, firmware=image)
 
 
 def test_a_port_says_what_is_expected_and_what_came_instead(image: pathlib.Path) -> None:

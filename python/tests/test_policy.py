@@ -54,6 +54,16 @@ def test_observations_of_another_shape_or_without_sense_are_refused(observations
         rumbo.Policy("goal").decide(observations)  # type: ignore[arg-type]
 
 
+def test_a_sweep_takes_a_policy_as_a_run_does() -> None:
+    content = rumbo.load("policy", "goal")
+    content["title"] = "another"
+    swept = rumbo.sweep("mode9-random", {"kv": [0.02]}, seeds=2, policy=content)
+    run = rumbo.run("mode9-random", seeds=2, parameters={"kv": 0.02}, policy=content)
+    assert swept.metrics["time_s"].tolist() == run.metrics["time_s"].tolist()
+    with pytest.raises(ValueError, match="unknown policy `gaol`"):
+        rumbo.sweep("mode9-random", {"kv": [0.02]}, policy="gaol")
+
+
 def test_what_is_no_policy_is_refused() -> None:
     content = rumbo.load("policy", "goal")
     for change, message in [

@@ -44,7 +44,7 @@ export class Header {
       send({ type: 'reset', scenario: this.#scenario.value, world: this.#world.value === OWN ? null : this.#world.value, rig: this.#rig.value === OWN ? null : this.#rig.value, seed: this.#seed.valueAsNumber });
     });
     // A scenario brings its own world and sensors; it begins disarmed.
-    this.#scenario.addEventListener('change', () => send({ type: 'reset', scenario: this.#scenario.value, world: null, rig: null, seed: this.#seed.valueAsNumber || 1 }));
+    this.#scenario.addEventListener('change', () => send({ type: 'reset', scenario: this.#scenario.value, world: null, rig: null, seed: this.#seed.validity.valid ? this.#seed.valueAsNumber : 1 }));
     setInterval(() => this.#showConnection(), STALE_MS / 3);
   }
 

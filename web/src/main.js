@@ -218,7 +218,7 @@ const runs = new Runs(() => {
   const name = `${new Date().toLocaleTimeString(language === 'en' ? 'en-GB' : language)}${seed === null ? '' : `, ${t('seed {}', seed)}`}`;
   const metrics = Object.fromEntries(state?.experiment?.limits.map((limit) => [limit.name, limit.value]) ?? []);
   return { name, store: store.frozen(), about: { scenario, world, 'sensor layout': rig, seed, program: state?.program?.name ?? null }, parameters, metrics };
-}, () => plots.modes, send, plots, map);
+}, () => plots.modes, send, plots, map, complain);
 const why = new Why(plots, isSite ? (from_s, to_s) => (link instanceof WorkerLink ? link.explain(from_s, to_s) : Promise.reject(new Error('no lab'))) : null, (lesson) => lessons.open(lesson), () => tabs.show('why'));
 const calibration = new CalibrationDialog(send);
 new Share(() => ({ scene: simulated, table, version: version ?? '' }), () => (link instanceof WorkerLink ? link.share() : Promise.reject(new Error('no lab'))));
@@ -291,6 +291,7 @@ function receive(message) {
       tune.modes = message.modes;
       document.body.classList.toggle('several', (message.robots ?? []).length > 0);
       follows = message.robot > 0;
+      map.own = message.robot;
       offerRobots(message.robots ?? [], message.robot);
       meter.clear();
       break;

@@ -39,6 +39,8 @@ import { watchFingers } from './touch.js';
 const MARGIN_M = 0.12;
 /** Margin for the texts above and below the map [px]. */
 const [ABOVE_PX, BELOW_PX] = [34, 18];
+/** The name of another robot stands so far above it, or below where the readout would hide it [m], and is so high [px]. */
+const [NAME_M, NAME_PX] = [0.16, 14];
 /** Of a long wall this much to both sides of the point next to the robot is in sight [m]. */
 const ALONG_M = 0.5;
 /** The view grows in steps of this size [m], so that it does not creep. */
@@ -81,6 +83,7 @@ export class WorldMap {
   /** The view follows the robot; null: where it would be too small otherwise. @type {boolean | null} */
   #follow = null;
   #followButton = element('follow', HTMLButtonElement);
+  #pose = element('pose', HTMLOutputElement);
   /** The robot is also shown where it was then [s]. @type {number | null} */
   #hover_s = null;
   /** The same run with other seeds. @type {Store[]} */
@@ -90,6 +93,8 @@ export class WorldMap {
   /** What is held, when that was sent last, and the view before, which stands still meanwhile. @type {{held: Held, sent_ms: number, view: View | null} | null} */
   #hand = null;
   servo_rad = 0;
+  /** The number of this page's robot among several. */
+  own = 0;
   /** The place of the route that the robot goes to now, from its origin. @type {Point | null} */
   target = null;
 
@@ -232,7 +237,7 @@ export class WorldMap {
     sketch.drawGrid(view, px);
     if (this.#tool) return this.#tool.draw(sketch, px);
     sketch.drawWorld(px, this.world());
-    this.others().forEach(({ other, at }, number) => sketch.drawOther(other, at, number, px));
+    for (const { other, at, number } of this.others()) sketch.drawOther(other, at, number, px, this.worldToCanvas([at.x_m, at.y_m + NAME_M])[1] > this.#above() ? NAME_M : -NAME_M);
     sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
     sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
     sketch.drawTrail(this.#store.trails.ghost, colours.goal, px);
@@ -265,13 +270,18 @@ export class WorldMap {
     return inWorld(this.#sketch.scene, this.#store.readings, this.#store.latest?.t_s ?? 0);
   }
 
-  /** The other robots, where they are known to be. */
+  /** The other robots, where they are known to be; a robot has the same number, and with it its colour, on every page. */
   others() {
     const t_s = this.#store.latest?.t_s ?? 0;
-    return (this.#sketch.scene?.others ?? []).flatMap((other) => {
+    return (this.#sketch.scene?.others ?? []).flatMap((other, index) => {
       const at = this.#store.readings.placeOf(other.name, t_s);
-      return at ? [{ other, at }] : [];
+      return at ? [{ other, at, number: index < this.own ? index : index + 1 }] : [];
     });
+  }
+
+  /** Where the readout ends, which may have two rows, and a robot's name below it has room [px]. */
+  #above() {
+    return this.#pose.offsetTop + this.#pose.offsetHeight + NAME_PX;
   }
 
   /** @param {number} px */
@@ -385,9 +395,10 @@ export class WorldMap {
     const xs = all.map(([x]) => x ?? 0);
     const ys = all.map(([, y]) => y ?? 0);
     const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    const height_px = Math.max(this.#canvas.clientHeight - ABOVE_PX - BELOW_PX, 50);
+    const above_px = this.others().length > 0 ? this.#above() : ABOVE_PX;
+    const height_px = Math.max(this.#canvas.clientHeight - above_px - BELOW_PX, 50);
     const px_per_m = Math.min(this.#canvas.clientWidth / (right - left + 2 * MARGIN_M), height_px / (high - low + 2 * MARGIN_M));
-    return { x_m: (left + right) / 2, y_m: (low + high) / 2 + (ABOVE_PX - BELOW_PX) / 2 / px_per_m, px_per_m };
+    return { x_m: (left + right) / 2, y_m: (low + high) / 2 + (above_px - BELOW_PX) / 2 / px_per_m, px_per_m };
   }
 
   /** The corners of where the robot has been, as well as it is known. @returns {Point[]} */

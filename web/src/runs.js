@@ -7,6 +7,7 @@ import { Comparison } from './comparison.js';
 import { complaint, dialog } from './dialog.js';
 import { clickable, create, element, setText } from './dom.js';
 import { MOST } from './kept.js';
+import { recallKept, storeKept } from './kept_store.js';
 import { Store } from './store.js';
 import { said, t } from './text.js';
 import { Search } from './tune_search.js';
@@ -47,6 +48,7 @@ export class Runs {
   #send;
   #plots;
   #map;
+  #complain;
   /** @type {import('./types.js').Scene | null} */
   #scene = null;
   /** @type {Search | null} */
@@ -62,13 +64,15 @@ export class Runs {
    * @param {import('./panel.js').Send} send
    * @param {import('./plots.js').Plots} plots
    * @param {import('./map.js').WorldMap} map
+   * @param {(text: string) => void} complain
    */
-  constructor(now, modes, send, plots, map) {
+  constructor(now, modes, send, plots, map, complain) {
     this.#now = now;
     this.#modes = modes;
     this.#send = send;
     this.#plots = plots;
     this.#map = map;
+    this.#complain = complain;
     this.#part.setAttribute('aria-label', t('Twenty seeds'));
     this.#many.title = t('The scenario\'s experiment with twenty robots that differ as real ones do: their range in the plots, and each of them on the map');
     this.#many.hidden = isSite;
@@ -81,6 +85,11 @@ export class Runs {
     this.#open.addEventListener('click', () => this.open());
     this.#many.addEventListener('click', () => this.#drive());
     this.#show();
+    // What stores nothing says so when a run is kept.
+    recallKept().then(({ runs, recorded }) => {
+      this.#recorded ||= recorded;
+      this.#set([...runs, ...this.#kept]);
+    }, () => {});
   }
 
   open() {
@@ -90,8 +99,8 @@ export class Runs {
 
   /** Compares recordings, or runs of the station. @param {((Content | Seeded) & Omit<Run, 'store'>)[]} contents with what people call them */
   compare(contents) {
-    this.#kept = [];
     this.#recorded = true;
+    this.#kept = [];
     this.#take(contents.map((content) => ({ ...content, store: storeOf(content, this.#modes()) })));
     this.open();
   }
@@ -109,19 +118,25 @@ export class Runs {
 
   /** @param {Run[]} runs */
   #take(runs) {
-    this.#kept = [...this.#kept, ...runs].slice(-MOST);
+    this.#set([...this.#kept, ...runs]);
+    storeKept({ runs: this.#kept, recorded: this.#recorded }).catch(() => this.#complain('this browser stores no runs: those that are kept are lost when the page is loaded again'));
+  }
+
+  /** @param {Run[]} runs */
+  #set(runs) {
+    this.#kept = runs.slice(-MOST);
+    for (const { name } of runs.slice(0, -MOST)) this.#complain(`no longer kept: ${name}; at most ${MOST} runs are`);
     this.#show();
   }
 
   #show() {
     this.#plots.overlay.kept = this.#kept.map(({ store }) => store);
-    this.#keep.disabled = this.#kept.length === MOST;
     setText(this.#open, this.#kept.length === 0 ? t('Runs') : t('Runs: {}', this.#kept.length));
     this.#chips.replaceChildren(...this.#kept.map((run, index) => {
       const chip = create('button', { type: 'button', className: 'place', title: t('Take this run out') }, create('b', { textContent: String(index + 1) }), run.name, ' ×');
       chip.addEventListener('click', () => {
         this.#kept = this.#kept.filter((each) => each !== run);
-        this.#show();
+        this.#take([]);
         this.#open.focus();
       });
       return chip;

@@ -248,10 +248,11 @@ export class Sketch {
    * Another robot, with its name, in a colour of its own.
    * @param {{name: string, footprint_m: Point[]}} other
    * @param {Pose} at
-   * @param {number} number among the others
+   * @param {number} number among all robots
    * @param {number} px
+   * @param {number} name_m where the name stands, above it
    */
-  drawOther({ name, footprint_m }, at, number, px) {
+  drawOther({ name, footprint_m }, at, number, px, name_m) {
     const context = this.context;
     this.drawOutlines(px, [{ corners_m: footprint_m.map((corner) => place(at, corner)), closed: true }], stateColour(number));
     context.save();
@@ -261,7 +262,8 @@ export class Sketch {
     context.fillStyle = colours.text;
     context.font = '11px sans-serif';
     context.textAlign = 'center';
-    context.fillText(name, 0, -0.16 / px);
+    context.textBaseline = 'middle';
+    context.fillText(name, 0, -name_m / px);
     context.restore();
     context.beginPath();
     context.moveTo(at.x_m, at.y_m);

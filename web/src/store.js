@@ -185,9 +185,18 @@ export class Store {
 
   /** What there is of this run so far: for a comparison. */
   frozen() {
-    const made = new Store();
     const steps = this.steps.map((step) => ({ ...step, until_s: Math.min(step.until_s, this.newest_s) }));
-    return Object.assign(made, { slow: this.slow.copy(), fast: this.fast.copy(), steps, stretches: structuredClone(this.stretches) });
+    return Store.of({ ...this.content(), steps });
+  }
+
+  /** What a comparison needs, for what stores it: without its methods. */
+  content() {
+    return { slow: this.slow, fast: this.fast, steps: this.steps, stretches: this.stretches };
+  }
+
+  /** A run of that. @param {ReturnType<Store['content']>} content */
+  static of({ slow, fast, steps, stretches }) {
+    return Object.assign(new Store(), { slow: Table.of(slow, KEPT_S), fast: Table.of(fast, KEPT_S), steps, stretches: structuredClone(stretches) });
   }
 
   #rewind() {

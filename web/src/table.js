@@ -139,8 +139,13 @@ export class Table extends Lines {
 
   /** The same lines, which stay as they are. */
   copy() {
-    const made = new Table([], this.#kept_s);
-    for (const [from, into] of /** @type {const} */ ([[this, made], [this.coarse, made.coarse]])) {
+    return Table.of(this, this.#kept_s);
+  }
+
+  /** A table of these lines. @param {Lines & {coarse: Lines}} lines @param {number} kept_s */
+  static of(lines, kept_s) {
+    const made = new Table([], kept_s);
+    for (const [from, into] of /** @type {const} */ ([[lines, made], [lines.coarse, made.coarse]])) {
       into.t = [...from.t];
       into.columns = new Map([...from.columns].map(([name, column]) => [name, [...column]]));
     }

@@ -135,11 +135,7 @@ fn leave(
     if let Some(parent) = stem.parent() {
         place::folder(parent)?;
     }
-    let mark = Mark::Log {
-        scenario: setup.scenario.name.clone(),
-        seed: robot.seed(),
-    };
-    guard.check(&log, &mark)?;
+    guard.check(&log, &Mark::run(setup, overrides, robot.seed()))?;
     guard.check(&waves, &Mark::of(stamp))?;
     let library = beside(suite);
     let source = RunSource {

@@ -48,7 +48,7 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
         real,
     };
     let plan = Plan::new(&library, request)?;
-    let stamp = check_places(args, &plan)?;
+    let stamp = check_places(args, &plan, &overrides)?;
     place::try_folder(&args.out)?;
     let progress = progress(args, &plan);
     let mut data = plan.run(|simulated_s| progress.inc((10.0 * simulated_s) as u64))?;
@@ -70,7 +70,11 @@ pub(crate) fn experiments(args: &ExperimentsArgs) -> Result<(), Failure> {
 
 /// Refuses, before anything runs, what would write over something else than an older report of the same. Gives what the
 /// report is known by.
-fn check_places(args: &ExperimentsArgs, plan: &Plan) -> Result<FileStamp, Failure> {
+fn check_places(
+    args: &ExperimentsArgs,
+    plan: &Plan,
+    overrides: &Overrides,
+) -> Result<FileStamp, Failure> {
     let stamp = plan.stamp(language(args.language));
     let inputs = args.robot.iter().map(Into::into);
     let guard = Guard::new(
@@ -78,9 +82,10 @@ fn check_places(args: &ExperimentsArgs, plan: &Plan) -> Result<FileStamp, Failur
         args.overwrite.force,
     );
     guard.check(&args.out.join(REPORT), &Mark::of(&stamp))?;
-    for scenario in plan.scenarios().filter(|_| args.data) {
+    for setup in plan.setups().filter(|_| args.data) {
         let seed = args.seed.seed;
-        Results::of(&args.out, &scenario.name, seed).check(&guard, scenario, &[], seed)?;
+        let results = Results::of(&args.out, &setup.scenario.name, seed);
+        results.check(&guard, setup, overrides, seed)?;
     }
     Ok(stamp)
 }

@@ -21,13 +21,19 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     let stem = args.log.file_stem().unwrap_or(args.log.as_os_str());
     let stem = stem.to_string_lossy();
     let path = |ending: &str| folder.join(format!("{stem}.{ending}"));
-    let stamp = FileStamp::of("export", &[stem.to_string()]);
+    let options = format!("{:?}", (args.from_s, args.to_s, &args.signals, args.scan));
+    let stamp = FileStamp::of("export", &[output::shown(&args.log), options]);
     let formats = match args.formats.is_empty() && !args.ros2bag {
         true => &[Format::Csv, Format::Svg][..],
         false => &args.formats,
     };
     let bag = Bag::of(&stem, &folder, stamp.clone());
     let guard = Guard::new([&args.log], args.overwrite.force);
+    logs::mend(&args.log);
+    let mut log = log_file::read(&args.log).map_err(Failure::input)?;
+    warn_if_cut(&args.log, &log)?;
+    check_signals(&args.signals)?;
+    cut_out(&mut log, args)?;
     for format in formats {
         for (ending, mark) in files(*format, &stamp) {
             guard.check(&path(ending), &mark)?;
@@ -36,11 +42,6 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     if args.ros2bag {
         bag.check(&guard)?;
     }
-    logs::mend(&args.log);
-    let mut log = log_file::read(&args.log).map_err(Failure::input)?;
-    warn_if_cut(&args.log, &log)?;
-    check_signals(&args.signals)?;
-    cut_out(&mut log, args)?;
     // Which columns they have is known only now.
     let readings = readings_of(&log);
     if formats.contains(&Format::Csv) {

@@ -11,6 +11,7 @@ mod likeness;
 use crate::args::GradeArgs;
 use crate::experiments::language;
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::mark;
 use crate::output;
 use crate::place::{self, Guard};
@@ -28,6 +29,7 @@ use rumbo_sketch::{Compiler, SketchError, Toolchain};
 use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::Path;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 /// What is written: the class page, the tables, and in folders the students' pages and Gradescope's files.
@@ -79,17 +81,22 @@ fn grade_class(args: &GradeArgs, folder: &Path) -> Result<(), Failure> {
         })?),
     };
     let notes = class_notes(&assignment, compiler.as_ref());
+    let asked = interrupt::asked();
+    let goes_on = |progress: &ProgressBar| {
+        progress.inc(1);
+        !asked.load(Ordering::Relaxed)
+    };
     let progress = progress_bar(sketches, "{bar:40} {pos}/{len} compiled, {eta} left");
-    let hand_ins = hand_ins::compile(found, compiler.as_ref(), || progress.inc(1));
-    progress.finish_and_clear();
+    let hand_ins = hand_ins::compile(found, compiler.as_ref(), || goes_on(&progress));
+    let hand_ins = finish(hand_ins, &progress, "sketch")?;
     let runs = assignment.runs() * hand_ins.iter().filter(|one| one.program.is_ok()).count();
     if !std::io::stderr().is_terminal() {
         let count = hand_ins.len();
         output::aside(&format!("hand-ins: {count}, runs: {runs}"));
     }
     let progress = progress_bar(runs, "{bar:40} {pos}/{len} runs, {eta} left");
-    let marks = grade_all(&assignment, &hand_ins, || progress.inc(1));
-    progress.finish_and_clear();
+    let marks = grade_all(&assignment, &hand_ins, || goes_on(&progress));
+    let marks = finish(marks, &progress, "run")?;
     let likeness = Likeness::among(found, &assignment)?;
     write(
         args,
@@ -106,6 +113,19 @@ fn grade_class(args: &GradeArgs, folder: &Path) -> Result<(), Failure> {
         ));
     }
     report(args, &marks, &notes)
+}
+
+/// What was done, all of it; says how much, where it was interrupted.
+fn finish<T>(done: Option<T>, progress: &ProgressBar, what: &str) -> Result<T, Failure> {
+    let (count, all) = (progress.position(), progress.length().unwrap_or_default());
+    progress.finish_and_clear();
+    done.ok_or_else(|| {
+        let all = output::counted(all as usize, what);
+        output::note(&format!(
+            "interrupted after {count} of {all}; nobody is marked, and what was there stays"
+        ));
+        Failure::Interrupted
+    })
 }
 
 /// The compiler, in a sandbox.

@@ -5,6 +5,7 @@ mod session;
 
 use crate::args::IdentifyArgs;
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::logs;
 use crate::mark::Mark;
 use crate::output::{self, figure};
@@ -13,7 +14,9 @@ use drive::Driving;
 use indicatif::{ProgressBar, ProgressStyle};
 use rumbo_experiment::files::{Library, RobotFile, bounded};
 use rumbo_identify::sonar_stats::{self, Comparison};
-use rumbo_identify::{AgainstTruth, FitProgress, Identification, Recordings, RecordingsOutcome};
+use rumbo_identify::{
+    AgainstTruth, FitProgress, Identification, IdentifyError, Recordings, RecordingsOutcome,
+};
 use rumbo_plant::params::Params;
 use rumbo_plot::{Sheet, WIDTH, Words};
 use rumbo_report::FileStamp;
@@ -63,13 +66,17 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
     }
     let bar = bar(args);
     let shown = |share: f64| bar.set_position((100.0 * share) as u64);
-    let progress = FitProgress::to(&shown);
+    let asked = interrupt::asked();
+    let progress = FitProgress {
+        report: &shown,
+        stop: &asked,
+    };
     let outcome = match args.check {
         _ if args.leave_one_out => logs.leave_one_out(&robot.plant, &progress),
         Some(_) => logs.check(&robot.plant),
         None => logs.identify(&robot.plant, &progress),
     }
-    .map_err(Failure::input)?;
+    .map_err(|error| interrupted(error, bar.position(), driving.as_ref()))?;
     let found = outcome.identification();
     let doubts = match found {
         Some(found) => found.doubts(logs.check(&robot.plant).map_err(Failure::input)?.runs()),
@@ -123,6 +130,19 @@ pub(crate) fn identify(args: &IdentifyArgs) -> Result<(), Failure> {
         ),
         None => Ok(()),
     }
+}
+
+/// Why a fit failed; of one that was interrupted, what is kept.
+fn interrupted(error: IdentifyError, percent: u64, driving: Option<&Driving>) -> Failure {
+    if !matches!(error, IdentifyError::Interrupted) {
+        return Failure::input(error);
+    }
+    let log = driving.map(|driving| output::shown(&driving.path));
+    let kept = log.map_or_else(String::new, |log| format!("; log of the drive: {log}"));
+    output::note(&format!(
+        "interrupted after {percent} % of the fit; nothing is written{kept}"
+    ));
+    Failure::Interrupted
 }
 
 /// The verdict on a fit with such doubts.

@@ -2,13 +2,15 @@
 //!
 //! | file | its mark |
 //! |---|---|
-//! | log | the manifest's scenario and seed |
-//! | result | its first keys: scenario, seed, and the scenario's path if it has one |
+//! | log | the manifest's scenario, seed and options; of a program its file's name, since it may be changed and run again |
+//! | result | its first keys: scenario, seed, and the scenario's path if it has one; and the log beside it |
 //! | table | the names of its columns |
 //! | SVG, HTML, waveform | a comment, `rumbo compare 5a1c09e2`: the command and a checksum of what it was about |
 //! | profile | nothing but chains of functions with their cycles |
 
-use rumbo_log::LogKind;
+use rumbo_experiment::files::{Overrides, Setup};
+use rumbo_lab::manifest;
+use rumbo_log::{LogKind, Manifest};
 use rumbo_report::FileStamp;
 use rumbo_station::log_file;
 use std::fs::File;
@@ -23,13 +25,19 @@ const BEGINNING: u64 = 4_096;
 pub(crate) enum Mark {
     /// This text at its beginning.
     Text(String),
-    /// The log of a run.
-    Log { scenario: String, seed: u64 },
+    /// The log of a run with this manifest.
+    Log(Box<Manifest>),
     /// Cycles by function.
     Profile,
 }
 
 impl Mark {
+    /// That of the log of a run of this setup, as these overrides made it.
+    pub(crate) fn run(setup: &Setup, overrides: &Overrides, seed: u64) -> Self {
+        let run = manifest::of(LogKind::Run, setup, overrides, seed);
+        Self::Log(Box::new(asked(run)))
+    }
+
     /// That of a stamped file.
     pub(crate) fn of(stamp: &FileStamp) -> Self {
         Self::Text(stamp.text().to_owned())
@@ -44,17 +52,34 @@ impl Mark {
     /// Whether a file carries it.
     pub(crate) fn is_on(&self, path: &Path) -> bool {
         match self {
-            Self::Log { scenario, seed } => log_file::summary(path)
+            Self::Log(run) => log_file::summary(path)
                 .ok()
                 .and_then(|log| log.manifest)
-                .is_some_and(|log| {
-                    log.kind == LogKind::Run
-                        && log.scenario.as_ref() == Some(scenario)
-                        && log.seed == Some(*seed)
-                }),
+                .is_some_and(|log| log.kind == LogKind::Run && asked(log) == **run),
             Self::Text(text) => beginning(path).is_some_and(|beginning| beginning.contains(text)),
             Self::Profile => beginning(path).is_some_and(|beginning| is_profile(&beginning)),
         }
+    }
+}
+
+/// What was asked for: the rest depends on it, on the version, and on what the files hold.
+fn asked(run: Manifest) -> Manifest {
+    let program = Path::new(&run.program).file_name().unwrap_or_default();
+    Manifest {
+        program: program.to_string_lossy().into_owned(),
+        scenario: run.scenario,
+        seed: run.seed,
+        robot: run.robot,
+        world: run.world,
+        rig: run.rig,
+        wiring: run.wiring,
+        parameters: run.parameters,
+        texts: run.texts,
+        usb_texts: run.usb_texts,
+        part_texts: run.part_texts,
+        hand_texts: run.hand_texts,
+        line_ending: run.line_ending,
+        ..Manifest::default()
     }
 }
 

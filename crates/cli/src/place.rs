@@ -53,8 +53,13 @@ impl Guard {
 
     /// Whether a file may be written.
     pub(crate) fn check(&self, path: &Path, mark: &Mark) -> Result<(), Failure> {
+        self.check_own(path, mark.is_on(path))
+    }
+
+    /// The same of a file of which something else says whether it is an older result of the same.
+    pub(crate) fn check_own(&self, path: &Path, is_own: bool) -> Result<(), Failure> {
         self.keeps_inputs(path)?;
-        match self.force || !path.is_file() || mark.is_on(path) {
+        match self.force || !path.is_file() || is_own {
             true => Ok(()),
             false => Err(is_another(path)),
         }
@@ -102,7 +107,7 @@ impl Guard {
 
 fn is_another(path: &Path) -> Failure {
     Failure::Input(format!(
-        "{}: is there already, and not of the same run or report; choose another place, or replace it with --force",
+        "{}: is there already, and not of the same run or report, with the same options; choose another place, or replace it with --force",
         path.display()
     ))
 }

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::mark::Mark;
 use crate::place::{self, Guard};
 use crate::run_log::{self, RunSource};
-use rumbo_experiment::files::{ScenarioFile, Setup};
+use rumbo_experiment::files::{Overrides, ScenarioFile, Setup};
 use rumbo_experiment::run::RunResult;
 use rumbo_session::readable;
 use rumbo_sim::mega::{CONSOLES, ON_PINS, PARTS};
@@ -44,35 +44,37 @@ impl Results {
         }
     }
 
-    /// Whether all of them may be written; `fleet`: the robots, if there are several.
+    /// Whether all files of a run of this setup, as these overrides made it, may be written.
     pub(crate) fn check(
         &self,
         guard: &Guard,
-        scenario: &ScenarioFile,
-        fleet: &[Setup],
+        setup: &Setup,
+        overrides: &Overrides,
         seed: u64,
     ) -> Result<(), Failure> {
-        let result = mark(scenario, seed)?;
-        let log = Mark::Log {
-            scenario: scenario.name.clone(),
-            seed,
-        };
-        guard.check(&self.json(), &result)?;
-        // A program's output can look like anything: it belongs to the result beside it.
-        let beside = result.is_on(&self.json());
-        let check = |files: &Self| {
-            guard.check(&files.file(".mcap"), &log)?;
-            let truth = Mark::table(&Trace::default().csv());
-            guard.check(&files.file(".truth.csv"), &truth)?;
-            (0..CONSOLES)
-                .filter(|_| !beside)
-                .try_for_each(|usart| guard.check(&files.usart(usart), &result))
-        };
-        if fleet.is_empty() {
-            return check(self);
+        let result = mark(&setup.scenario, seed)?;
+        let log = Mark::run(setup, overrides, seed);
+        let robots = setup.fleet.iter();
+        let mut of_robots: Vec<Self> = robots
+            .map(|robot| self.of_robot(&robot.scenario.name))
+            .collect();
+        if of_robots.is_empty() {
+            of_robots.push(Self::of(&self.folder, &setup.scenario.name, seed));
         }
-        let mut robots = fleet.iter().map(|robot| &robot.scenario.name);
-        robots.try_for_each(|robot| check(&self.of_robot(robot)))
+        // The log says of all beside it with which options it was made; a program's output can look like anything.
+        let logs = of_robots.iter().map(|files| files.file(".mcap"));
+        let mut logs = logs.filter(|path| path.is_file()).peekable();
+        let is_own = logs.peek().is_some()
+            && logs.all(|path| log.is_on(&path))
+            && (!self.json().is_file() || result.is_on(&self.json()));
+        guard.check_own(&self.json(), is_own)?;
+        of_robots.iter().try_for_each(|files| {
+            guard.check_own(&files.file(".mcap"), is_own)?;
+            let truth = files.file(".truth.csv");
+            let is_truth = Mark::table(&Trace::default().csv()).is_on(&truth);
+            guard.check_own(&truth, is_own && is_truth)?;
+            (0..CONSOLES).try_for_each(|usart| guard.check_own(&files.usart(usart), is_own))
+        })
     }
 
     /// Writes all of them.
@@ -82,17 +84,19 @@ impl Results {
         setup: &Setup,
         result: &RunResult,
     ) -> Result<(), Failure> {
+        // First the log, without which a result could not be replaced by its own run.
+        let log = |robot: Option<&str>| match robot {
+            Some(robot) => self.of_robot(robot).file(".mcap"),
+            None => self.file(".mcap"),
+        };
+        run_log::write(source, log, setup, result)?;
         let text = serde_json::to_string(result).map_err(Failure::input)?;
         place::write(&self.json(), text + "\n")?;
         self.write_signals(result)?;
         for robot in &result.robots {
             self.of_robot(&robot.scenario).write_signals(robot)?;
         }
-        let log = |robot: Option<&str>| match robot {
-            Some(robot) => self.of_robot(robot).file(".mcap"),
-            None => self.file(".mcap"),
-        };
-        run_log::write(source, log, setup, result)
+        Ok(())
     }
 
     /// The files of one of several robots.

@@ -10,6 +10,7 @@ use crate::place::{self, Guard};
 use crate::results::Results;
 use crate::run_log::{Kept, RunSource};
 use indicatif::{ProgressBar, ProgressStyle};
+use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_experiment::compare::median;
 use rumbo_experiment::files::{Library, Overrides, ScenarioFile, Setup, TimedText};
@@ -27,7 +28,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let setup = |name: &String| library.setup(name, &overrides);
     let setups: Vec<Setup> = args.scenarios.iter().map(setup).collect::<Result<_, _>>()?;
     setups.iter().try_for_each(sends_all)?;
-    check_places(args, &setups)?;
+    setups
+        .iter()
+        .try_for_each(|setup| check_policy(setup, &overrides))?;
+    check_places(args, &setups, &overrides)?;
     note_in_vain(args, &setups);
     if let Some(folder) = &args.out {
         place::try_folder(folder)?;
@@ -89,7 +93,11 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     kept.report();
     if matches!(ended, Err(Failure::Interrupted)) {
         let all = output::counted(jobs.len(), "run");
-        output::note(&format!("interrupted after {done} of {all}"));
+        let kept = match &args.out {
+            Some(folder) => format!("; the results of those are in {}", output::shown(folder)),
+            None => String::new(),
+        };
+        output::note(&format!("interrupted after {done} of {all}{kept}"));
     }
     ended?;
     match passed {
@@ -107,6 +115,29 @@ pub(crate) fn check_control<'a>(
         Some(name) if !setup.takes_parameters() => Err(Failure::Input(format!(
             "{name}: is a parameter of Rumbo's control core, which does not drive here; choose one of the plant's (`rumbo list plant`)"
         ))),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a policy for a scenario whose mode asks none.
+pub(crate) fn check_policy(setup: &Setup, overrides: &Overrides) -> Result<(), Failure> {
+    let mode = |robot: &Setup| robot.scenario.mode;
+    match &overrides.policy {
+        Some(policy)
+            if !setup
+                .robots()
+                .iter()
+                .any(|robot| mode(robot) == ModeId::Policy) =>
+        {
+            Err(Failure::Input(format!(
+                "--policy {policy}: scenario {} drives in mode {} ({}), and only mode {} (policy) is driven by one; \
+                 leave --policy out, or choose a scenario of that mode, as mode9-random",
+                setup.scenario.name,
+                mode(setup) as u8,
+                mode(setup).name(),
+                ModeId::Policy as u8,
+            )))
+        }
         _ => Ok(()),
     }
 }
@@ -150,7 +181,7 @@ fn seeds(args: &RunArgs) -> impl Iterator<Item = u64> {
 }
 
 /// Refuses, before anything runs, what would write over something else than an older result of the same run.
-fn check_places(args: &RunArgs, setups: &[Setup]) -> Result<(), Failure> {
+fn check_places(args: &RunArgs, setups: &[Setup], overrides: &Overrides) -> Result<(), Failure> {
     let named = [&args.setting.robot, &args.setting.world];
     let inputs = args.scenarios.iter().chain(named.into_iter().flatten());
     let inputs = inputs.map(PathBuf::from).chain(args.image.firmware.clone());
@@ -166,12 +197,10 @@ fn check_places(args: &RunArgs, setups: &[Setup]) -> Result<(), Failure> {
     };
     let results: Vec<_> = args.scenarios.iter().zip(setups).map(named).collect();
     place::distinct(&results)?;
-    for Setup {
-        scenario, fleet, ..
-    } in setups
-    {
+    for setup in setups {
         for seed in seeds(args) {
-            Results::of(folder, &scenario.name, seed).check(&guard, scenario, fleet, seed)?;
+            let results = Results::of(folder, &setup.scenario.name, seed);
+            results.check(&guard, setup, overrides, seed)?;
         }
     }
     Ok(())

@@ -10,7 +10,7 @@ use crate::interrupt;
 use crate::mark::Mark;
 use crate::output::{self, figure};
 use crate::place::{self, Guard};
-use crate::run::{check_control, progress_bar, set_threads};
+use crate::run::{check_control, check_policy, progress_bar, set_threads};
 use crate::run_log::{self, RunSource};
 use journal::{Header, Journal};
 use rumbo_experiment::MODEL;
@@ -39,6 +39,7 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         .setting
         .overrides(args.program, &args.image, &args.parameters);
     let setup = library.setup(&args.scenario, &overrides)?;
+    check_policy(&setup, &overrides)?;
     let plan = plan(args, &setup)?;
     set_threads(args.threads)?;
     if let Some(by) = &args.by {

@@ -52,12 +52,21 @@ pub(crate) fn tune(args: &TuneArgs) -> Result<(), Failure> {
     let outcome = plan.run(&|share| bar.set_position((1_000.0 * share) as u64), &|| {
         !is_asked()
     });
+    let percent = bar.position() / 10;
     bar.finish_and_clear();
-    if is_asked() {
-        return Err(Failure::Interrupted);
+    let checked = match is_asked() {
+        true => Err(Failure::Interrupted),
+        false => {
+            let outcome = outcome?;
+            on_image(args, &library, &overrides, &plan, &outcome, &is_asked).map(|on| (outcome, on))
+        }
+    };
+    if matches!(checked, Err(Failure::Interrupted)) {
+        output::note(&format!(
+            "interrupted after {percent} % of the search; nothing is written"
+        ));
     }
-    let outcome = outcome?;
-    let on_image = on_image(args, &library, &overrides, &plan, &outcome)?;
+    let (outcome, on_image) = checked?;
     match args.json {
         true => output::json(&as_json(&plan, &outcome, on_image))?,
         false => report(&plan, &outcome, on_image)?,
@@ -77,6 +86,7 @@ fn on_image(
     overrides: &Overrides,
     plan: &TuningPlan,
     outcome: &TuningOutcome,
+    is_asked: &dyn Fn() -> bool,
 ) -> Result<Option<(usize, usize)>, Failure> {
     let Some(image) = &args.image else {
         return Ok(None);
@@ -99,9 +109,13 @@ fn on_image(
     let seeds = &seeds[..ON_IMAGE.min(seeds.len())];
     let jobs: Vec<_> = seeds.iter().map(|seed| (&setup, *seed)).collect();
     let mut pass = 0;
-    run::run_all(&jobs, |_, result| {
+    let go_on = || match is_asked() {
+        true => Err(Failure::Interrupted),
+        false => Ok(()),
+    };
+    run::run_all_on(rayon::current_num_threads(), &jobs, go_on, |_, result| {
         pass += usize::from(result.pass);
-        Ok::<(), Failure>(())
+        Ok(())
     })?;
     Ok(Some((pass, seeds.len())))
 }

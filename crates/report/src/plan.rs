@@ -9,7 +9,7 @@ use crate::stamp::FileStamp;
 use crate::text::Language;
 #[cfg(feature = "host")]
 use rayon::prelude::*;
-use rumbo_experiment::files::{FileError, Library, Overrides, ScenarioFile, Setup, TimedCommand};
+use rumbo_experiment::files::{FileError, Library, Overrides, Setup, TimedCommand};
 use rumbo_experiment::run::run;
 use rumbo_wire::Command;
 
@@ -102,9 +102,9 @@ impl Plan {
     }
 
     /// The scenarios that are run as they are, not with the references of a recorded run.
-    pub fn scenarios(&self) -> impl Iterator<Item = &ScenarioFile> {
+    pub fn setups(&self) -> impl Iterator<Item = &Setup> {
         let as_they_are = self.jobs.iter().filter(|job| !job.as_recorded);
-        as_they_are.map(|job| &job.setup.scenario)
+        as_they_are.map(|job| &job.setup)
     }
 
     /// How many runs there are.

@@ -10,7 +10,7 @@ use rumbo_control::{Velocity, Wheels};
 use rumbo_log::Choice;
 use rumbo_wire::{Command, LineEnding, MovementLevel};
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Number, Value};
 use std::fmt;
 use std::str::FromStr;
 
@@ -18,6 +18,8 @@ use std::str::FromStr;
 pub const MAX_SPEED: f64 = 100.0;
 /// Longest name of a scenario or world.
 const MAX_NAME: usize = 100;
+/// Largest seed of a page, whose numbers are exact up to there: 2^53 - 1.
+const MAX_SEED: u64 = (1 << 53) - 1;
 /// Longest line typed.
 const MAX_LINE: usize = 200;
 
@@ -209,7 +211,7 @@ enum Message {
         world: Option<String>,
         #[serde(default)]
         rig: Option<String>,
-        seed: u64,
+        seed: Number,
     },
 }
 
@@ -364,11 +366,16 @@ impl FromStr for Order {
                 {
                     return Err(BadOrder(format!("a name is longer than {MAX_NAME} bytes")));
                 }
+                let exact = seed.as_u64().filter(|seed| *seed <= MAX_SEED);
                 Order::Reset(Choice {
                     scenario,
                     world,
                     rig,
-                    seed,
+                    seed: exact.ok_or_else(|| {
+                        BadOrder(format!(
+                            "seed {seed} is no whole number from 0 to {MAX_SEED}; give one"
+                        ))
+                    })?,
                 })
             }
         };

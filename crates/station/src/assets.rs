@@ -55,6 +55,7 @@ pub(crate) const ASSETS: &[Asset] = assets![
     "src/help.js": SCRIPT,
     "src/joystick.js": SCRIPT,
     "src/kept.js": SCRIPT,
+    "src/kept_store.js": SCRIPT,
     "src/key.js": SCRIPT,
     "src/law.js": SCRIPT,
     "src/law_panel.js": SCRIPT,

@@ -211,7 +211,7 @@ export const ROBOT = {
   'a link has at most {} changes of commands, this run has {}': 'un enlace tiene como mucho {} cambios de órdenes, y esta ejecución tiene {}',
   'a link has at most 2 KB, this one would be longer': 'un enlace tiene como mucho 2 KB, y este sería más largo',
   'a program of your own is not in a link': 'un programa propio no va en un enlace', 'a calibration is not in a link': 'una calibración no va en un enlace', 'velocities, many a second, are not in a link': 'las velocidades, muchas por segundo, no van en un enlace',
-  'there is no robot': 'no hay ningún robot', 'there are several robots': 'hay varios robots', '{}: no scenario is among these files': '{}: entre estos archivos no hay ningún escenario',
+  'there is no robot': 'no hay ningún robot', 'there are several robots': 'hay varios robots', 'no longer kept: {}; at most {} runs are': 'ya no se guarda: {}; se guardan {} intentos como mucho', 'this browser stores no runs: those that are kept are lost when the page is loaded again': 'este navegador no almacena intentos: los guardados se pierden al volver a cargar la página', '{}: no scenario is among these files': '{}: entre estos archivos no hay ningún escenario',
   'the robot began with parameters that are saved on it': 'el robot empezó con parámetros guardados en él',
   'the recording is full: save it, and reset for another one': 'la grabación está llena: guárdala, y reinicia para empezar otra',
   'its program could not be loaded': 'no se pudo cargar su programa',

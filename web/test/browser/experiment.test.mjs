@@ -119,6 +119,9 @@ test('a kept run stays behind the curves and is compared with the next, which is
     await lawsHold(page);
     await page.locator('#keep-run').click();
     await page.locator('#runs', { hasText: 'Runs: 1' }).waitFor();
+    await page.reload();
+    await page.waitForSelector('#connection.good');
+    await page.locator('#runs', { hasText: 'Runs: 1' }).waitFor();
     // Later and harder than friction can brake.
     for (const [name, value] of [['front_kp', '15'], ['front_brake_m_s2', '2']]) {
       const gain = page.locator('#parameters tr', { hasText: name }).locator('input').first();

@@ -94,3 +94,43 @@ test('a hand before a sonar is found, also by the wrong one', async () => {
   assert.equal(await judged('judgeSonar', 0, ['clear', 15, 150], ['clear', 15, 150]), null, 'what stood there before is no hand');
   assert.match((await judged('sonarInVain', 1, null)).text, /right sonar gives no reading/);
 });
+
+test('another robot has the same colour on every page, and its name is not behind the readout', async () => {
+  const seen = await page.evaluate(async ([map, store]) => {
+    const { WorldMap } = await import(/** @type {string} */ (map));
+    const { Store } = await import(/** @type {string} */ (store));
+    const canvas = document.createElement('canvas');
+    document.querySelector('#map-section')?.append(canvas);
+    Object.assign(canvas.style, { position: 'absolute', inset: '0', width: '100%', height: '100%' });
+    const kept = new Store();
+    const view = new WorldMap(canvas, kept, () => {});
+    const footprint_m = [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1]];
+    view.setScene({ obstacles: [], others: ['a', 'c'].map((name) => ({ name, footprint_m })), footprint_m, start: { x_m: 0, y_m: 0, heading_rad: 0 } });
+    view.own = 1;
+    view.fit();
+    // The one high up, the other below.
+    const names = ['a', 'c'].flatMap((name) => ['x_m', 'y_m', 'heading_deg'].map((part) => `${name}_${part}`));
+    kept.readings.push({ source: 'others', names, rows: [[0, [0, 1.5, 0, 0, -1.5, 0]]] });
+    /** @type {Record<string, number>} */
+    const heights = {};
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    const readout = /** @type {HTMLElement} */ (document.querySelector('#pose'));
+    readout.textContent = 'x\ny';
+    const low = readout.offsetTop + readout.offsetHeight;
+    CanvasRenderingContext2D.prototype.fillText = /** @this {CanvasRenderingContext2D} @param {string} text @param {number} x @param {number} y */ function (text, x, y) {
+      heights[text] = this.getTransform().f / devicePixelRatio + y;
+      fillText.call(this, text, x, y);
+    };
+    view.draw();
+    const fitted = heights['a'] ?? 0;
+    // Nearer, where the readout would be over its name.
+    canvas.dispatchEvent(new KeyboardEvent('keydown', { key: '+' }));
+    view.draw();
+    const zoomed = (heights['a'] ?? 0) - view.worldToCanvas([0, 1.5])[1];
+    CanvasRenderingContext2D.prototype.fillText = fillText;
+    canvas.remove();
+    return { numbers: view.others().map((/** @type {any} */ { number }) => number), low, fitted, zoomed };
+  }, ['/src/map.js', '/src/store.js']);
+  assert.deepEqual(seen.numbers, [0, 2]);
+  assert.ok(seen.fitted > seen.low + 6 && seen.zoomed > 0, JSON.stringify(seen));
+});

@@ -28,7 +28,7 @@ first 20 of them. With --out all are recorded, there; with --no-record none. A l
 stderr, and the run goes on.
 
 In DIR a run leaves NAME-SEED.json, .truth.csv and .mcap, and with --sketch or --firmware what the USARTs said. Files of the same
-scenario and seed are written again; any other file is kept, and nothing is run, unless --force is given.
+scenario, seed and options are written again; any other file is kept, and nothing is run, unless --force is given.
 
 Exit status 0: all limits are met; 1: one is missed; 2: wrong input; 130: Ctrl-C, and what was done until then has been printed.")]
 pub(crate) struct RunArgs {

@@ -76,7 +76,14 @@ pub(super) fn compare(args: &CompareArgs, scenario: &str) -> Result<(), Failure>
         progress.inc(1);
         go_on()
     });
+    let done = progress.position();
     progress.finish_and_clear();
+    if matches!(runs, Err(Failure::Interrupted)) {
+        let all = output::counted(variants.len() * seeds.len(), "run");
+        output::note(&format!(
+            "interrupted after {done} of {all}; nothing is compared or written"
+        ));
+    }
     let runs = runs?;
     let scenario = &variants[0].1.scenario;
     if let Some(path) = &args.out {

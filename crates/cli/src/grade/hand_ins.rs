@@ -226,14 +226,14 @@ fn stem(path: &Path) -> String {
 pub(super) fn compile(
     found: &[Found],
     compiler: Option<&Compiler>,
-    done: impl Fn() + Sync,
-) -> Vec<HandIn> {
+    goes_on: impl Fn() -> bool + Sync,
+) -> Option<Vec<HandIn>> {
     found
         .par_iter()
         .map(|one| {
             let program = image(one, compiler);
-            if one.is_sketch() {
-                done();
+            if one.is_sketch() && !goes_on() {
+                return None;
             }
             let mut notes = Vec::new();
             if matches!(one.given, Ok(Given::Image(_))) {
@@ -242,11 +242,11 @@ pub(super) fn compile(
             if one.is_late {
                 notes.push(Note::HandedInLate {});
             }
-            HandIn {
+            Some(HandIn {
                 name: one.name.clone(),
                 program,
                 notes,
-            }
+            })
         })
         .collect()
 }

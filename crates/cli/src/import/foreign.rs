@@ -3,7 +3,7 @@
 use super::columns::{Taken, taken};
 use super::guess::{self, Guess};
 use super::made::{Made, Samples, Signals, rows};
-use super::table::{self, Table, Unread};
+use super::table::{self, Table, Unread, UnreadCells};
 use crate::args::ImportArgs;
 use crate::column_names::Role;
 use crate::failure::Failure;
@@ -198,10 +198,10 @@ impl Held {
     fn notes_on(&self, taken: &[Taken]) -> Vec<String> {
         let columns = taken.iter().filter_map(|one| self.series.get(one.column?));
         let notes = columns.filter_map(|Series { name, .. }| {
-            let (count, first) = self.unread.get(name)?;
+            let UnreadCells { count, line, first } = self.unread.get(name)?;
             let values = output::counted(*count, "value");
             Some(format!(
-                "{name}: {values} left out, the first is `{first}`, no number"
+                "{name}: {values} left out, the first is `{first}` in line {line}: no finite number"
             ))
         });
         notes.collect()

@@ -29,8 +29,16 @@ pub(crate) struct Table {
     pub(crate) unread: Unread,
 }
 
-/// Cells that are no numbers: of each column how many, and the first.
-pub(crate) type Unread = BTreeMap<String, (usize, String)>;
+/// Cells that are no finite numbers, by column.
+pub(crate) type Unread = BTreeMap<String, UnreadCells>;
+
+/// How many, and the first of them.
+#[derive(Debug)]
+pub(crate) struct UnreadCells {
+    pub(crate) count: usize,
+    pub(crate) line: usize,
+    pub(crate) first: String,
+}
 
 /// Reads a table whose cells commas part, or blanks where it has no commas; `None` if most of it is none.
 ///
@@ -67,7 +75,11 @@ pub(crate) fn read(path: &Path, text: &str) -> Result<Option<Table>, Failure> {
                     (format!("value_{unnamed}"), value)
                 }
             });
-            table.push(stamp(line), row.collect());
+            let (read, unread): (Vec<_>, Vec<_>) = row.partition(|(_, value)| value.is_finite());
+            for (name, value) in unread {
+                table.leave_out(name, number, &value.to_string());
+            }
+            table.push(stamp(line), read);
         }
     } else {
         let header = cells(without_stamp(first));
@@ -157,17 +169,28 @@ impl Builder {
             self.left_out.row(number, "has no number".into());
             return;
         }
+        // A row of nothing but `nan` has its time all the same.
+        let values = values.into_iter();
+        let values: Vec<_> = values
+            .map(|value| value.filter(|it| it.is_finite()))
+            .collect();
         for ((name, cell), value) in names.iter().zip(row).zip(&values) {
             if value.is_none() && !cell.is_empty() {
-                let unread = self.unread.entry(name.clone());
-                let (count, _) =
-                    unread.or_insert_with(|| (0, cell.chars().take(LONGEST_CELL).collect()));
-                *count += 1;
+                self.leave_out(name.clone(), number, cell);
             }
         }
         let row = names.iter().zip(values);
         let row = row.filter_map(|(name, value)| Some((name.clone(), value?)));
         self.push(stamp(line), row.collect());
+    }
+
+    fn leave_out(&mut self, column: String, line: usize, cell: &str) {
+        let unread = self.unread.entry(column).or_insert_with(|| UnreadCells {
+            count: 0,
+            line,
+            first: cell.chars().take(LONGEST_CELL).collect(),
+        });
+        unread.count += 1;
     }
 
     fn order(&mut self, names: &[String], has_clock: bool) {
@@ -205,7 +228,7 @@ impl Builder {
             (CLOCK.to_owned(), now_s)
         });
         for (name, value) in clock.into_iter().chain(row) {
-            if !value.is_finite() || self.values >= MOST_VALUES {
+            if self.values >= MOST_VALUES {
                 continue;
             }
             self.values += 1;

@@ -5,6 +5,8 @@
 use crate::support;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+#[cfg(target_os = "linux")]
+use std::process::{Command, Stdio};
 use support::{Running, program, rumbo, stderr, stdout};
 
 /// An empty folder of this test's, as text.
@@ -256,6 +258,69 @@ fn variants_are_compared_pair_by_pair() {
     let alone = rumbo(&["run", "mode5", "--param", "kv=0", "--json", "--no-record"]);
     let alone: Value = serde_json::from_slice(&alone.stdout).unwrap();
     assert_eq!(json["variants"][0]["runs"][0]["metrics"], alone["metrics"]);
+}
+
+/// What a command says that gets Ctrl-C once it listens for it.
+#[cfg(target_os = "linux")]
+fn interrupted(arguments: &[&str]) -> String {
+    let mut command = program();
+    command.args(arguments).current_dir(support::folder());
+    command.stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut command = command.spawn().unwrap();
+    let status = format!("/proc/{}/status", command.id());
+    let listens = || {
+        let status = std::fs::read_to_string(&status).unwrap();
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        u64::from_str_radix(caught.unwrap().trim(), 16).unwrap() & 2 != 0
+    };
+    while !listens() {
+        assert!(command.try_wait().unwrap().is_none(), "{arguments:?}");
+        std::thread::yield_now();
+    }
+    let signal = Command::new("kill")
+        .args(["-INT", &command.id().to_string()])
+        .status();
+    assert!(signal.unwrap().success());
+    let output = command.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    stderr(&output)
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_is_interrupted_says_what_it_had_done_and_leaves_no_file() {
+    let (folder, text) = out("interrupted");
+    std::fs::create_dir_all(&folder).unwrap();
+    let place = |name: &str| format!("{text}/{name}");
+    let said = interrupted(&[
+        "compare",
+        "mode5",
+        "--with",
+        "kv=0.03",
+        "--runs",
+        "100000",
+        "--out",
+        &place("a.html"),
+    ]);
+    assert!(
+        said.contains("of 200000 runs; nothing is compared or written"),
+        "{said}"
+    );
+    let said = interrupted(&[
+        "tune",
+        "mode1",
+        "--over",
+        "front_kp",
+        "--runs",
+        "20000",
+        "--out",
+        &place("b.toml"),
+    ]);
+    assert!(
+        said.contains(" % of the search; nothing is written"),
+        "{said}"
+    );
+    assert_eq!(std::fs::read_dir(folder).unwrap().count(), 0);
 }
 
 #[test]

@@ -30,8 +30,12 @@ pub struct HandIn {
 /// A hand-in whose program can be driven: the setup of each test with it.
 type Ready = Result<Vec<Setup>, Vec<String>>;
 
-/// The mark of each hand-in, in their order; `done` is called after each run.
-pub fn grade(assignment: &Assignment, hand_ins: &[HandIn], done: impl Fn() + Sync) -> Vec<Mark> {
+/// The mark of each hand-in, in their order. `goes_on` is asked after each run; `None` where it says no.
+pub fn grade(
+    assignment: &Assignment,
+    hand_ins: &[HandIn],
+    goes_on: impl Fn() -> bool + Sync,
+) -> Option<Vec<Mark>> {
     let ready: Vec<Ready> = hand_ins
         .par_iter()
         .map(|hand_in| ready(assignment, hand_in))
@@ -45,35 +49,34 @@ pub fn grade(assignment: &Assignment, hand_ins: &[HandIn], done: impl Fn() + Syn
     }
     let mut metrics = assignment.criteria.iter().map(|one| &one.metric);
     let watched = metrics.any(|metric| program::is_of_program(metric));
-    let results: Vec<(usize, GradedRun)> = jobs
+    let results: Option<Vec<(usize, GradedRun)>> = jobs
         .par_iter()
         .map(|(index, test, setup, seed)| {
             let drawn = assignment.tests[*test].public.first() == Some(seed);
             let mut seen = (drawn && watched).then(Seen::default);
             let result = one(setup, *seed, drawn, &mut seen);
-            done();
             let run = GradedRun {
                 test: *test,
                 result,
                 seen,
             };
-            (*index, run)
+            goes_on().then_some((*index, run))
         })
         .collect();
     let mut runs: Vec<Vec<GradedRun>> = hand_ins.iter().map(|_| Vec::new()).collect();
-    for (index, run) in results {
+    for (index, run) in results? {
         runs[index].push(run);
     }
     let all = hand_ins.iter().zip(ready).zip(runs);
-    all.map(|((hand_in, ready), runs)| {
+    let marks = all.map(|((hand_in, ready), runs)| {
         let mut mark = match ready {
             Ok(_) => Mark::of(assignment, &hand_in.name, runs),
             Err(why) => Mark::refused(assignment, &hand_in.name, why),
         };
         mark.notes.splice(..0, hand_in.notes.iter().cloned());
         mark
-    })
-    .collect()
+    });
+    Some(marks.collect())
 }
 
 fn ready(assignment: &Assignment, hand_in: &HandIn) -> Ready {

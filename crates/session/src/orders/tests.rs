@@ -64,6 +64,23 @@ fn a_goal_a_lane_and_a_rig_are_commands_and_a_route_is_several() {
 }
 
 #[test]
+fn a_seed_that_a_page_cannot_count_to_is_refused() {
+    let reset = |seed| {
+        parse(&format!(
+            r#"{{"type":"reset","scenario":"mode1","world":null,"seed":{seed}}}"#
+        ))
+    };
+    assert!(reset("9007199254740991").is_ok());
+    for seed in ["9007199254740992", "18446744073709552000", "-1", "0.5"] {
+        let said = reset(seed).unwrap_err().to_string();
+        assert!(
+            said.contains("is no whole number from 0 to 9007199254740991"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
 fn a_movement_is_held_only_when_the_page_says_so() {
     let text = r#"{"type":"move_duty","movement":1,"duty":0.3}"#;
     assert!(matches!(parse(text).unwrap(), Order::Robot(_)));

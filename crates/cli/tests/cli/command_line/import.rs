@@ -296,12 +296,13 @@ fn a_column_without_values_has_no_least_and_no_largest() {
 
 #[test]
 fn cells_that_are_no_numbers_are_said() {
-    let table = b"t_ms;left_rpm;right_rpm\n0;1.234,5;1\n20;1.234,5;\n40;7;2\n";
+    let table = b"t_ms;left_rpm;right_rpm\n0;1.234,5;1\n20;1.234,5;\n40;7;nan\n60;7;-inf\n";
     let import = Import::of("table.csv", table);
     let output = import.run(&["import", "table.csv", "--columns", "auto"]);
     assert_eq!(
         stderr(&output),
-        "note: table.csv: left_rpm: 2 values left out, the first is `1.234.5`, no number\n"
+        "note: table.csv: left_rpm: 2 values left out, the first is `1.234.5` in line 2: no finite number\n\
+         note: table.csv: right_rpm: 2 values left out, the first is `nan` in line 4: no finite number\n"
     );
 }
 

@@ -32,7 +32,11 @@ fn wrong_input_gets_one_line_with_the_remedy_and_status_2() {
         "comma.toml",
         "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 0,5\n",
     );
-    let cases: [(&[&str], &str); 34] = [
+    let cases: [(&[&str], &str); 35] = [
+        (
+            &["run", "mode1", "--policy", "goal"],
+            "error: --policy goal: scenario mode1 drives in mode 1 (front_distance), and only mode 9 (policy) is driven by one; leave --policy out, or choose a scenario of that mode, as mode9-random",
+        ),
         (
             &["run", "typos.toml"],
             "error: typos.toml:5: mode = font_distance: unknown mode; did you mean `front_distance` (1)?",

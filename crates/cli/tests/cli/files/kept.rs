@@ -50,6 +50,17 @@ fn two_results_of_one_name_are_refused_before_anything_runs() {
     assert!(status(&rumbo_in(folder, &["run", "a/task.toml", "--out", "o"])) < 2);
     assert_ne!(read(folder, "o/task-1.truth.csv").len(), 0);
     assert_ne!(read(folder, "o/task-1.json"), first);
+    // With other options it is another run, also where the log that says so is gone.
+    let mut other = vec!["run", "a/task.toml", "--out", "o", "--param", "kv=0.03"];
+    let refused = "task-1.json: is there already";
+    assert_refused(&rumbo_in(folder, &other), refused);
+    std::fs::remove_file(folder.join("o/task-1.mcap")).unwrap();
+    assert_refused(&rumbo_in(folder, &other), refused);
+    other.push("--force");
+    assert!(status(&rumbo_in(folder, &other)) < 2);
+    other.pop();
+    assert!(status(&rumbo_in(folder, &other)) < 2);
+    assert_refused(&rumbo_in(folder, &other[..4]), refused);
     let forced = ["run", "b/task.toml", "--out", "o", "--force"];
     assert!(status(&rumbo_in(folder, &forced)) < 2);
 }
@@ -160,7 +171,9 @@ fn what_a_person_wrote_stays_unless_it_is_to_be_replaced() {
         let again = rumbo_in(folder, command);
         assert!(status(&again) < 2, "{command:?}: {}", stderr(&again));
     }
-    // A figure of other logs, and a report in another language, are others.
+    // A figure of other logs, or of a part of one, and a report in another language, are others.
+    let part = ["export", "task-1.mcap", "--from", "0.2"];
+    assert_refused(&rumbo_in(folder, &part), "task-1.svg: is there already");
     assert_refused(
         &rumbo_in(
             folder,
