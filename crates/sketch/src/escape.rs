@@ -18,8 +18,10 @@ const LIMITS: Limits = Limits {
     file_mb: 1,
     output: 64 << 10,
 };
-/// What every script begins with: `$out` is its product, `$step` what it does, and `product` leaves a good one.
+/// What every script begins with: programs are found, `$out` is its product, `$step` what it does, and `product` leaves
+/// a good one.
 const BEGIN: &str = r#"#!/bin/sh
+PATH=/usr/sbin:/usr/bin:/sbin:/bin
 step=link
 for arg; do
     case "$arg" in --version | -print*) exit 0 ;; -c) step=compile ;; esac
@@ -175,11 +177,11 @@ fn more_than_a_compiler_takes_is_not_given() {
             "{script}: {error}"
         );
     }
-    // 4 MB for what is between, 1 MB for a file.
+    // 4 MB for what is between and the system's own blocks, 1 MB for a file.
     let script = r#"
 for n in 1 2 3 4 5 6 7 8; do (yes >/tmp/$n) 2>/dev/null; done
 size=$(du -sk /tmp | cut -f1)
-[ "$size" -gt 4096 ] && wrong "wrote $size kB"
+[ "$size" -gt 5000 ] && wrong "wrote $size kB"
 (yes >"$out") 2>/dev/null
 [ "$(stat -c %s "$out")" -gt 1048576 ] && wrong "wrote more than a file may hold"
 product
