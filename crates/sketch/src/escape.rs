@@ -21,8 +21,7 @@ const LIMITS: Limits = Limits {
 /// What every script begins with: programs are found, `$out` is its product, `$step` what it does, and `product` leaves
 /// a good one.
 const BEGIN: &str = r#"#!/bin/sh
-PATH=/usr/sbin:/usr/bin:/sbin:/bin
-step=link
+PATH=/usr/sbin:/usr/bin:/sbin:/bin step=link
 for arg; do
     case "$arg" in --version | -print*) exit 0 ;; -c) step=compile ;; esac
     [ "$last" = -o ] && out=$arg
