@@ -66,6 +66,7 @@ export class StateBand {
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
     ctx.textAlign = 'left';
+    const letter = ctx.measureText('n').width;
     for (const stretch of this.#store.stretches) {
       if (stretch.to_s < from_s || stretch.from_s > to_s) continue;
       const left = plot.valToPos(Math.max(stretch.from_s, from_s), 'x', true);
@@ -78,11 +79,9 @@ export class StateBand {
       // Where states are short there is no room for a line between them.
       ctx.fillStyle = colours.panel;
       if (right - left > 4 * devicePixelRatio) ctx.fillRect(left, bbox.top, devicePixelRatio, bbox.height);
-      const name = this.#name(stretch);
-      if (ctx.measureText(name).width + 8 < right - left) {
-        ctx.fillStyle = colours.text;
-        ctx.fillText(name, left + 4, bbox.top + bbox.height / 2);
-      }
+      const name = shortened(this.#name(stretch), Math.floor((right - left - 8) / letter));
+      ctx.fillStyle = colours.text;
+      if (name !== '') ctx.fillText(name, left + 4, bbox.top + bbox.height / 2, right - left - 6);
     }
     ctx.restore();
   }
@@ -99,4 +98,10 @@ export class StateBand {
     const state = stretch.faulted ? t('fault') : stretch.armed ? stateWords(mode, stretch.state) : t('off');
     return `${stretch.mode}: ${state}`;
   }
+}
+
+/** The name of a state in so many letters: without its mode, then its beginning; below four letters nothing. @param {string} name @param {number} most */
+function shortened(name, most) {
+  const own = name.replace(/^\d+: /, '');
+  return name.length <= most ? name : own.length <= most ? own : most < 4 ? '' : `${own.slice(0, most - 1).trimEnd()}…`;
 }

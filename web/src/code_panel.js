@@ -4,7 +4,7 @@
  * typed stays in the browser's storage, by the sketch's name: the lab keeps it only as long as it runs.
  */
 import { Debugger } from './debugger.js';
-import { saveFile } from './dialog.js';
+import { fileButton, saveFile } from './dialog.js';
 import { clickable, create, element, setText } from './dom.js';
 import { placeOf, plainName, sameFiles } from './source.js';
 import { keep, recall } from './stored.js';
@@ -75,6 +75,10 @@ export class CodePanel {
       const file = this.#editor?.files.find(({ name }) => name === this.#editor?.name);
       if (file) saveFile(file.name.replace(/^.*\//, ''), new Blob([file.text], { type: 'text/plain' }));
     });
+    const opens = fileButton(t('Open a sketch…'), '.ino,.h,.hpp,.c,.cpp,.S', (_, files) => this.#read(files), true);
+    opens.title = t('Open the .ino of a sketch and the files beside it; an .ino that is dropped on the page runs at once');
+    opens.querySelector('button')?.classList.add('small');
+    this.#examples.after(opens);
     this.#discard.addEventListener('click', () => this.#take(this.#served, this.#editor?.breakpoints ?? {}));
     this.#examples.addEventListener('change', () => {
       this.#ask(this.#examples.value || undefined);
@@ -130,6 +134,20 @@ export class CodePanel {
     this.#take(draft?.files ?? sketch.files, draft?.breakpoints ?? {});
     if (this.#program) this.#problems(this.#program);
     if (this.#wanted) this.#goTo(this.#wanted);
+  }
+
+  /** Shows a sketch of this computer. @param {File[]} files */
+  async #read(files) {
+    const read = await Promise.all(files.map(async (file) => ({ name: file.name, text: await file.text() })));
+    const main = read.find(({ name }) => name.endsWith('.ino'));
+    if (!main) return setText(this.#note, t('no .ino is among these files'));
+    this.#name = plainName(main.name);
+    main.name = `${this.#name}.ino`;
+    this.#served = read;
+    this.#take(read, {});
+    this.#examples.value = '';
+    setText(this.#note, t('{} is here: Run compiles it', main.name));
+    return undefined;
   }
 
   /** @param {SketchFile[]} files @param {Record<string, number[]>} breakpoints */

@@ -57,27 +57,22 @@ export function linesOf(store, curves, [from_s, to_s]) {
 function join(from, [from_s, to_s]) {
   /** @type {number[]} */
   const t = [];
-  /** @type {Map<string, Column>} */
-  const columns = new Map(from.flatMap(({ names }) => names.map((name) => [name, []])));
-  // From the line before to the line after, so that the curves go through to the edges.
+  // From the line before to the line after, so that the curves go through to the edges. `lines`: its line at each time, or -1.
   const parts = from.map(({ source, names }) => ({
-    t: source.t,
-    at: Math.max(0, source.indexAt(from_s) - 1),
-    end: Math.min(source.t.length, source.indexAt(to_s) + 1),
-    own: names.flatMap((name) => {
-      const [column, into] = [source.columns.get(name), columns.get(name)];
-      return column && into ? [{ column, into }] : [];
-    }),
+    t: source.t, names, columns: source.columns, lines: /** @type {number[]} */ ([]),
+    at: Math.max(0, source.indexAt(from_s) - 1), end: Math.min(source.t.length, source.indexAt(to_s) + 1),
   }));
   for (;;) {
     let next_s = Infinity;
-    for (const { at, end, t: times } of parts) if (at < end) next_s = Math.min(next_s, times[at] ?? Infinity);
-    if (next_s === Infinity) return { t, columns };
+    for (const part of parts) if (part.at < part.end) next_s = Math.min(next_s, part.t[part.at] ?? Infinity);
+    if (next_s === Infinity) break;
     t.push(next_s);
-    for (const part of parts) {
-      const here = part.at < part.end && part.t[part.at] === next_s;
-      for (const { column, into } of part.own) into.push(here ? column[part.at] : undefined);
-      if (here) part.at += 1;
-    }
+    for (const part of parts) part.lines.push(part.at < part.end && part.t[part.at] === next_s ? part.at++ : -1);
   }
+  // Column by column: times and lines are found once for all of them, for each frame.
+  const columns = new Map(parts.flatMap(({ names, columns: of, lines }) => names.map((name) => {
+    const column = of.get(name) ?? [];
+    return /** @type {[string, Column]} */ ([name, lines.map((line) => (line < 0 ? undefined : column[line]))]);
+  })));
+  return { t, columns };
 }

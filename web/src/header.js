@@ -139,7 +139,7 @@ export function grouped(experiments) {
 }
 
 /** The title of a scenario or a world. @param {string} title */
-const titleWords = (title) => said(title).replaceAll('->', '→');
+export const titleWords = (title) => said(title).replaceAll('->', '→');
 
 /**
  * @param {string} value

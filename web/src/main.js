@@ -14,7 +14,7 @@ import { makeEnlargeable } from './enlarge.js';
 import { EventList } from './events.js';
 import { ExperimentPanel } from './experiment.js';
 import { IDENTITY } from './geometry.js';
-import { Header } from './header.js';
+import { Header, titleWords } from './header.js';
 import { makeHelp } from './help.js';
 import { OWN_PROGRAM } from './layout.js';
 import { LayoutDialog } from './layout_dialog.js';
@@ -46,7 +46,7 @@ import { StateLine, pointerWords } from './stateline.js';
 import { StepFigures, figures } from './step.js';
 import { Store } from './store.js';
 import { Tabs } from './tabs.js';
-import { LANGUAGES, language, said, speak, t, translatePage, untranslated } from './text.js';
+import { LANGUAGES, language, speak, t, translatePage, untranslated } from './text.js';
 import { Timeline } from './timeline.js';
 import { Tour } from './tour.js';
 import { TuneDialog } from './tune_dialog.js';
@@ -73,6 +73,8 @@ let version = null;
 let simulated = null;
 /** The page is of one of several robots in the world, which goes with the time of the first. */
 let follows = false;
+/** The names of all of them. @type {string[]} */
+let robots = [];
 /** The robot's, as far as they are known. @type {import('./types.js').Parameter[]} */
 let table = [];
 /** The sonars that the robot carries, by number. */
@@ -145,16 +147,21 @@ const redraw = onFrame(() => {
   draw();
 });
 
+/** What the pointer moves. */
+function drawMap() {
+  map.draw();
+  setText(pointer, pointerWords(map.pointed()));
+}
+
 /** All that moves. */
 function draw() {
+  drawMap();
   plots.draw();
-  map.draw();
   stateLine.draw();
   timeline.draw();
   stepFigures.show(panel.mode);
   machine.draw();
   law.draw();
-  setText(pointer, pointerWords(map.pointed()));
 }
 const header = new Header(send);
 const seat = new Seat(send);
@@ -167,7 +174,7 @@ const program = new ProgramPanel(send, complain, showRecording, (files) => openS
 listen(askLab, () => simulated?.choice ?? null);
 /** The runs that the consoles are of, and the plots. @type {[number | null, number | null]} */
 let [consoleRun, shownRun] = [null, null];
-const map = new WorldMap(element('map', HTMLCanvasElement), store, redraw);
+const map = new WorldMap(element('map', HTMLCanvasElement), store, onFrame(drawMap));
 const panel = new CommandPanel(send, map);
 const experiment = new ExperimentPanel(send);
 const lessons = new Lessons(send);
@@ -289,10 +296,11 @@ function receive(message) {
       machine.modes = law.modes = message.modes;
       parameters.setModes(message.modes);
       tune.modes = message.modes;
-      document.body.classList.toggle('several', (message.robots ?? []).length > 0);
+      robots = message.robots ?? [];
+      document.body.classList.toggle('several', robots.length > 0);
       follows = message.robot > 0;
       map.own = message.robot;
-      offerRobots(message.robots ?? [], message.robot);
+      offerRobots(robots, message.robot);
       meter.clear();
       break;
     case 'scene':
@@ -302,8 +310,8 @@ function receive(message) {
       simulated = message.scene?.of_ghost ? null : message.scene;
       recordings.titles = new Map(message.scene?.experiments.map(({ name, title }) => [name, title]));
       // The first robot's page has the time and the choice for all.
-      document.title = simulated?.experiments.find(({ name }) => name === simulated?.choice.scenario)?.title ? `${said(simulated.experiments.find(({ name }) => name === simulated?.choice.scenario)?.title ?? '').replaceAll('->', '→')} · Rumbo` : 'Rumbo';
       header.setScene(follows ? null : simulated);
+      document.title = [...(robots.length > 0 ? [robots[map.own]] : []), ...(simulated ? [titleWords(recordings.titles.get(simulated.choice.scenario) ?? '')] : []), 'Rumbo'].filter(Boolean).join(' · ');
       map.setScene(message.scene);
       editor.setScene(simulated);
       tune.setScene(simulated);

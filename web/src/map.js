@@ -195,9 +195,8 @@ export class WorldMap {
     return this.#toWorld(this.#middle());
   }
 
-  /** A place of the world on the canvas [px]; for tests. @param {Point} at @returns {Point} */
-  worldToCanvas([x_m, y_m]) {
-    const view = this.#view ?? this.#fitted();
+  /** A place of the world on the canvas [px]. @param {Point} at @param {View} [view] @returns {Point} */
+  worldToCanvas([x_m, y_m], view = this.#view ?? this.#fitted()) {
     return [
       this.#canvas.clientWidth / 2 + (x_m - view.x_m) * view.px_per_m,
       this.#canvas.clientHeight / 2 - (y_m - view.y_m) * view.px_per_m,
@@ -226,8 +225,10 @@ export class WorldMap {
       canvas.width = width;
       canvas.height = height;
     }
-    const view = this.#view ?? this.#fitted();
-    this.#followButton.setAttribute('aria-pressed', String(this.#view === null && this.#follows(this.#whole())));
+    // Found once: for each frame that is much.
+    const whole = this.#view ? null : this.#whole();
+    const view = this.#view ?? this.#fitted(whole ?? undefined);
+    this.#followButton.setAttribute('aria-pressed', String(whole !== null && this.#follows(whole)));
     const scale = view.px_per_m * ratio;
     sketch.context.setTransform(1, 0, 0, 1, 0, 0);
     sketch.context.clearRect(0, 0, width, height);
@@ -235,9 +236,17 @@ export class WorldMap {
     sketch.context.setTransform(scale, 0, 0, -scale, width / 2 - view.x_m * scale, height / 2 + view.y_m * scale);
     const px = ratio / scale;
     sketch.drawGrid(view, px);
-    if (this.#tool) return this.#tool.draw(sketch, px);
+    if (this.#tool) this.#tool.draw(sketch, px);
+    else this.#drawScene(view, px);
+    // Over walls: it is read there too.
+    sketch.drawScale(view);
+  }
+
+  /** @param {View} view @param {number} px */
+  #drawScene(view, px) {
+    const sketch = this.#sketch;
     sketch.drawWorld(px, this.world());
-    for (const { other, at, number } of this.others()) sketch.drawOther(other, at, number, px, this.worldToCanvas([at.x_m, at.y_m + NAME_M])[1] > this.#above() ? NAME_M : -NAME_M);
+    for (const { other, at, number } of this.others()) sketch.drawOther(other, at, number, px, this.worldToCanvas([at.x_m, at.y_m + NAME_M], view)[1] > this.#above() ? NAME_M : -NAME_M);
     sketch.drawTrail(this.#store.trails.truth, colours.robot, 1.5 * px);
     sketch.drawTrail(this.#store.trails.estimated, colours.dim, px);
     sketch.drawTrail(this.#store.trails.ghost, colours.goal, px);
@@ -262,7 +271,7 @@ export class WorldMap {
     if (latest.truth) sketch.drawRobot(latest.truth, px, 'real', latest.contact);
     if (estimated && latest.spread) sketch.drawSpread(estimated, latest.origin, latest.spread, px);
     this.#hand?.held.draw(sketch, px);
-    if (this.#pick && canvas.matches(':focus-visible')) sketch.drawAim();
+    if (this.#pick && this.#canvas.matches(':focus-visible')) sketch.drawAim();
   }
 
   /** Outlines of what stands and moves, where they are. */
@@ -367,8 +376,7 @@ export class WorldMap {
   }
 
   /** Everything, or what is around the robot. @returns {View} */
-  #fitted() {
-    const whole = this.#whole();
+  #fitted(whole = this.#whole()) {
     if (!this.#follows(whole)) return whole;
     const { x_m, y_m } = this.#robot();
     return { x_m, y_m, px_per_m: Math.max(whole.px_per_m, this.#least) };
@@ -381,13 +389,14 @@ export class WorldMap {
     const robot = this.#robot();
     const around_m = this.#pick ? 1.3 : 0.35;
     const { goal = null, route = null } = this.#task ?? {};
+    const others = this.others();
     const all = this.#tool?.bounds ?? [
       ...(this.#sketch.scene?.obstacles.flatMap(({ corners_m, closed }) => corners_m.flatMap((corner, index) => {
         const next = corners_m[index + 1] ?? (closed ? corners_m[0] : undefined);
         return next ? nextTo(corner, next, [start.x_m, start.y_m], ALONG_M) : [];
       })) ?? []),
       ...(this.#sketch.scene?.movers?.flatMap(({ waypoints }) => waypoints.map(({ at }) => /** @type {Point} */ ([at.x_m, at.y_m]))) ?? []),
-      ...this.others().map(({ at }) => /** @type {Point} */ ([at.x_m, at.y_m].map((each) => Math.round(each / GROWTH_M) * GROWTH_M))),
+      ...others.map(({ at }) => /** @type {Point} */ ([at.x_m, at.y_m].map((each) => Math.round(each / GROWTH_M) * GROWTH_M))),
       [start.x_m - around_m, start.y_m - around_m], [start.x_m + around_m, start.y_m + around_m],
       ...[[robot.x_m, robot.y_m], ...this.#trailCorners(), ...(goal ? [place(frame, goal)] : []), ...(route?.waypoints.map(({ x_m, y_m }) => place(frame, [x_m, y_m])) ?? [])]
         .map((point) => point.map((each) => Math.round(each / GROWTH_M) * GROWTH_M)),
@@ -395,7 +404,7 @@ export class WorldMap {
     const xs = all.map(([x]) => x ?? 0);
     const ys = all.map(([, y]) => y ?? 0);
     const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    const above_px = this.others().length > 0 ? this.#above() : ABOVE_PX;
+    const above_px = others.length > 0 ? this.#above() : ABOVE_PX;
     const height_px = Math.max(this.#canvas.clientHeight - above_px - BELOW_PX, 50);
     const px_per_m = Math.min(this.#canvas.clientWidth / (right - left + 2 * MARGIN_M), height_px / (high - low + 2 * MARGIN_M));
     return { x_m: (left + right) / 2, y_m: (low + high) / 2 + (above_px - BELOW_PX) / 2 / px_per_m, px_per_m };

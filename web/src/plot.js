@@ -124,7 +124,6 @@ export class PlotPanel {
       this.plot.setData(/** @type {uPlot.AlignedData} */ (linesOf(this.#store, this.curves, [min, max])), false);
       this.plot.setScale('x', { min, max });
     });
-    this.label();
   }
 
   /** The numbers beside the names: at the pointer, else at the playhead or the newest; and how far from those at the mark. */

@@ -53,6 +53,8 @@ export class Plots {
   #redraw;
   /** A plot's title takes another line where its curves' names need one. */
   #heads = new ResizeObserver(() => this.#fit());
+  /** Each plot that is drawn says that its cursor moves: then the numbers wait for the last of them. */
+  #draws = false;
   /** Opens the dialog of a plot. @type {(panel: PlotPanel | null) => void} */
   edit = () => {};
 
@@ -160,10 +162,12 @@ export class Plots {
       const to_s = Math.max(this.store.newest_s, window_s);
       this.range_s = [to_s - window_s, to_s];
     }
+    this.#draws = true;
     for (const panel of this.#panels) panel.draw();
     if (this.#choices.childElementCount !== this.#offered.length) this.#offerChoices();
     this.#band.draw();
-    this.#showTime();
+    this.#draws = false;
+    this.label();
   }
 
   /** The pointer is at another time. */
@@ -171,6 +175,7 @@ export class Plots {
 
   /** A moved cursor changes the numbers shown, not the curves. */
   label() {
+    if (this.#draws) return;
     this.onPoint();
     for (const panel of this.#panels) panel.label();
     this.#showTime();
@@ -230,6 +235,7 @@ export class Plots {
     this.#offerChoices();
     // What has nothing to show has no name in a title, and takes no place there.
     for (const panel of this.#panels) panel.draw();
+    this.label();
     this.#fitAnew();
     this.#band.plot.redraw(false, true);
     this.#redraw();

@@ -49,7 +49,7 @@ export class ProgramPanel {
    * @param {(files: File[]) => void} openScenario
    */
   constructor(send, complain, showRecording, openScenario) {
-    const carriesFile = (/** @type {DragEvent} */ event) => ((isSite && !document.body.classList.contains('at-port')) || !this.#panel.hidden) && event.dataTransfer?.types.includes('Files');
+    const carriesFile = (/** @type {DragEvent} */ event) => (isSite ? !document.body.classList.contains('at-port') : document.body.classList.contains('simulated')) && event.dataTransfer?.types.includes('Files');
     const run = async (/** @type {File} */ file) => {
       if (file.size > LARGEST) complain(t('{}: not sent, a program has at most {} MB', file.name, LARGEST / 1e6));
       else send({ type: 'program', name: file.name, data: await base64(file) });

@@ -47,7 +47,7 @@ export class Sketch {
    * @param {number} px
    */
   drawGrid(view, px) {
-    const step_m = view.px_per_m > 60 ? 0.5 : view.px_per_m > 20 ? 1 : 5;
+    const step_m = squareOf(view);
     const half_x = this.canvas.clientWidth / 2 / view.px_per_m;
     const half_y = this.canvas.clientHeight / 2 / view.px_per_m;
     const context = this.context;
@@ -63,7 +63,6 @@ export class Sketch {
     context.lineWidth = px;
     context.strokeStyle = colours.grid;
     context.stroke();
-    this.#drawScale(step_m, view.px_per_m);
   }
 
   /** Axes of a frame: x forward, y left. @param {import('./types.js').Pose} frame @param {number} px */
@@ -94,19 +93,15 @@ export class Sketch {
     context.restore();
   }
 
-  /**
-   * A bar as long as a square of the grid.
-   * @param {number} length_m
-   * @param {number} px_per_m
-   */
-  #drawScale(length_m, px_per_m) {
+  /** A bar as long as a square of the grid. @param {{px_per_m: number}} view */
+  drawScale({ px_per_m }) {
+    const length_m = squareOf({ px_per_m });
     const context = this.context;
     const ratio = devicePixelRatio;
     context.save();
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     const bottom = this.canvas.clientHeight - 10;
     const right = this.canvas.clientWidth - 12;
-    // Legible on a wall too.
     context.globalAlpha = 0.95;
     context.fillStyle = colours.panel;
     context.fillRect(right - length_m * px_per_m - 4, bottom - 22, length_m * px_per_m + 8, 26);
@@ -474,6 +469,9 @@ export class Sketch {
     context.restore();
   }
 }
+
+/** Side of a square of the grid [m]. @param {{px_per_m: number}} view */
+const squareOf = ({ px_per_m }) => (px_per_m > 60 ? 0.5 : px_per_m > 20 ? 1 : 5);
 
 /**
  * @param {CanvasRenderingContext2D} context

@@ -34,20 +34,21 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     warn_if_cut(&args.log, &log)?;
     check_signals(&args.signals)?;
     cut_out(&mut log, args)?;
-    for format in formats {
-        for (ending, mark) in files(*format, &stamp) {
-            guard.check(&path(ending), &mark)?;
-        }
+    if formats.contains(&Format::Svg) {
+        guard.check(&path("svg"), &Mark::of(&stamp))?;
     }
     if args.ros2bag {
         bag.check(&guard)?;
     }
-    // Which columns they have is known only now.
-    let readings = readings_of(&log);
-    if formats.contains(&Format::Csv) {
-        for (ending, table) in &readings {
-            guard.check(&path(ending), &Mark::table(table))?;
-        }
+    let tables = match formats.contains(&Format::Csv) {
+        true => tables(&log),
+        false => Vec::new(),
+    };
+    for (ending, table) in &tables {
+        let path = path(ending);
+        // Nothing in a table says of which log and time it is: it replaces its equal.
+        let is_own = std::fs::read(&path).is_ok_and(|before| before == table.as_bytes());
+        guard.check_own(&path, is_own)?;
     }
     if !folder.as_os_str().is_empty() {
         place::folder(&folder)?;
@@ -59,13 +60,9 @@ pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     for format in formats {
         match format {
             Format::Svg if figures.is_empty() => without_figure(args)?,
-            Format::Csv => {
-                write(&path("csv"), signals(&log))?;
-                write(&path("events.csv"), events(&log))?;
-                for (ending, table) in &readings {
-                    write(&path(ending), table)?;
-                }
-            }
+            Format::Csv => tables
+                .iter()
+                .try_for_each(|(ending, table)| write(&path(ending), table))?,
             Format::Svg => {
                 write(&path("svg"), stamp.put_on(figures.svg()))?;
             }
@@ -132,18 +129,6 @@ pub(crate) fn stretch(
     )))
 }
 
-/// The files of a format: suffix and mark.
-fn files(format: Format, stamp: &FileStamp) -> Vec<(&'static str, Mark)> {
-    let nothing = Log::default();
-    match format {
-        Format::Csv => vec![
-            ("csv", Mark::table(&signals(&nothing))),
-            ("events.csv", Mark::table(&events(&nothing))),
-        ],
-        Format::Svg => vec![("svg", Mark::of(stamp))],
-    }
-}
-
 /// Reports on stderr that a log ends early; an empty one is an error.
 pub(crate) fn warn_if_cut(path: &Path, log: &Log) -> Result<(), Failure> {
     let shown = path.display();
@@ -204,11 +189,13 @@ fn signals(log: &Log) -> String {
     text
 }
 
-/// The signals beside the telemetry, as far as there are any, each table with its suffix: ground truth and pins, and what
-/// the program printed on each port.
-fn readings_of(log: &Log) -> Vec<(String, String)> {
+/// The tables of a log, each with its suffix: telemetry, events, and as far as there are any ground truth and pins, and
+/// what the program printed on each port.
+fn tables(log: &Log) -> Vec<(String, String)> {
+    let own = [("csv", signals(log)), ("events.csv", events(log))];
+    let own = own.map(|(ending, table)| (ending.to_owned(), table));
     let sources: BTreeSet<ReadingSource> = log.readings.iter().map(|each| each.source).collect();
-    let tables = sources.into_iter().map(|source| {
+    let others = sources.into_iter().map(|source| {
         let ending = match source {
             ReadingSource::Truth => "instruments.csv".to_owned(),
             ReadingSource::Loops => "loops.csv".to_owned(),
@@ -218,7 +205,7 @@ fn readings_of(log: &Log) -> Vec<(String, String)> {
         let of_it = log.readings.iter().filter(|each| each.source == source);
         (ending, table(&of_it.collect::<Vec<_>>()))
     });
-    tables.collect()
+    own.into_iter().chain(others).collect()
 }
 
 /// A column for each name that there is, one row per reading.

@@ -5,8 +5,7 @@
 //! | log | the manifest's scenario, seed and options; of a program its file's name, since it may be changed and run again |
 //! | result | its first keys: scenario, seed, and the scenario's path if it has one; and the log beside it |
 //! | table | the names of its columns |
-//! | SVG, HTML, waveform | a comment, `rumbo compare 5a1c09e2`: the command and a checksum of what it was about |
-//! | profile | nothing but chains of functions with their cycles |
+//! | SVG, HTML, waveform, profile | a comment, `rumbo compare 5a1c09e2`: the command and a checksum of what it was about |
 
 use rumbo_experiment::files::{Overrides, Setup};
 use rumbo_lab::manifest;
@@ -27,8 +26,6 @@ pub(crate) enum Mark {
     Text(String),
     /// The log of a run with this manifest.
     Log(Box<Manifest>),
-    /// Cycles by function.
-    Profile,
 }
 
 impl Mark {
@@ -36,6 +33,17 @@ impl Mark {
     pub(crate) fn run(setup: &Setup, overrides: &Overrides, seed: u64) -> Self {
         let run = manifest::of(LogKind::Run, setup, overrides, seed);
         Self::Log(Box::new(asked(run)))
+    }
+
+    /// The stamp of what else is written of such a run, by a command.
+    pub(crate) fn stamp(
+        command: &str,
+        setup: &Setup,
+        overrides: &Overrides,
+        seed: u64,
+    ) -> FileStamp {
+        let run = asked(manifest::of(LogKind::Run, setup, overrides, seed));
+        FileStamp::of(command, &[format!("{run:?}")])
     }
 
     /// That of a stamped file.
@@ -57,7 +65,6 @@ impl Mark {
                 .and_then(|log| log.manifest)
                 .is_some_and(|log| log.kind == LogKind::Run && asked(log) == **run),
             Self::Text(text) => beginning(path).is_some_and(|beginning| beginning.contains(text)),
-            Self::Profile => beginning(path).is_some_and(|beginning| is_profile(&beginning)),
         }
     }
 }
@@ -73,6 +80,7 @@ fn asked(run: Manifest) -> Manifest {
         world: run.world,
         rig: run.rig,
         wiring: run.wiring,
+        policy: run.policy,
         parameters: run.parameters,
         texts: run.texts,
         usb_texts: run.usb_texts,
@@ -88,19 +96,6 @@ fn beginning(path: &Path) -> Option<String> {
     let file = File::open(path).ok()?;
     file.take(BEGINNING).read_to_end(&mut bytes).ok()?;
     Some(String::from_utf8_lossy(&bytes).into_owned())
-}
-
-/// `main;tick;__mulsf3 1234` in every line that is whole.
-fn is_profile(text: &str) -> bool {
-    let lines = || {
-        text.split_inclusive('\n')
-            .filter(|line| line.ends_with('\n'))
-    };
-    let is_chain = |line: &str| {
-        let parts = line.trim_end().rsplit_once(' ');
-        parts.is_some_and(|(chain, cycles)| !chain.is_empty() && cycles.parse::<u64>().is_ok())
-    };
-    lines().next().is_some() && lines().all(is_chain)
 }
 
 #[cfg(test)]
@@ -124,14 +119,6 @@ mod tests {
             assert!(!Mark::of(&stamp("c")).is_on(&path));
             std::fs::write(&path, file).unwrap();
             assert!(!Mark::of(&stamp("b")).is_on(&path));
-        }
-    }
-
-    #[test]
-    fn a_profile_is_distinguished_from_any_other_text() {
-        assert!(is_profile("(unknown) 12\nmain;tick 4\nmain;ti"));
-        for text in ["", "main;tick 4", "t_s,x_m\n0,1\n", "all 12 of them\n"] {
-            assert!(!is_profile(text), "{text}");
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::mark::Mark;
 use crate::output;
 use crate::place::{self, Guard};
-use rumbo_experiment::files::Setup;
+use rumbo_experiment::files::{Overrides, Setup};
 use rumbo_experiment::observe::{self, Observations, Wanted};
 use rumbo_experiment::run::{RunResult, run_by};
 use rumbo_report::FileStamp;
@@ -20,15 +20,16 @@ pub(crate) fn is_wanted(args: &RunArgs) -> bool {
 }
 
 /// Checks that the requested files may be written.
-pub(crate) fn check_places(args: &RunArgs, guard: &Guard) -> Result<(), Failure> {
-    let files = [
-        (&args.vcd, "--vcd", Mark::of(&stamp(args))),
-        (&args.profile, "--profile", Mark::Profile),
-    ];
+pub(crate) fn check_places(
+    args: &RunArgs,
+    guard: &Guard,
+    setups: &[Setup],
+    overrides: &Overrides,
+) -> Result<(), Failure> {
     let mut results = Vec::new();
-    for (path, option, mark) in files {
-        if let Some(path) = path {
-            guard.check(path, &mark)?;
+    for (path, option) in [(&args.vcd, "--vcd"), (&args.profile, "--profile")] {
+        if let (Some(path), Some(setup)) = (path, setups.first()) {
+            guard.check(path, &Mark::of(&stamp(setup, overrides, args.seed.seed)))?;
             place::try_file(path)?;
             results.push((path.clone(), option.to_owned()));
         }
@@ -36,16 +37,17 @@ pub(crate) fn check_places(args: &RunArgs, guard: &Guard) -> Result<(), Failure>
     place::distinct(&results)
 }
 
-/// The mark of a run's waveform.
-fn stamp(args: &RunArgs) -> FileStamp {
-    FileStamp::of(
-        "run",
-        &[args.scenarios.clone(), vec![args.seed.seed.to_string()]].concat(),
-    )
+/// What the files of a run are known by.
+fn stamp(setup: &Setup, overrides: &Overrides, seed: u64) -> FileStamp {
+    Mark::stamp("run", setup, overrides, seed)
 }
 
 /// Does the one run.
-pub(crate) fn run(args: &RunArgs, jobs: &[(&Setup, u64)]) -> Result<RunResult, Failure> {
+pub(crate) fn run(
+    args: &RunArgs,
+    jobs: &[(&Setup, u64)],
+    overrides: &Overrides,
+) -> Result<RunResult, Failure> {
     let [(setup, seed)] = jobs else {
         let runs = jobs.len();
         let what = format!(
@@ -53,6 +55,7 @@ pub(crate) fn run(args: &RunArgs, jobs: &[(&Setup, u64)]) -> Result<RunResult, F
         );
         return Err(Failure::Input(what));
     };
+    let stamp = &stamp(setup, overrides, *seed);
     let debugger = args
         .gdb
         .map(|port| wait_for_debugger(port, args))
@@ -71,11 +74,15 @@ pub(crate) fn run(args: &RunArgs, jobs: &[(&Setup, u64)]) -> Result<RunResult, F
         Ok((result, seen))
     };
     let (result, seen) = match &args.vcd {
-        Some(path) => drawn(path, &stamp(args), look)?,
+        Some(path) => drawn(path, stamp, look)?,
         None => look(None)?,
     };
     if let (Some(path), Some(folded)) = (&args.profile, seen.folded) {
-        place::write(path, folded)?;
+        // What draws flame graphs passes over it.
+        place::write(
+            path,
+            format!("# {}, cycles by call stack\n{folded}", stamp.text()),
+        )?;
     }
     if let Some(profile) = seen.profile {
         profile.lines().for_each(output::aside);

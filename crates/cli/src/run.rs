@@ -45,8 +45,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         .collect();
     let progress = progress_bar(jobs.len());
     let (mut passed, mut results) = (true, Vec::new());
-    // One run is over soon, or looked at by a debugger: Ctrl-C ends it.
-    let asked = (jobs.len() > 1).then(interrupt::asked);
+    // A debugger holds the run, so that Ctrl-C ends it.
+    let asked = (!observe::is_wanted(args)).then(interrupt::asked);
     let go_on = || match &asked {
         Some(asked) if asked.load(Ordering::Relaxed) => Err(Failure::Interrupted),
         _ => Ok(()),
@@ -81,7 +81,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         }
         go_on()
     };
-    let ended = run_jobs(args, &jobs, go_on, handle);
+    let ended = run_jobs(args, &jobs, &overrides, go_on, handle);
     let done = progress.position();
     progress.finish_and_clear();
     // Of the scenario whose runs were interrupted, those that are over.
@@ -91,9 +91,15 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
         report(setup, &results)?;
     }
     kept.report();
+    let ended = match ended {
+        // Too late: there is nothing left to interrupt.
+        Err(Failure::Interrupted) if done == jobs.len() as u64 => Ok(()),
+        ended => ended,
+    };
     if matches!(ended, Err(Failure::Interrupted)) {
         let all = output::counted(jobs.len(), "run");
         let kept = match &args.out {
+            _ if done == 0 => "; nothing is kept".into(),
             Some(folder) => format!("; the results of those are in {}", output::shown(folder)),
             None => String::new(),
         };
@@ -186,7 +192,7 @@ fn check_places(args: &RunArgs, setups: &[Setup], overrides: &Overrides) -> Resu
     let inputs = args.scenarios.iter().chain(named.into_iter().flatten());
     let inputs = inputs.map(PathBuf::from).chain(args.image.firmware.clone());
     let guard = Guard::new(inputs, args.overwrite.force);
-    observe::check_places(args, &guard)?;
+    observe::check_places(args, &guard, setups, overrides)?;
     let Some(folder) = &args.out else {
         return Ok(());
     };
@@ -210,13 +216,14 @@ fn check_places(args: &RunArgs, setups: &[Setup], overrides: &Overrides) -> Resu
 fn run_jobs(
     args: &RunArgs,
     jobs: &[(&Setup, u64)],
+    overrides: &Overrides,
     go_on: impl Fn() -> Result<(), Failure>,
     mut handle: impl FnMut(&Setup, RunResult) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     if !observe::is_wanted(args) {
         return run::run_all_on(rayon::current_num_threads(), jobs, go_on, handle);
     }
-    let result = observe::run(args, jobs)?;
+    let result = observe::run(args, jobs, overrides)?;
     jobs.iter()
         .take(1)
         .try_for_each(|(setup, _)| handle(setup, result.clone()))

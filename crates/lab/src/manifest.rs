@@ -37,7 +37,8 @@ pub fn of(kind: LogKind, setup: &Setup, overrides: &Overrides, seed: u64) -> Man
         files.insert(format!("{OF_FLEET}{}", robot.name), robot.text.clone());
     }
     let robots = setup.robots().iter();
-    for policy in robots.filter_map(|robot| robot.policy.as_ref()) {
+    let policies: Vec<_> = robots.filter_map(|robot| robot.policy.as_ref()).collect();
+    for policy in &policies {
         files.insert(format!("{OF_POLICY}{}", policy.name), policy.text.clone());
     }
     Manifest {
@@ -52,6 +53,10 @@ pub fn of(kind: LogKind, setup: &Setup, overrides: &Overrides, seed: u64) -> Man
             _ => overrides.rig.clone(),
         },
         wiring: overrides.wiring.clone(),
+        policy: match (&overrides.policy, &policies[..]) {
+            (Some(_), [policy, ..]) => Some(policy.name.clone()),
+            _ => None,
+        },
         program,
         image: overrides.firmware.as_deref().and_then(hash),
         seed: Some(seed),

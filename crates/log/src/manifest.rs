@@ -49,6 +49,8 @@ pub struct Manifest {
     pub rig: Option<String>,
     /// Name of the wiring, where a firmware image was asked to use one.
     pub wiring: Option<String>,
+    /// Name of the policy, where another one than the scenario's was asked for.
+    pub policy: Option<String>,
     /// The program at the pins: `rumbo`, `baseline`, `original` on a real robot, [`ANOTHER`], or the file of an image.
     pub program: String,
     /// Hash of the image that ran on the emulated Mega, or that the robot named in HELLO.
@@ -101,7 +103,7 @@ impl Manifest {
 
     /// What the log's metadata says; `None` where that is no manifest.
     pub(crate) fn from_metadata(metadata: &BTreeMap<String, String>) -> Option<Self> {
-        const TEXTS: [&str; 14] = [
+        const TEXTS: [&str; 15] = [
             "kind",
             "version",
             "started",
@@ -111,6 +113,7 @@ impl Manifest {
             "world",
             "rig",
             "wiring",
+            "policy",
             "program",
             "image",
             "port",

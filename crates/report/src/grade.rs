@@ -18,6 +18,9 @@ use crate::text::{Language, Text, capital, escape, put, word};
 use pulldown_cmark::{Event, Options, Parser, html};
 use rumbo_experiment::grade::{Assignment, Bilingual, GradedTest, Mark, RubricLine};
 use rumbo_experiment::note::Note;
+use std::borrow::Cow;
+use std::ffi::OsStr;
+use std::path::Path;
 
 const POINTS_OF: Text = word("points-of");
 const SEEDS: Text = word("seeds-driven");
@@ -286,7 +289,12 @@ fn curves(assignment: &Assignment, mark: &Mark, language: Language) -> String {
             setup: test.setup.clone(),
             result: result.clone(),
         };
-        let seed = SEED_SHOWN.with(language, &[("seed", &result.seed.to_string())]);
+        let (seed, command) = (result.seed.to_string(), escape(&in_lab(test, result.seed)));
+        let shown = [
+            ("seed", &*seed),
+            ("command", &format!("<code>{command}</code>")),
+        ];
+        let seed = SEED_SHOWN.with(language, &shown);
         let title = of(language, &test.title);
         for svg in figures::figures(language, test, &outcome) {
             let label = format!("<svg role=\"img\" aria-label=\"{}\"", escape(title));
@@ -296,7 +304,7 @@ fn curves(assignment: &Assignment, mark: &Mark, language: Language) -> String {
                 format_args!(
                     "<figure><div class=\"wide\" tabindex=\"0\">{svg}</div><figcaption>{}. {}</figcaption></figure>\n",
                     escape(title),
-                    escape(&seed)
+                    seed
                 ),
             );
         }
@@ -305,6 +313,22 @@ fn curves(assignment: &Assignment, mark: &Mark, language: Language) -> String {
         true => html,
         false => heading(YOUR_ROBOT.of(language)) + &html,
     }
+}
+
+/// What shows a sketch's run in the lab, where the assignment's files are.
+fn in_lab(test: &GradedTest, seed: u64) -> String {
+    let scenario = &test.setup.scenario;
+    let file = scenario.path.as_ref().map(Path::new);
+    let file = file.and_then(Path::file_name).map(OsStr::to_string_lossy);
+    let name = file.unwrap_or(Cow::Borrowed(&scenario.name));
+    let wiring = test
+        .wiring
+        .as_ref()
+        .map(|wiring| format!(" --wiring {wiring}"));
+    format!(
+        "rumbo lab --scenario {name} --sketch my_sketch{} --seed {seed}",
+        wiring.unwrap_or_default()
+    )
 }
 
 /// A teacher's text as HTML; HTML in it is escaped.

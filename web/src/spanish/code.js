@@ -8,6 +8,8 @@ export const CODE = {
   'Compile it and run it on the simulated robot (Ctrl+Enter)': 'Lo compila y lo ejecuta en el robot simulado (Ctrl+Intro)',
   'Compile it for the debugger: it stands at the first breakpoint, else at its first line': 'Lo compila para el depurador: se detiene en el primer punto de interrupción o, si no hay, en su primera línea',
   'Save the file that is shown to this computer': 'Guarda en este ordenador el archivo que se ve',
+  'Open a sketch…': 'Abrir un sketch…', 'no .ino is among these files': 'entre estos archivos no hay ningún .ino', '{} is here: Run compiles it': '{} está aquí: Ejecutar lo compila',
+  'Open the .ino of a sketch and the files beside it; an .ino that is dropped on the page runs at once': 'Abre el .ino de un sketch y los archivos que lo acompañan; un .ino que se suelta en la página se ejecuta al momento',
   'Discard changes': 'Descartar los cambios', 'Back to the files that the lab has': 'Vuelve a los archivos que tiene el laboratorio',
   'the sketch that drives': 'el sketch que conduce', 'example: {}': 'ejemplo: {}',
   'changed; kept in this browser': 'con cambios, que guarda este navegador',

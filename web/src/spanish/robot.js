@@ -5,7 +5,7 @@
 export const ROBOT = {
   // Modes.
   'manual': 'manual', 'front distance': 'distancia', 'front align': 'alinear', 'wall hold': 'mantener pared', 'wall follow': 'seguir pared',
-  'wheel speed': 'velocidad', 'straight line': 'línea recta', 'waypoints': 'ruta', 'mission': 'misión', 'policy': 'política', 'twist': 'twist',
+  'wheel speed': 'velocidad', 'straight line': 'línea recta', 'waypoints': 'ruta', 'mission': 'misión', 'policy': 'política', 'twist': 'avance y giro',
   'basic movements, open loop or by speed': 'movimientos básicos, en lazo abierto o por velocidad',
   'stop at a distance from the wall ahead': 'parar a una distancia de la pared de enfrente',
   'stop square to the wall ahead, at a distance from it': 'parar perpendicular a la pared de enfrente, a una distancia de ella',
@@ -37,7 +37,7 @@ export const ROBOT = {
   'at rest': 'en reposo', 'turning': 'girando', 'drive': 'avanzar', 'wait': 'esperar', 'waiting': 'esperando', 'driving': 'en marcha', 'pursue': 'perseguir', 'final turn': 'giro final', 'done': 'acabado',
   'wait for goal': 'esperar destino', 'initial turn': 'giro inicial', 'initialise': 'iniciar', 'go to goal': 'ir al destino', 'seek': 'buscar', 'sweep right': 'barrer a la derecha',
   'sweep left': 'barrer a la izquierda', 'decide': 'decidir', 'avoidance turn': 'giro de evasión', 'advance seeking the obstacle': 'avanzar buscando el obstáculo',
-  'advance along it': 'avanzar a su lado', 'advance a safe distance': 'avanzar distancia de seguridad', 'unreachable': 'inalcanzable', 'straight on': 'recto', 'prove the front sonar': 'comprobar el sonar delantero', 'give way to what moves': 'ceder el paso a lo que se mueve', 'reached': 'alcanzado',
+  'advance along the obstacle': 'avanzar a lo largo del obstáculo', 'advance a safe distance': 'avanzar distancia de seguridad', 'unreachable': 'inalcanzable', 'straight on': 'recto', 'prove the front sonar': 'comprobar el sonar delantero', 'give way to what moves': 'ceder el paso a lo que se mueve', 'reached': 'alcanzado',
   // Why a state leads to another.
   'at the goal': 'en el destino',
   'a velocity comes': 'llega una velocidad', 'none for half a second': 'ninguna en medio segundo',
@@ -116,7 +116,7 @@ export const ROBOT = {
   'allowed is one of {}': 'se permite uno de {}', 'allowed is {} to {}': 'se permite de {} a {}', 'allowed is {} to {} m for each coordinate': 'se permite de {} a {} m en cada coordenada',
   'allowed is -{} to {} m for each coordinate, and {} waypoints': 'se permite de -{} a {} m en cada coordenada, y {} puntos de ruta', 'out of range': 'fuera de rango',
   '{}: up to {} m/s and {} rad/s either way': '{}: hasta {} m/s y {} rad/s en ambos sentidos', 'not a number': 'no es un número',
-  'the robot is in another mode; select mode 10, twist': 'el robot está en otro modo; elige el modo 10, twist', 'velocity {} m/s, {} rad/s': 'velocidad {} m/s, {} rad/s',
+  'the robot is in another mode; select mode 10, twist': 'el robot está en otro modo; elige el modo 10, avance y giro', 'velocity {} m/s, {} rad/s': 'velocidad {} m/s, {} rad/s',
   'not confirmed': 'sin confirmar', 'too many commands wait for the robot': 'demasiadas órdenes esperan al robot',
   'no robot answers; check that it is on and in reach, then give the order again': 'no responde ningún robot; comprueba que está encendido y al alcance, y da la orden otra vez',
   'the port is gone; give the order again when it is back': 'el puerto ya no está; da la orden otra vez cuando vuelva',

@@ -130,3 +130,14 @@ test('it stops at a breakpoint, steps, and steps back to the values that were; t
   assert.deepEqual(dashboard.complaints, []);
   assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).rumbo.untranslated()), []);
 });
+
+test('a sketch of this computer is opened, and Run drives with it', { skip }, async () => {
+  await page.locator('#code-section input[type=file]').setInputFiles([
+    { name: 'own one.ino', mimeType: 'text/plain', buffer: Buffer.from('#include "words.h"\nvoid setup() { Serial.begin(115200); }\nvoid loop() { Serial.println(WORDS); delay(50); }\n') },
+    { name: 'words.h', mimeType: 'text/plain', buffer: Buffer.from('#define WORDS "my own words"\n') },
+  ]);
+  await page.locator('#code-tabs button', { hasText: 'words.h' }).waitFor();
+  assert.match(await page.locator('#code-note').textContent() ?? '', /own one\.ino is here/);
+  await page.locator('#code-run').click();
+  await page.locator('#console').filter({ hasText: 'my own words' }).waitFor();
+});

@@ -246,6 +246,30 @@ rare('a file that is no layout is refused with the reason, and nothing changes',
   await page.keyboard.press('Escape');
 });
 
+test('the pointer on the map draws the map alone', async () => {
+  await page.locator('#speed').selectOption('0');
+  await page.locator('#connection', { hasText: 'paused' }).waitFor();
+  const drawn = await page.evaluate(async () => {
+    const map = /** @type {HTMLCanvasElement} */ (document.querySelector('#map'));
+    const { clearRect } = CanvasRenderingContext2D.prototype;
+    let [maps, others] = [0, 0];
+    CanvasRenderingContext2D.prototype.clearRect = /** @this {CanvasRenderingContext2D} @param {[number, number, number, number]} all */ function (...all) {
+      if (this.canvas === map) maps += 1;
+      else others += 1;
+      clearRect.apply(this, all);
+    };
+    for (let x = 10; x < 60; x += 10) {
+      map.dispatchEvent(new PointerEvent('pointermove', { clientX: map.getBoundingClientRect().left + x, clientY: map.getBoundingClientRect().top + 60, bubbles: true }));
+      await new Promise(requestAnimationFrame);
+    }
+    await new Promise((drawn) => setTimeout(drawn, 300));
+    CanvasRenderingContext2D.prototype.clearRect = clearRect;
+    return { maps, others, pointer: document.querySelector('#pointer')?.textContent };
+  });
+  assert.ok(drawn.maps > 0 && drawn.others === 0 && /x .* m/.test(drawn.pointer ?? ''), JSON.stringify(drawn));
+  await page.locator('#speed').selectOption('4');
+});
+
 rare('what is plotted is cleared while data arrives', async () => {
   const last = await page.evaluate(() => /** @type {any} */ (window).rumbo.series('left_pwm').t.at(-1));
   await page.locator('#clear').click();

@@ -134,3 +134,32 @@ test('another robot has the same colour on every page, and its name is not behin
   assert.deepEqual(seen.numbers, [0, 2]);
   assert.ok(seen.fitted > seen.low + 6 && seen.zoomed > 0, JSON.stringify(seen));
 });
+
+test('the scale of the map is drawn over its walls, and a state too short for its name has the beginning of it', async () => {
+  const { last, names } = await page.evaluate(async ([map, store, band]) => {
+    const { WorldMap } = await import(/** @type {string} */ (map));
+    const { Store } = await import(/** @type {string} */ (store));
+    const { StateBand } = await import(/** @type {string} */ (band));
+    const canvas = document.createElement('canvas');
+    const kept = new Store();
+    const view = new WorldMap(canvas, kept, () => {});
+    view.setScene({ obstacles: [{ corners_m: [[1, -1], [1, 1]], closed: false }], footprint_m: [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1]], start: { x_m: 0, y_m: 0, heading_rad: 0 } });
+    /** @type {string[]} */
+    const drawn = [];
+    const { stroke, fillText } = CanvasRenderingContext2D.prototype;
+    Object.assign(CanvasRenderingContext2D.prototype, {
+      stroke: () => drawn.push('line'),
+      fillText: (/** @type {string} */ text) => drawn.push(text),
+    });
+    view.draw();
+    const last = drawn.at(-1);
+    drawn.length = 0;
+    kept.stretches = [[0, 8], [8, 10], [10, 10.2]].map(([from_s, to_s]) => ({ from_s, to_s, mode: 8, state: 0, armed: true, faulted: false }));
+    new StateBand(kept, { range_s: [0, 20], mark_s: null, rightAxis: false, modes: [{ id: 8, states: ['advance along the obstacle'] }], label: () => {} }).draw();
+    const names = drawn.filter((each) => each !== 'line' && !/ s$/.test(each));
+    Object.assign(CanvasRenderingContext2D.prototype, { stroke, fillText });
+    return { last, names };
+  }, ['/src/map.js', '/src/store.js', '/src/band.js']);
+  assert.match(last ?? '', /^[\d.]+ m$/);
+  assert.deepEqual(names, ['state', '8: advance along the obstacle', 'advan…']);
+});

@@ -94,8 +94,7 @@ pub(super) fn find(folder: &Path) -> Result<Class, Failure> {
     };
     let entries = fs::read_dir(&inside).map_err(wrong)?.flatten();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
-    // As people look names up, whatever their capitals.
-    paths.sort_by_cached_key(|path| (super::name_of(path).to_lowercase(), path.clone()));
+    paths.sort_by_cached_key(|path| (sorted_as(&super::name_of(path)), path.clone()));
     let (paths, more): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_hand_in(path));
     let hidden = |path: &Path| super::name_of(path).starts_with('.') || path.ends_with("__MACOSX");
     // Hidden files of other programs are nobody's hand-in.
@@ -222,6 +221,33 @@ fn stem(path: &Path) -> String {
     }
 }
 
+/// As people look names up: whatever their capitals and accents, which macOS writes as characters of their own.
+fn sorted_as(name: &str) -> String {
+    const LETTERS: [(&str, char); 8] = [
+        ("àáâãäå", 'a'),
+        ("ç", 'c'),
+        ("èéêë", 'e'),
+        ("ìíîï", 'i'),
+        ("ñ", 'n'),
+        ("òóôõöø", 'o'),
+        ("ùúûü", 'u'),
+        ("ýÿ", 'y'),
+    ];
+    let plain = |c: char| {
+        let of_it = LETTERS
+            .iter()
+            .find(|(with_accents, _)| with_accents.contains(c));
+        of_it.map_or(c, |(_, letter)| *letter)
+    };
+    let is_accent = |c: &char| ('\u{300}'..='\u{36f}').contains(c);
+    let letters = name.to_lowercase();
+    letters
+        .chars()
+        .filter(|c| !is_accent(c))
+        .map(plain)
+        .collect()
+}
+
 /// The image of each of them, or why there is none.
 pub(super) fn compile(
     found: &[Found],
@@ -282,7 +308,17 @@ fn nameless(error: &SketchError) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::person;
+    use super::{person, sorted_as};
+
+    #[test]
+    fn names_stand_as_people_look_them_up() {
+        let mut names = ["Zoe", "ana", "E\u{301}va", "José", "Joan", "Ángel", "Eva B"];
+        names.sort_by_cached_key(|name| sorted_as(name));
+        assert_eq!(
+            names,
+            ["ana", "Ángel", "E\u{301}va", "Eva B", "Joan", "José", "Zoe"]
+        );
+    }
 
     #[test]
     fn names_of_hand_ins_are_those_of_their_people() {

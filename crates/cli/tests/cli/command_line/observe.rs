@@ -14,7 +14,7 @@ fn a_program_is_shown_as_a_profile_and_as_a_waveform() {
         "moment.toml",
         "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 0.2\n",
     );
-    let arguments = "run moment.toml --firmware spin.hex --profile spin.folded --vcd spin.vcd --json --no-record";
+    let arguments = "run moment.toml --firmware spin.hex --profile spin.folded --vcd spin.vcd --json --no-record --force";
     let output = rumbo(&arguments.split(' ').collect::<Vec<_>>());
     assert_ne!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(
@@ -24,8 +24,23 @@ fn a_program_is_shown_as_a_profile_and_as_a_waveform() {
     );
     assert_eq!(stdout(&output).lines().count(), 1);
     let read = |name| std::fs::read_to_string(folder().join(name)).unwrap();
-    assert!(read("spin.folded").starts_with("(unknown) "));
+    let folded = read("spin.folded");
+    assert!(folded.starts_with("# rumbo run ") && folded.contains("\n(unknown) "));
     assert!(read("spin.vcd").contains("left_enable"));
+    // The same run writes them again, one with other options does not.
+    for (seed, status) in [("1", 0), ("2", 2)] {
+        for option in ["--profile spin.folded", "--vcd spin.vcd"] {
+            let again =
+                format!("run moment.toml --firmware spin.hex --no-record --seed {seed} {option}");
+            let output = rumbo(&again.split(' ').collect::<Vec<_>>());
+            let is_refused = stderr(&output).contains("is there already");
+            assert_eq!(
+                (output.status.code(), is_refused),
+                (Some(status), status == 2),
+                "{again}"
+            );
+        }
+    }
     let output = rumbo(&[
         "run",
         "mode5",

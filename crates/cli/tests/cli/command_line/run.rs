@@ -170,6 +170,45 @@ fn a_campaign_that_is_interrupted_or_terminated_reports_its_results_so_far() {
     reports_its_results_so_far("-TERM");
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn one_run_that_is_interrupted_says_that_nothing_is_kept() {
+    // Counts on a port for ever: no round of that can be left out.
+    file("counts.hex", ":06000000039505B9FDCFD8\n:00000001FF\n");
+    file(
+        "hour.toml",
+        "title = \"t\"\nrobot = \"memoria\"\nrig = \"front_single\"\nworld = \"open\"\nmode = 0\nduration_s = 3600\n",
+    );
+    let arguments = "run hour.toml --firmware counts.hex --out interrupted";
+    let run = program()
+        .args(arguments.split(' '))
+        .current_dir(folder())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let status = format!("/proc/{}/status", run.id());
+    let takes_it = || {
+        let status = std::fs::read_to_string(&status).unwrap();
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        u64::from_str_radix(caught.unwrap().trim(), 16).unwrap() & 0b10 != 0
+    };
+    while !takes_it() {
+        std::thread::yield_now();
+    }
+    let mut interrupt = Command::new("kill");
+    interrupt.args(["-INT", &run.id().to_string()]);
+    assert!(interrupt.status().unwrap().success());
+    let output = run.wait_with_output().unwrap();
+    let said = "note: interrupted after 0 of 1 run; nothing is kept\n";
+    assert_eq!(
+        (output.status.code(), stderr(&output).as_str()),
+        (Some(130), said)
+    );
+    let left = std::fs::read_dir(folder().join("interrupted")).unwrap();
+    assert_eq!(left.count(), 0);
+}
+
 #[cfg(unix)]
 fn reports_its_results_so_far(signal: &str) {
     let mut campaign = program()

@@ -50,6 +50,17 @@ fn two_results_of_one_name_are_refused_before_anything_runs() {
     assert!(status(&rumbo_in(folder, &["run", "a/task.toml", "--out", "o"])) < 2);
     assert_ne!(read(folder, "o/task-1.truth.csv").len(), 0);
     assert_ne!(read(folder, "o/task-1.json"), first);
+    let goal = include_str!("../../../../../policies/goal.toml");
+    for name in ["goal", "other"] {
+        std::fs::write(folder.join(format!("{name}.toml")), goal).unwrap();
+    }
+    let by = |policy| {
+        let arguments = ["run", "mode9-random", "--out", "o", "--policy", policy];
+        rumbo_in(folder, &arguments)
+    };
+    assert!(status(&by("goal.toml")) < 2);
+    assert!(status(&by("goal.toml")) < 2);
+    assert_refused(&by("other.toml"), "mode9-random-1.json: is there already");
     // With other options it is another run, also where the log that says so is gone.
     let mut other = vec!["run", "a/task.toml", "--out", "o", "--param", "kv=0.03"];
     let refused = "task-1.json: is there already";
@@ -174,6 +185,10 @@ fn what_a_person_wrote_stays_unless_it_is_to_be_replaced() {
     // A figure of other logs, or of a part of one, and a report in another language, are others.
     let part = ["export", "task-1.mcap", "--from", "0.2"];
     assert_refused(&rumbo_in(folder, &part), "task-1.svg: is there already");
+    let before = read(folder, "task-1.csv");
+    let part = [&part[..], &["--format", "csv"]].concat();
+    assert_refused(&rumbo_in(folder, &part), "task-1.csv: is there already");
+    assert_eq!(read(folder, "task-1.csv"), before);
     assert_refused(
         &rumbo_in(
             folder,

@@ -190,7 +190,7 @@ states! {
             GiveWay: "something approaches",
         }
         /// The same along the obstacle.
-        Along = "advance along it" {
+        Along = "advance along the obstacle" {
             SafeDistance: "the sonar beside loses the obstacle",
             AvoidanceTurn: "the way past is far from ahead",
             GoToGoal: "the way to the goal is clear",
