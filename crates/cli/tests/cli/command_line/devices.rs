@@ -336,6 +336,11 @@ fn a_remote_control_drives_the_robot_and_repeats_while_its_key_is_held() {
     std::fs::write(bench.join("tests.toml"), tests.replace("up", "walk")).unwrap();
     let refused = stderr(&rumbo(&bench, &["check", "tests.toml"]));
     assert!(refused.contains("and walk none of its keys"), "{refused}");
+    let in_vain = stderr(&drive(&bench, &["--command", "F@0.1"]));
+    assert!(
+        in_vain.contains("the robot has no Bluetooth module"),
+        "{in_vain}"
+    );
     // Held: in the scenario, pressed again before it is up.
     let scenario = std::fs::read_to_string(bench.join("floor.toml")).unwrap();
     let held = (0..5).map(|n| {
