@@ -75,11 +75,11 @@ pub(crate) fn pin(batch: &Batch, name: &str) -> PyResult<u8> {
 
 /// The parts that a person works, with the keys of the remote controls among them.
 #[pyfunction]
-pub(crate) fn parts(batch: &Batch) -> PyResult<BTreeMap<String, Vec<&'static str>>> {
+pub(crate) fn parts(batch: &Batch) -> PyResult<BTreeMap<String, Vec<String>>> {
     of_board(batch, |mega| {
         let worked = mega.firmware().parts().iter();
         let worked = worked.filter(|part| part.kind.is_worked());
-        let keys = |part: &Part| part.keys.iter().map(|(key, _)| *key).collect();
+        let keys = |part: &Part| part.keys.iter().map(|(key, _)| key.clone()).collect();
         worked.map(|part| (part.name.clone(), keys(part))).collect()
     })
 }

@@ -5,18 +5,18 @@ use crate::failure::Failure;
 use crate::output;
 use crate::place;
 use rumbo_experiment::files::new_robot::{
-    JUMPERS, Measured, NewRobot, counted, looks_like, needed, remarks,
+    JUMPERS, Measured, NewRobot, counted, looks_like, meaning, needed, remarks,
 };
 use rumbo_experiment::files::{Kind, Library};
 use rumbo_sim::boards::{BOARDS, Board};
-use rumbo_sim::drivers::DRIVERS;
+use rumbo_sim::drivers::{DRIVERS, Driver};
 use rumbo_sim::wiring::SIGNALS;
 use std::collections::HashSet;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 
 /// Signals that are asked for after those of the motors.
-const MORE: [&str; 12] = [
+const MORE: [&str; 10] = [
     "standby",
     "left_encoder",
     "left_encoder_b",
@@ -27,8 +27,6 @@ const MORE: [&str; 12] = [
     "front_echo",
     "link_rx",
     "link_tx",
-    "debug_rx",
-    "debug_tx",
 ];
 
 /// Writes the file, and says what it looks like and what to do next.
@@ -159,12 +157,15 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
             Some(_) => "motors as M1, pins by number or as A0; nothing where there is none",
             None => "pins, by number or as A0; nothing where there is none",
         })?;
+        output::line(
+            "line and infrared sensors, buttons, a remote control: options, `rumbo new --help`",
+        )?;
         let motors = needed(driver, jumpers);
         for signal in motors.iter().map(String::as_str).chain(MORE) {
             if signal == "standby" && !driver.has_standby {
                 continue;
             }
-            let pin = ask_until(signal, |text| {
+            let pin = ask_until(&asked(signal, driver), |text| {
                 let motor = driver.shield.and_then(|shield| shield.motor(text));
                 match text.is_empty() || motor.is_some() || board.numbered(text).is_some() {
                     true => Ok(text.to_owned()),
@@ -193,6 +194,15 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
         },
         parts: args.parts.clone(),
     })
+}
+
+/// What a pin is asked for by: its signal, and what that is.
+fn asked(signal: &str, driver: &Driver) -> String {
+    match (signal, meaning(signal, driver)) {
+        ("link_rx", what) => format!("{signal}, {what}: 0 where the sketch reads Serial"),
+        (_, what) if what == signal => what,
+        (_, what) => format!("{signal}, {what}"),
+    }
 }
 
 /// Where sensors are, each of which has pins.

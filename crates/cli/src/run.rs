@@ -148,12 +148,22 @@ pub(crate) fn check_policy(setup: &Setup, overrides: &Overrides) -> Result<(), F
     }
 }
 
-/// Says of a parameter of our program that another one drives.
+/// Says of a parameter of our program that another one drives, and of commands that nobody receives.
 fn note_in_vain(args: &RunArgs, setups: &[Setup]) {
     let names = || args.parameters.params.iter().map(|(name, _)| name.as_str());
     let refused = |setup: &Setup| check_control(names(), setup).err();
     if let Some(why) = setups.iter().find_map(refused) {
         output::note(&format!("--param {why}"));
+    }
+    let deaf = |setup: &Setup| {
+        let firmware = setup.firmware.as_ref();
+        firmware.is_some_and(|firmware| firmware.link_usart().is_none())
+    };
+    if !args.commands.is_empty() && setups.iter().any(deaf) {
+        output::note(
+            "--command: the robot has no Bluetooth module; --usb types over the USB cable, and one on pins 0 and 1 of a Uno is \
+             link_rx = 0 and link_tx = 1 in the wiring, --pins link_rx=0,link_tx=1 of `rumbo new robot`",
+        );
     }
 }
 

@@ -3,7 +3,7 @@
 //! The receiver's output is high, and low while it sees the carrier. A key sends its frame once, and a short repeat every
 //! 108 ms while it is held. The address is 0, and the commands are those of the three remotes that come with Arduino kits, as the
 //! library IRremote lists the one with arrows (DemoIRCommandMapping.h, Keyes clone); the same chip in the others sends the same
-//! command for the same place. That of Adafruit and DFRobot has an address of two bytes, 0xBF00.
+//! command for the same place. That of Adafruit and DFRobot has an address of two bytes, 0xBF00. Any other one's keys are bits.
 
 use std::collections::VecDeque;
 
@@ -16,11 +16,28 @@ const REPEAT_US: u64 = 108_000;
 /// How long a key stays down after it was pressed \[us\]: longer than a repeat takes to come.
 const DOWN_US: u64 = 200_000;
 
-/// A key: what stands on it, and its command, below the second byte of an address that has one.
-pub type Key = (&'static str, u16);
+/// A key: what stands on it, and the bits that it sends, the first one lowest (IRremote's `decodedRawData` from version 3 on).
+pub type Key = (String, u32);
+/// A key of a remote that is known, and its command, below the second byte of an address that has one.
+pub type Known = (&'static str, u16);
+
+/// The keys of a remote that is known.
+#[must_use]
+pub fn keys(remote: &[Known]) -> Vec<Key> {
+    let key = |&(name, command): &Known| (name.to_owned(), bits(command));
+    remote.iter().map(key).collect()
+}
+
+/// Address 0 and its inverse or second byte, command and its inverse.
+#[must_use]
+pub const fn bits(code: u16) -> u32 {
+    let [second, command] = code.to_be_bytes();
+    let second = if second == 0 { 0xFF } else { second };
+    u32::from_le_bytes([0, second, command, !command])
+}
 
 /// The remote with arrows, 17 keys, row by row.
-pub const ARROWS: [Key; 17] = [
+pub const ARROWS: [Known; 17] = [
     ("1", 0x45),
     ("2", 0x46),
     ("3", 0x47),
@@ -41,7 +58,7 @@ pub const ARROWS: [Key; 17] = [
 ];
 
 /// The one with its arrows above the digits, as kits for cars have it (Elegoo, Keyestudio, LAFVIN), row by row.
-pub const CAR: [Key; 17] = [
+pub const CAR: [Known; 17] = [
     ("up", 0x46),
     ("left", 0x44),
     ("ok", 0x40),
@@ -62,7 +79,7 @@ pub const CAR: [Key; 17] = [
 ];
 
 /// The remote of a car radio, 21 keys, row by row.
-pub const RADIO: [Key; 21] = [
+pub const RADIO: [Known; 21] = [
     ("ch-", 0x45),
     ("ch", 0x46),
     ("ch+", 0x47),
@@ -87,7 +104,7 @@ pub const RADIO: [Key; 21] = [
 ];
 
 /// The mini remote of Adafruit and DFRobot, 21 keys, row by row, as Adafruit's product 389 lists its codes.
-pub const MINI: [Key; 21] = [
+pub const MINI: [Known; 21] = [
     ("vol-", 0xBF00),
     ("play", 0xBF01),
     ("vol+", 0xBF02),
@@ -114,8 +131,8 @@ pub const MINI: [Key; 21] = [
 /// A remote in somebody's hand.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Remote {
-    /// The command that is down, and until when [us].
-    down: Option<(u16, u64)>,
+    /// The bits of the key that is down, and until when [us].
+    down: Option<(u32, u64)>,
     /// When the next frame or repeat may begin [us].
     free_us: u64,
     /// The frame of the key that is down has been sent.
@@ -126,20 +143,20 @@ pub(crate) struct Remote {
 
 impl Remote {
     /// A key is pressed, for a moment; pressed again meanwhile, it stays down for longer.
-    pub(crate) fn press(&mut self, command: u16, now_us: u64) {
+    pub(crate) fn press(&mut self, bits: u32, now_us: u64) {
         let down = self.down.filter(|(_, until_us)| *until_us >= now_us);
-        self.sent &= down.is_some_and(|(down, _)| down == command);
-        self.down = Some((command, now_us + DOWN_US));
+        self.sent &= down.is_some_and(|(down, _)| down == bits);
+        self.down = Some((bits, now_us + DOWN_US));
     }
 
     /// The levels of the receiver's output that begin in this time [us], each with its cycle.
     pub(crate) fn send(&mut self, from_us: u64, to_us: u64) -> Vec<(u64, bool)> {
-        if let Some((command, until_us)) = self.down {
+        if let Some((bits, until_us)) = self.down {
             let begin_us = self.free_us.max(from_us);
             if self.sent && begin_us > until_us {
                 (self.down, self.sent) = (None, false);
             } else if begin_us < to_us {
-                let levels = if self.sent { repeat() } else { frame(command) };
+                let levels = if self.sent { repeat() } else { frame(bits) };
                 let at = |(cycle, level): (u64, bool)| (begin_us * US + cycle, level);
                 self.levels.extend(levels.into_iter().map(at));
                 (self.sent, self.free_us) = (true, begin_us + REPEAT_US);
@@ -165,12 +182,9 @@ fn levels(times: impl IntoIterator<Item = f64>) -> Vec<(u64, bool)> {
     levels
 }
 
-/// Leader, address 0 and its inverse or second byte, command and its inverse, the lowest bit first, and a last pulse.
-fn frame(code: u16) -> Vec<(u64, bool)> {
-    let [second, command] = code.to_be_bytes();
-    let second = if second == 0 { 0xFF } else { second };
-    let bits = [0, second, command, !command].into_iter();
-    let bits = bits.flat_map(|byte: u8| (0..8).map(move |bit| byte >> bit & 1 != 0));
+/// Leader, the bits, the lowest first, and a last pulse.
+fn frame(bits: u32) -> Vec<(u64, bool)> {
+    let bits = (0..u32::BITS).map(|bit| bits >> bit & 1 != 0);
     let bits = bits.flat_map(|bit| [1.0, if bit { 3.0 } else { 1.0 }]);
     levels([16.0, 8.0].into_iter().chain(bits).chain([1.0]))
 }
@@ -194,7 +208,7 @@ mod tests {
     fn a_key_sends_its_frame_and_short_repeats_while_it_is_held() {
         let mut remote = Remote::default();
         let (_, ok) = ARROWS.into_iter().find(|(name, _)| *name == "ok").unwrap();
-        remote.press(ok, 5_000);
+        remote.press(bits(ok), 5_000);
         let levels = sent(&mut remote, 5..300);
         // Leader, 32 bits and the last pulse; then a repeat: each low and its end.
         assert_eq!(levels.len(), 2 * 34 + 2 * 2);
@@ -208,7 +222,7 @@ mod tests {
         assert!(levels.iter().step_by(2).all(|(_, level)| !level));
         assert!(levels.last().unwrap().1);
         for ms in (300..600).step_by(100) {
-            remote.press(ok, ms * 1_000);
+            remote.press(bits(ok), ms * 1_000);
             let levels = sent(&mut remote, ms..ms + 100);
             assert_eq!(levels.len() > 20, ms == 300, "{ms} {}", levels.len());
         }
@@ -218,10 +232,10 @@ mod tests {
     #[test]
     fn the_mini_remote_s_up_is_what_sketches_compare_with() {
         let (_, up) = MINI.into_iter().find(|(name, _)| *name == "up").unwrap();
-        let rises = frame(up).into_iter().filter(|(_, high)| !high);
+        let rises = frame(bits(up)).into_iter().filter(|(_, high)| !high);
         let starts: Vec<u64> = rises.map(|(cycle, _)| cycle / US).collect();
-        let bits = starts[1..].windows(2).map(|pair| pair[1] - pair[0] > 1_700);
-        let value = bits.fold(0_u32, |value, bit| value << 1 | u32::from(bit));
+        let sent = starts[1..].windows(2).map(|pair| pair[1] - pair[0] > 1_700);
+        let value = sent.fold(0_u32, |value, bit| value << 1 | u32::from(bit));
         assert_eq!(value, 0x00FD_A05F);
     }
 

@@ -126,7 +126,7 @@ pub struct Part {
     /// to GND, and open it floats or follows the chip's pull-up.
     pub resistor: Option<bool>,
     /// The keys of the remote control of an infrared receiver.
-    pub keys: &'static [Key],
+    pub keys: Vec<Key>,
 }
 
 /// What a part is.

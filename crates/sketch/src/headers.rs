@@ -73,16 +73,24 @@ impl<'a> Search<'a> {
             let before = build.mark();
             let done = step(build)?;
             let mut said = build.said_since(before).iter();
-            let missing = said.find_map(|one| Some(one.text.split_once(MISSING)?.0.to_owned()));
+            let missing = said.find_map(|one| {
+                let header = one.text.split_once(MISSING)?.0.to_owned();
+                Some((header, one.file.clone().unwrap_or_default()))
+            });
             match missing {
-                Some(header) if self.look_for(build, &header)? => build.back_to(before),
+                Some((header, by)) if self.look_for(build, &header, &by)? => build.back_to(before),
                 _ => return Ok(done),
             }
         }
     }
 
-    /// Looks for a header; whether the build sees more now.
-    fn look_for(&mut self, build: &mut Build<'_>, header: &str) -> Result<bool, SketchError> {
+    /// Looks for a header that a file includes; whether the build sees more now.
+    fn look_for(
+        &mut self,
+        build: &mut Build<'_>,
+        header: &str,
+        by: &str,
+    ) -> Result<bool, SketchError> {
         if let Some(index) = self.layout.library(header) {
             let folder = &self.layout.libraries[index].headers;
             let is_new = self.found.insert(folder.into());
@@ -100,29 +108,52 @@ impl<'a> Search<'a> {
             }
             return Ok(is_new);
         }
-        let Some(real) = self.other_spelling(header) else {
+        let beside = beside(by, header);
+        let (place, real) = if let Some(own) = self.own_spelling(&beside) {
+            (beside, own)
+        } else if let Some(real) = self.other_spelling(header) {
+            if self.found.insert(SPELLED.into()) {
+                build.look_in(SPELLED.to_owned());
+            }
+            (format!("{SPELLED}/{header}"), real)
+        } else {
             return Ok(false);
         };
-        let ours = Path::new(SPELLED);
-        if self.found.insert(ours.to_owned()) {
-            build.look_in(SPELLED.to_owned());
-        }
-        let is_new = self.found.insert(ours.join(header));
+        let is_new = self.found.insert(PathBuf::from(&place));
         if is_new {
             let text = format!("#include <{real}>\n");
-            build.put(SKETCH, &format!("{SPELLED}/{header}"), text.as_bytes())?;
+            build.put(SKETCH, &place, text.as_bytes())?;
         }
         Ok(is_new)
+    }
+
+    /// How a file of the sketch is spelled where there is one.
+    fn own_spelling(&self, name: &str) -> Option<String> {
+        let mut own = self.source.files.keys();
+        own.find(|own| own.eq_ignore_ascii_case(name)).cloned()
     }
 
     /// How a header is spelled where there is one: on Windows and macOS `servo.h` is `Servo.h`, and many sketches are
     /// from there.
     fn other_spelling(&self, header: &str) -> Option<String> {
-        let mut own = self.source.files.keys();
-        let own = own.find(|name| name.eq_ignore_ascii_case(header)).cloned();
+        let own = self.own_spelling(header);
         let core = || spelled(&self.toolchain.core.join("cores/arduino"), header);
         own.or_else(core).or_else(|| self.toolchain.spelled(header))
     }
+}
+
+/// Where a header is, in the sketch, that a file of the sketch includes from its own folder.
+fn beside(by: &str, header: &str) -> String {
+    let mut parts: Vec<&str> = by.split('/').collect();
+    parts.pop();
+    for part in header.split('/') {
+        match part {
+            "." => {}
+            ".." => drop(parts.pop()),
+            _ => parts.push(part),
+        }
+    }
+    parts.join("/")
 }
 
 /// The files of the installed libraries that a sketch mentions, and of those that they mention.

@@ -163,7 +163,7 @@ pub(crate) struct NewArgs {
     /// link_baud=38400 is the rate of a Bluetooth module
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,
-    /// Wheels, 2 or 4; the two of a side are driven alike
+    /// Wheels, 2, or 4, the two of a side driven alike; tracks are 4
     #[arg(long, value_name = "COUNT", default_value_t = 2, value_parser = values::wheels)]
     pub(crate) wheels: u8,
     /// Voltage of the battery, 5.6 to 12: 6 of four AA cells, 7.4 or 11.1 of Li-ion ones [default: 6; of four wheels 7.4]

@@ -53,7 +53,7 @@ pub(super) fn has_its_parts(
 pub(crate) fn takes(part: &Part, value: &str) -> Result<(), String> {
     let name = &part.name;
     if part.kind == PartKind::Infrared {
-        let keys: Vec<&str> = part.keys.iter().map(|(key, _)| *key).collect();
+        let keys: Vec<&str> = part.keys.iter().map(|(key, _)| key.as_str()).collect();
         return match keys.contains(&value) {
             true => Ok(()),
             false => Err(format!(

@@ -72,7 +72,8 @@ pub fn needed(driver: &Driver, jumpers: bool) -> Vec<String> {
 }
 
 /// What a signal is connected to, for people.
-fn meaning(signal: &str, driver: &Driver) -> String {
+#[must_use]
+pub fn meaning(signal: &str, driver: &Driver) -> String {
     let (side, input) = signal.split_once('_').unwrap_or(("", signal));
     match input {
         "enable" => format!("PWM of the {side} motor"),
@@ -103,6 +104,16 @@ fn meaning(signal: &str, driver: &Driver) -> String {
         "standby" => "low switches both motors off".into(),
         _ => signal.into(),
     }
+}
+
+/// The keys of a remote control by their codes, as `left=0x20DF1BE4:right=551525220`; behind `raw:` in the other order.
+fn own_remote(codes: &str) -> String {
+    let (table, codes) = match codes.strip_prefix("raw:") {
+        Some(codes) => ("raw_keys", codes),
+        None => ("keys", codes),
+    };
+    let codes = codes.replace(':', ", ").replace('=', " = ");
+    format!(", {table} = {{ {codes} }}")
 }
 
 impl NewRobot {
@@ -178,6 +189,7 @@ impl NewRobot {
             // What else such a part may say.
             let more = match (more, kind.as_str()) {
                 ("", _) => String::new(),
+                (codes, "infrared") if codes.contains('=') => own_remote(codes),
                 (keys, "infrared") => format!(", keys = {}", quoted(keys)),
                 (to, "button" | "switch") => format!(", to = {to:?}"),
                 (size, _) => format!(", size = {size:?}"),

@@ -6,7 +6,9 @@
 //! parts.speed = { potentiometer = "A0" }
 //! parts.lamp = { led = 13 }               # or buzzer
 //! parts.remote = { infrared = 11 }        # a remote control with arrows; with keys = 21 that of a car radio,
-//!                                         # keys = "car" that with its arrows above the digits, "mini" Adafruit's
+//!                                         # keys = "car" that with its arrows above the digits, "mini" Adafruit's,
+//!                                         # keys = { left = 0x20DF1BE4 } any other one, by IRremote's `value`s up to
+//!                                         # version 2; raw_keys, by its `decodedRawData` from 3 on
 //! parts.imu = { mpu6050 = 0x68 }          # with x_m and y_m where it is, interrupt = 2 for its INT, and where
 //!                                         # its x, y and z point where not so: axes = "forward left up"
 //! parts.screen = { ssd1306 = 0x3c }       # with size = "128x32"
@@ -17,11 +19,13 @@ use super::error::did_you_mean;
 use super::pin::read_pin;
 use super::read::{Allowed, Table};
 use rumbo_sim::bus::{BusDevice, DeviceKind};
-use rumbo_sim::remote::{ARROWS, CAR, Key, MINI, RADIO};
+use rumbo_sim::remote::{self, ARROWS, CAR, Key, Known, MINI, RADIO};
 use rumbo_sim::wiring::{Part, PartKind, Wiring};
 
 /// What is written as an address: one of 7 bits, or by mistake one of 8.
 const ADDRESS: Allowed = Allowed::new(0.0, 255.0, "count");
+/// What a key of a remote control sends, or its command.
+const CODE: Allowed = Allowed::new(0.0, u32::MAX as f64, "count");
 /// Position of a sensor on the body.
 const MOUNT: Allowed = Allowed::new(-0.5, 0.5, "m");
 
@@ -82,11 +86,42 @@ fn read_part(own: &Table<'_, '_>, name: &str, kind: PartKind, wiring: &mut Wirin
     });
 }
 
-/// The keys of a remote control, by how many it has.
-fn read_keys(own: &Table<'_, '_>, kind: PartKind) -> &'static [Key] {
+/// The keys of a remote control: those of one that is known, or each with its code.
+fn read_keys(own: &Table<'_, '_>, kind: PartKind) -> Vec<Key> {
     if kind != PartKind::Infrared {
-        return &[];
+        return Vec::new();
     }
+    for (table, order) in [
+        ("keys", u32::reverse_bits as fn(u32) -> u32),
+        ("raw_keys", |bits| bits),
+    ] {
+        if own.holds_table(table) {
+            return read_codes(&own.table(table), order);
+        }
+    }
+    remote::keys(read_known(own))
+}
+
+/// Keys with their codes; one below 256 is a command at address 0.
+fn read_codes(codes: &Table<'_, '_>, order: fn(u32) -> u32) -> Vec<Key> {
+    let read = codes.keys().into_iter().filter_map(|key| {
+        let code = codes.placed_number(key.value, CODE)?.value as u32;
+        let command = u8::try_from(code).map(|command| remote::bits(command.into()));
+        Some((
+            key.value.to_owned(),
+            command.unwrap_or_else(|_| order(code)),
+        ))
+    });
+    let read: Vec<Key> = read.collect();
+    if read.is_empty() {
+        codes.complain_here("needs a key, e.g. forward = 0xFF18E7");
+    }
+    codes.finish();
+    read
+}
+
+/// A remote control that is known, by how many keys it has.
+fn read_known(own: &Table<'_, '_>) -> &'static [Known] {
     if !own.has("keys") {
         return &ARROWS;
     }
@@ -102,7 +137,8 @@ fn read_keys(own: &Table<'_, '_>, kind: PartKind) -> &'static [Key] {
         .find(|keys| keys.len() == count.value as usize);
     found.unwrap_or_else(|| {
         let remedy = format!(
-            "there is one with arrows, {} keys, and that of a car radio, {}; \"car\", its arrows above the digits; and \"mini\"",
+            "there is one with arrows, {} keys, and that of a car radio, {}; \"car\", its arrows above the digits; \"mini\"; and \
+             any other one by its codes, {{ forward = 0xFF18E7 }}",
             ARROWS.len(),
             RADIO.len()
         );
@@ -112,11 +148,12 @@ fn read_keys(own: &Table<'_, '_>, kind: PartKind) -> &'static [Key] {
 }
 
 /// A remote control that has as many keys as another one.
-fn read_named_keys(own: &Table<'_, '_>) -> &'static [Key] {
+fn read_named_keys(own: &Table<'_, '_>) -> &'static [Known] {
     match own.text("keys") {
         Some(name) if name.value == "mini" => &MINI,
         Some(name) if name.value != "car" => {
-            let remedy = "must be 17, 21, \"car\" or \"mini\"";
+            let remedy =
+                "must be 17, 21, \"car\", \"mini\" or the codes of keys, { forward = 0xFF18E7 }";
             own.complain("keys", name.line, &format!("{:?}", name.value), remedy);
             &CAR
         }

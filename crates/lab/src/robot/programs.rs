@@ -67,7 +67,7 @@ fn part_state((part, value): (&Part, f64)) -> PartState {
         name: part.name.clone(),
         kind: part.kind.name().to_owned(),
         percent: (100.0 * value).round() as u8,
-        keys: part.keys.iter().map(|(key, _)| (*key).into()).collect(),
+        keys: part.keys.iter().map(|(key, _)| key.clone()).collect(),
         ..PartState::default()
     }
 }

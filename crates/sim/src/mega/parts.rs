@@ -59,7 +59,7 @@ impl Mega {
                 let key = parts[index].keys.iter().find(|(key, _)| *key == value);
                 let now_us = (self.chip.cycle() - self.zero_cycle) / CYCLES_PER_US;
                 key.into_iter()
-                    .for_each(|(_, command)| remote.press(*command, now_us));
+                    .for_each(|(_, bits)| remote.press(*bits, now_us));
                 continue;
             }
             let value = match value {

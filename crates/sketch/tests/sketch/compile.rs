@@ -338,9 +338,18 @@ fn libraries_are_taken_by_their_headers_from_beside_the_sketch_and_from_folders(
     let sandbox = Sandbox::trusting(Limits::default());
     let toolchain = toolchain.with_libraries(&[folders.path().to_owned()]);
     let compiler = Compiler::new(BOARDS[0], toolchain, sandbox, cache.path().to_owned()).unwrap();
-    // As on Windows and macOS, a header is found whatever its capitals are.
+    // As on Windows and macOS, a header is found whatever its capitals are, also beside a file in a folder.
     let files = [
-        &[("honk.ino", main), ("Pins.h", "#define HORN 3\n")][..],
+        &[
+            ("honk.ino", main),
+            ("Pins.h", "#define HORN 3\n"),
+            (
+                "src/car/wheels.cpp",
+                "#include \"Wheels.h\"\n#include \"../Axle/axle.h\"\nint wheels() { return AXLES; }\n",
+            ),
+            ("src/car/wheels.h", "int wheels();\n"),
+            ("src/axle/Axle.h", "#define AXLES 2\n"),
+        ][..],
         &lamp,
     ]
     .concat();

@@ -336,6 +336,11 @@ fn a_remote_control_drives_the_robot_and_repeats_while_its_key_is_held() {
     std::fs::write(bench.join("tests.toml"), tests.replace("up", "walk")).unwrap();
     let refused = stderr(&rumbo(&bench, &["check", "tests.toml"]));
     assert!(refused.contains("and walk none of its keys"), "{refused}");
+    let in_vain = stderr(&drive(&bench, &["--command", "F@0.1"]));
+    assert!(
+        in_vain.contains("the robot has no Bluetooth module"),
+        "{in_vain}"
+    );
     // Held: in the scenario, pressed again before it is up.
     let scenario = std::fs::read_to_string(bench.join("floor.toml")).unwrap();
     let held = (0..5).map(|n| {
@@ -414,16 +419,29 @@ void loop() { if (done) { Serial.println(value, HEX); delay(150); done = false; 
         stderr(&run)
     );
     let robot = std::fs::read_to_string(bench.join("robot.toml")).unwrap();
-    std::fs::write(
-        bench.join("robot.toml"),
-        robot.replace("keys = 21", "keys = 20"),
-    )
-    .unwrap();
-    let refused = stderr(&drive(&bench, &[]));
-    assert!(
-        refused.contains("there is one with arrows, 17 keys"),
-        "{refused}"
-    );
+    let with = |keys: &str, options: &[&str]| {
+        let robot = robot.replace("keys = 21", keys);
+        std::fs::write(bench.join("robot.toml"), robot).unwrap();
+        drive(&bench, options)
+    };
+    // A television's, in the two orders in which libraries give a code; and a command alone.
+    let go = ["--press", "remote=go@0.5", "--press", "remote=mute@1"];
+    for keys in [
+        "keys = { go = 551492580, mute = 0x45 }",
+        "raw_keys = { go = 0x27D8FB04, mute = 0xBA45FF00 }",
+    ] {
+        with(keys, &go);
+        let said = std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
+        assert_eq!(said, "20DF1BE4\nFFA25D\n", "{keys}");
+    }
+    for (keys, why) in [
+        ("keys = 20", "there is one with arrows, 17 keys"),
+        ("keys = {}", "needs a key, e.g. forward = 0xFF18E7"),
+        ("keys = { go = 0x1FFFFFFFF }", "must be within"),
+    ] {
+        let refused = stderr(&with(keys, &[]));
+        assert!(refused.contains(why), "{refused}");
+    }
 }
 
 /// Shifts eight bits into the register of a motor shield.
@@ -527,7 +545,7 @@ fn a_new_robot_with_a_motor_shield_has_its_wheels_on_motors() {
         "--pins",
         "left_forward=M3,right_backward=M4,servo=10,front_trigger=A0,front_echo=A1",
         "--parts",
-        "remote=infrared:2,knob=potentiometer:A2,screen=ssd1306:0x3c",
+        "remote=infrared:2:raw:go=0xBA45FF00:back=7,knob=potentiometer:A2,screen=ssd1306:0x3c",
     ];
     let made = rumbo(&folder, &new);
     assert!(made.status.success(), "{}", stderr(&made));
@@ -538,7 +556,7 @@ fn a_new_robot_with_a_motor_shield_has_its_wheels_on_motors() {
         ),
         "{text}"
     );
-    let parts = "parts.remote = { infrared = 2 }\nparts.knob = { potentiometer = \"A2\" }\nparts.screen = { ssd1306 = 0x3c }\n";
+    let parts = "parts.remote = { infrared = 2, raw_keys = { go = 0xBA45FF00, back = 7 } }\nparts.knob = { potentiometer = \"A2\" }\nparts.screen = { ssd1306 = 0x3c }\n";
     assert!(text.contains(parts), "{text}");
     let bare = rumbo(
         &folder,

@@ -1,4 +1,4 @@
-// Pins 20 and 21 with nothing connected. A sonar triggered by port writes around delayMicroseconds(10): 9.1 us. Nobody feeds the watchdog.
+// Pins 20 and 21 with nothing connected. A sonar triggered by port writes around delayMicroseconds(4): 3.1 us. Nobody feeds the watchdog.
 
 #include <avr/wdt.h>
 
@@ -11,7 +11,7 @@ void setup() {
 
 void loop() {
   PORTJ |= _BV(1);
-  delayMicroseconds(10);
+  delayMicroseconds(4);
   PORTJ &= ~_BV(1);
   Serial.println(pulseIn(3, HIGH, 40000) / 58);
   delay(60);
