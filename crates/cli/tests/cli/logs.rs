@@ -448,7 +448,7 @@ fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
     let index = mcap::Summary::read(&whole).unwrap().unwrap();
     let chunk = &index.chunk_indexes[index.chunk_indexes.len() / 2];
     damaged(chunk.chunk_start_offset as usize + 1_000);
-    let shown = rumbo(&["export", "damaged.mcap"], folder.path());
+    let shown = rumbo(&["export", "damaged.mcap", "--force"], folder.path());
     assert_eq!(shown.status.code(), Some(0), "{}", text(&shown.stderr));
     assert!(text(&shown.stderr).starts_with("note: damaged.mcap is damaged: "));
     let count = |name: &str| rows(name).lines().count();
