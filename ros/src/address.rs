@@ -3,12 +3,12 @@
 //! Anybody who drives the robot needs a key. `rumbo` leaves it in a file that only its user can read, by the port of the
 //! dashboard; from elsewhere the address that it prints has a token, for which the station gives the key once.
 
-use std::fmt;
 use std::io::{self, Read, Write};
 use std::net::TcpStream;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
+use thiserror::Error;
 use tungstenite::handshake::HandshakeError;
 use tungstenite::handshake::client::{Response, generate_key};
 use tungstenite::http::Request;
@@ -62,55 +62,38 @@ impl FromStr for Address {
 }
 
 /// Why there is no session, or none any more.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 pub(crate) enum StationError {
     /// Nobody answers there.
+    #[error(
+        "no rumbo at {0} ({1}); start `rumbo lab` or `rumbo connect`, or give the address that it prints"
+    )]
     Nobody(String, io::Error),
     /// No key is known for this address: the file where it would be.
+    #[error(
+        "no key for {0} in {1}; start rumbo as the same user on this computer, or give the whole address that it \
+         prints, with its token"
+    )]
     NoKey(String, PathBuf),
     /// It refuses, and says why.
+    #[error("{0}: {1}")]
     Refused(String, String),
     /// It does not speak as a station of this version does.
+    #[error("{0} does not speak as this rumbo-ros does ({1}); build both from one checkout")]
     Foreign(String, String),
     /// It is a log that is shown.
+    #[error(
+        "a log is shown there, and no robot; `rumbo export LOG --ros2bag` makes a bag of it, which `ros2 bag play` \
+         plays"
+    )]
     Log,
     /// It has closed the connection, and said why.
+    #[error("the session is over: {0}")]
     Closed(String),
     /// It has fallen silent.
+    #[error("the session is over: nothing has come for {} s", SILENCE.as_secs())]
     Silent,
 }
-
-impl fmt::Display for StationError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Nobody(host, error) => write!(
-                f,
-                "no rumbo at {host} ({error}); start `rumbo lab` or `rumbo connect`, or give the address that it prints"
-            ),
-            Self::NoKey(host, file) => write!(
-                f,
-                "no key for {host} in {}; start rumbo as the same user on this computer, or give the whole address that it prints, with its token",
-                file.display()
-            ),
-            Self::Refused(host, why) => write!(f, "{host}: {why}"),
-            Self::Foreign(host, what) => write!(
-                f,
-                "{host} does not speak as this rumbo-ros does ({what}); build both from one checkout"
-            ),
-            Self::Log => f.write_str(
-                "a log is shown there, and no robot; `rumbo export LOG --ros2bag` makes a bag of it, which `ros2 bag play` plays",
-            ),
-            Self::Closed(why) => write!(f, "the session is over: {why}"),
-            Self::Silent => write!(
-                f,
-                "the session is over: nothing has come for {} s",
-                SILENCE.as_secs()
-            ),
-        }
-    }
-}
-
-impl std::error::Error for StationError {}
 
 /// The file in which `rumbo` leaves the key of the dashboard at this port.
 fn key_file(port: u16) -> PathBuf {

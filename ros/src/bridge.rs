@@ -3,7 +3,7 @@
 
 use rumbo_ros::topics::Quality;
 use rumbo_ros::types::Definition;
-use std::fmt;
+use thiserror::Error;
 
 /// Something a bridge carries, numbered by the bridge.
 pub(crate) type Channel = usize;
@@ -101,27 +101,18 @@ pub(crate) trait Bridge {
 }
 
 /// Why a middleware refused.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub(crate) enum BridgeError {
     /// The domain cannot be joined: which, and why.
+    #[error(
+        "domain {0} of ROS 2 cannot be joined ({1}); is a network up, and are its ports free? --domain takes \
+         another"
+    )]
     Domain(u16, String),
     /// A topic or service cannot be announced: which, and why.
+    #[error("{0} cannot be announced: {1}")]
     Announce(String, String),
     /// Something cannot be sent: why.
+    #[error("nothing can be sent: {0}")]
     Send(String),
 }
-
-impl fmt::Display for BridgeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Domain(domain, why) => write!(
-                f,
-                "domain {domain} of ROS 2 cannot be joined ({why}); is a network up, and are its ports free? --domain takes another"
-            ),
-            Self::Announce(name, why) => write!(f, "{name} cannot be announced: {why}"),
-            Self::Send(why) => write!(f, "nothing can be sent: {why}"),
-        }
-    }
-}
-
-impl std::error::Error for BridgeError {}

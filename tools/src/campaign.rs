@@ -31,12 +31,6 @@ pub(crate) fn main() -> ExitCode {
         all_met &= met;
         row([&what, &required, &measured, if met { "" } else { "MISSED" }]);
     };
-    match campaign(seeds, &only, show) {
-        Ok(()) if all_met => ExitCode::SUCCESS,
-        Ok(()) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("campaign: {error}");
-            ExitCode::from(2)
-        }
-    }
+    let ended = campaign(seeds, &only, show);
+    crate::ended("campaign", ended.map(|()| all_met))
 }

@@ -54,14 +54,7 @@ pub(crate) fn main() -> ExitCode {
         eprintln!("faults: see the head of tools/src/bin/faults.rs for the arguments");
         return ExitCode::from(2);
     };
-    match campaign(&args) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("faults: {error}");
-            ExitCode::from(2)
-        }
-    }
+    crate::ended("faults", campaign(&args))
 }
 
 fn campaign(args: &Args) -> Result<bool, FileError> {

@@ -75,14 +75,7 @@ const HOSTILE: [(&str, &str); 12] = [
 ];
 
 pub(crate) fn main() -> ExitCode {
-    match run() {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("grade: {error}");
-            ExitCode::from(2)
-        }
-    }
+    crate::ended("grade", run())
 }
 
 fn run() -> Result<bool, Box<dyn Error>> {

@@ -18,50 +18,59 @@ mod tune;
 
 use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{RunResult, run_all};
+use std::f64::consts::PI;
+use std::fmt::Display;
 use std::process::ExitCode;
 
-/// The names, as one types them.
-const NAMES: [&str; 14] = [
-    "alone",
-    "beside",
-    "campaign",
-    "counts",
-    "faults",
-    "fidelity",
-    "figures",
-    "grade",
-    "hashes",
-    "medians",
-    "memoria",
-    "moving",
-    "random_worlds",
-    "tune",
+/// A tool: its name, as one types it, and what it does.
+type Tool = (&'static str, fn() -> ExitCode);
+
+const TOOLS: [Tool; 14] = [
+    ("alone", counts::chip_alone),
+    ("beside", beside::main),
+    ("campaign", campaign::main),
+    ("counts", counts::main),
+    ("faults", faults::main),
+    ("fidelity", fidelity::main),
+    ("figures", figures::main),
+    ("grade", grade::main),
+    ("hashes", hashes::main),
+    ("medians", medians::main),
+    ("memoria", memoria::main),
+    ("moving", moving::main),
+    ("random_worlds", random_worlds::main),
+    ("tune", tune::main),
 ];
 
 fn main() -> ExitCode {
-    match std::env::args().nth(1).unwrap_or_default().as_str() {
-        "alone" => counts::chip_alone(),
-        "beside" => beside::main(),
-        "campaign" => campaign::main(),
-        "counts" => counts::main(),
-        "faults" => faults::main(),
-        "fidelity" => fidelity::main(),
-        "figures" => figures::main(),
-        "grade" => grade::main(),
-        "hashes" => hashes::main(),
-        "medians" => medians::main(),
-        "memoria" => memoria::main(),
-        "moving" => moving::main(),
-        "tune" => tune::main(),
-        "random_worlds" => match random_worlds::main() {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => {
-                eprintln!("random_worlds: {error}");
-                ExitCode::FAILURE
-            }
-        },
-        other => {
-            eprintln!("no tool `{other}`; tools: {}", NAMES.join(", "));
+    let name = std::env::args().nth(1).unwrap_or_default();
+    let Some((_, tool)) = TOOLS.iter().find(|(known, _)| *known == name) else {
+        let names = TOOLS.map(|(known, _)| known).join(", ");
+        eprintln!("no tool `{name}`; tools: {names}");
+        return ExitCode::from(2);
+    };
+    tool()
+}
+
+/// What a metric is multiplied with to be shown in a unit; a duty is shown as PWM, of 255.
+fn factor(metric: &str, unit: &str) -> f64 {
+    match unit {
+        "cm" => 100.0,
+        "deg" => 180.0 / PI,
+        "ms" => 1_000.0,
+        "rpm" => 30.0 / PI,
+        "" if metric.ends_with("_duty") => 255.0,
+        _ => 1.0,
+    }
+}
+
+/// The status of a tool that found its requirements met or missed, or ended by an error.
+fn ended(name: &str, met: Result<bool, impl Display>) -> ExitCode {
+    match met {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("{name}: {error}");
             ExitCode::from(2)
         }
     }

@@ -39,14 +39,7 @@ pub(crate) fn main() -> ExitCode {
     let mut args = crate::arguments();
     let seeds = args.next().and_then(|seeds| seeds.parse().ok());
     let only: Vec<String> = args.collect();
-    match compare(seeds.unwrap_or(SEEDS), &only) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("medians: {error}");
-            ExitCode::from(2)
-        }
-    }
+    crate::ended("medians", compare(seeds.unwrap_or(SEEDS), &only))
 }
 
 /// Prints the table, and writes it if it is complete; returns whether all medians agree.

@@ -75,14 +75,7 @@ pub(crate) fn main() -> ExitCode {
         }
         return ExitCode::SUCCESS;
     }
-    match campaign(&args) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("moving: {error}");
-            ExitCode::from(2)
-        }
-    }
+    crate::ended("moving", campaign(&args))
 }
 
 fn campaign(args: &Args) -> Result<bool, FileError> {

@@ -7,6 +7,7 @@ use rumbo_experiment::files::{FileError, Library, Overrides, Setup};
 use rumbo_experiment::random_world::Size;
 use rumbo_experiment::shortest_path::Floor;
 use rumbo_plant::world::Point;
+use std::process::ExitCode;
 
 /// Seeds that are drawn, and seeds that are counted.
 const SEEDS: u64 = 15;
@@ -17,7 +18,11 @@ const SCALE: f64 = 34.0;
 /// Floor shown around the arena [m].
 const MARGIN_M: f64 = 0.4;
 
-pub(crate) fn main() -> Result<(), FileError> {
+pub(crate) fn main() -> ExitCode {
+    crate::ended("random_worlds", draw_all().map(|()| true))
+}
+
+fn draw_all() -> Result<(), FileError> {
     let setup = Library::new().setup("mode8-random", &Overrides::default())?;
     let arena = setup.world.arena;
     let [width, height] =

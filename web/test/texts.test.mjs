@@ -17,8 +17,8 @@ const TABLES = [PAGE, ROBOT, PROGRAM, PARAMETERS, SCENARIOS, GUIDE, FILES, CODE,
 /** @type {Record<string, string>} */
 const SPANISH = Object.assign({}, ...TABLES);
 
-/** @param {string} path */
-const read = (path) => readFileSync(new URL(path, import.meta.url), 'utf8');
+/** A source, with each text that goes on in the next line as one. @param {string} path */
+const read = (path) => readFileSync(new URL(path, import.meta.url), 'utf8').replace(/\\\n\s*/g, '');
 /** @param {string} literal */
 const unescaped = (literal) => literal.replace(/\\(.)/g, '$1');
 /** @param {string} text */
@@ -87,7 +87,7 @@ test('messages about a file that is no recording, after its name', () => {
 });
 
 test('why nothing is tuned', () => {
-  const displays = ['tune/error', 'tune/objective'].flatMap((name) => [...read(`../../crates/experiment/src/${name}.rs`).matchAll(/^impl fmt::Display [^]*?^}/gm)].map(([part]) => part));
+  const displays = ['tune/error', 'tune/objective'].flatMap((name) => [...read(`../../crates/experiment/src/${name}.rs`).matchAll(/#\[error\([^]*?\)\]$/gm)].map(([part]) => part));
   const texts = [...displays, read('../../crates/experiment/src/tune/over.rs').match(/"[^"]+ sets it itself[^"]*"/)?.[0] ?? ''].flatMap((part) => [...part.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped(found[1] ?? '').replace(/\{[^}]*\}/g, '{}')));
   assert.ok(texts.length > 9, String(texts.length));
   allSpanish(texts);
@@ -98,7 +98,7 @@ const SAME = ['Serial (USB)', 'compiler: {}{}'];
 
 test('what is said of a program at the pins, its end, the debugger and the speed of the link', () => {
   const texts = ['emulator/src/verdict', 'sim/src/mega/notes', 'sim/src/mega/wheels', 'sim/src/debugging', 'sim/src/drivers', 'session/src/watch', 'lab/src/robot/programs'].flatMap((name) => {
-    const source = (read(`../../crates/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '').replace(/\\\n\s*/g, '').replace(/(?:unreachable!|unwrap_or_else\(\|\| panic!)\([^)]*\)/g, '');
+    const source = (read(`../../crates/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, '').replace(/(?:unreachable!|unwrap_or_else\(\|\| panic!)\([^)]*\)/g, '');
     return [...source.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped((found[1] ?? '').replace(/\{[^}]*\}/g, '{}')));
   });
   assert.ok(texts.length > 80, String(texts.length));

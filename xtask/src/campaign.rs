@@ -9,7 +9,7 @@
 use crate::gradescope;
 use crate::project::{Project, shown};
 use crate::release;
-use crate::test::{Stop, tools, wheel};
+use crate::test::{tools, wheel};
 use std::process::Stdio;
 
 /// What is no scenario: its name, and how it is run with so many seeds; true if its requirements were met.
@@ -36,19 +36,24 @@ const PARTS: [Part; 14] = [
     }),
     // A class of a hundred hand-ins, thirty of them hostile.
     ("grade", |project, _| {
-        tools::arduino_core(project).map_err(said)?;
-        tools::bubblewrap(project).map_err(said)?;
-        let tests = made_longer(project, "grade::", "RUMBO_FULL", "1")?;
+        tools::arduino_core(project)?;
+        tools::bubblewrap(project)?;
+        let tests = made_longer(project, of_cli("grade::"), "RUMBO_FULL", "1")?;
         Ok(tool(project, "grade", &[])? && tests)
     }),
     // Gradescope's autograder in a system like its container.
     ("gradescope", |project, _| {
-        gradescope::try_it(project).map_err(said)?;
+        gradescope::try_it(project)?;
         Ok(true)
     }),
     // Simulated robots with known parameters, driven and identified.
     ("identify", |project, seeds| {
-        made_longer(project, "identify::", "RUMBO_ROBOTS", &up_to(100, seeds))
+        made_longer(
+            project,
+            of_cli("identify::"),
+            "RUMBO_ROBOTS",
+            &up_to(100, seeds),
+        )
     }),
     // Tuning from gains far off.
     ("tune", |project, seeds| {
@@ -66,18 +71,18 @@ const PARTS: [Part; 14] = [
     }),
     // Sweeps of the Python package on Ray.
     ("ray", |project, _| {
-        wheel::on_ray(project).map_err(said)?;
+        wheel::on_ray(project)?;
         Ok(true)
     }),
     // A policy for mode 9, learned by the example of the Python package.
     ("python", |project, _| {
-        wheel::learning(project).map_err(said)?;
+        wheel::learning(project)?;
         Ok(true)
     }),
     // The release on a system with nothing else, and the crates that others can use alone.
     ("release", |project, _| {
-        release::try_it(project).map_err(said)?;
-        wheel::in_clean_systems(project).map_err(said)?;
+        release::try_it(project)?;
+        wheel::in_clean_systems(project)?;
         release::try_crates(project)?;
         Ok(true)
     }),
@@ -125,34 +130,26 @@ fn up_to(most: u32, seeds: Option<u32>) -> String {
     seeds.unwrap_or(most).min(most).to_string()
 }
 
-/// Runs tests of the command line, of which this variable makes one longer; true if they passed.
-fn made_longer(project: &Project, test: &str, variable: &str, value: &str) -> Result<bool, String> {
-    let mut command = project.cargo(&[
-        "test",
-        "--quiet",
-        "--release",
-        "--locked",
-        "--package",
-        "rumbo-cli",
-        "--test",
-        "cli",
-        test,
-        "--",
-        "--nocapture",
-    ]);
-    command.env(variable, value);
+/// Tests of the command line.
+const fn of_cli(test: &str) -> [&str; 3] {
+    ["rumbo-cli", "cli", test]
+}
+
+/// Runs tests of a package, of which this variable makes one longer; true if they passed.
+fn made_longer(
+    project: &Project,
+    [package, program, test]: [&str; 3],
+    variable: &str,
+    value: &str,
+) -> Result<bool, String> {
+    let mut command = project.cargo(&["test", "--quiet", "--release", "--locked"]);
+    command.args(["--package", package, "--test", program, test]);
+    command.args(["--", "--nocapture"]).env(variable, value);
     let status = command
         .stdin(Stdio::null())
         .status()
         .map_err(|error| format!("{}: {error}", shown(&command)))?;
     Ok(status.success())
-}
-
-/// Why a tool is not there.
-fn said(stop: Stop) -> String {
-    match stop {
-        Stop::Failed(error) | Stop::Missing(error) => error,
-    }
 }
 
 /// Breaks everything, natively and on the image; with all seeds the tables of the docs are made.
@@ -175,25 +172,8 @@ fn faults(project: &Project, seeds: Option<u32>) -> Result<bool, String> {
 /// Runs the image for long; true if its test passed.
 fn soak(project: &Project) -> Result<bool, String> {
     crate::firmware::run(project)?;
-    let mut command = project.cargo(&[
-        "test",
-        "--quiet",
-        "--release",
-        "--locked",
-        "--package",
-        "rumbo-firmware-tests",
-        "--test",
-        "firmware",
-        "soak",
-        "--",
-        "--nocapture",
-    ]);
-    command.env("RUMBO_SOAK_MINUTES", IMAGE_MINUTES);
-    let status = command
-        .stdin(Stdio::null())
-        .status()
-        .map_err(|error| format!("{}: {error}", shown(&command)))?;
-    Ok(status.success())
+    let tests = ["rumbo-firmware-tests", "firmware", "soak"];
+    made_longer(project, tests, "RUMBO_SOAK_MINUTES", IMAGE_MINUTES)
 }
 
 /// Runs a program of `tools/`; true if it found all requirements met.

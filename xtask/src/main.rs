@@ -88,34 +88,38 @@ Exit status: 0 all well, 1 something failed, 2 wrong usage.";
 #[derive(Debug, PartialEq)]
 enum Request {
     Help(Option<String>),
-    Run {
-        command: String,
-        only: Vec<String>,
-        seeds: Option<u32>,
-        seconds: Option<u32>,
-        full: bool,
-    },
+    Run(Task),
+}
+
+/// Commands without options.
+const WHOLE: [&str; 5] = ["firmware", "release", "site", "sketches", "tidy"];
+
+#[derive(Debug, Default, PartialEq)]
+struct Task {
+    command: String,
+    only: Vec<String>,
+    seeds: Option<u32>,
+    seconds: Option<u32>,
+    full: bool,
 }
 
 fn main() -> ExitCode {
-    let request = match parse(lexopt::Parser::from_env()) {
-        Ok(request) => request,
-        Err(error) => return usage(&error.to_string()),
-    };
-    let (command, only, seeds, seconds, full) = match request {
-        Request::Help(command) => {
+    let task = match parse(lexopt::Parser::from_env()) {
+        Ok(Request::Run(task)) => task,
+        Ok(Request::Help(command)) => {
             // A reader that has seen enough, as `head`, is no error.
             let _ = writeln!(std::io::stdout(), "{}", help(command.as_deref()));
             return ExitCode::SUCCESS;
         }
-        Request::Run {
-            command,
-            only,
-            seeds,
-            seconds,
-            full,
-        } => (command, only, seeds, seconds, full),
+        Err(error) => return usage(&error.to_string()),
     };
+    let Task {
+        command,
+        only,
+        seeds,
+        seconds,
+        full,
+    } = task;
     let project = match Project::find() {
         Ok(project) => Project { full, ..project },
         Err(error) => return failure(&error),
@@ -129,24 +133,22 @@ fn main() -> ExitCode {
     if seconds.is_some() && command != "fuzz" {
         return usage("--seconds is for fuzz");
     }
+    if !only.is_empty() && WHOLE.contains(&command.as_str()) {
+        return usage(&format!("{command} takes no options"));
+    }
     let outcome = match command.as_str() {
         "test" => test::run(&project, &only),
-        "tidy" if only.is_empty() => tidy::run(&project),
+        "tidy" => tidy::run(&project),
         "bench" => bench::run(&project, &only),
         "campaign" => campaign::run(&project, seeds, &only),
         "fuzz" => fuzz::campaign(&project, seconds, &only),
         "figures" => figures::run(&project, &only),
         "fidelity" => fidelity::run(&project, seeds, &only),
         "memoria" => memoria::run(&project, seeds, &only),
-        "firmware" if only.is_empty() => firmware::run(&project),
-        "firmware" => return usage("firmware takes no options"),
-        "site" if only.is_empty() => site::run(&project),
-        "site" => return usage("site takes no options"),
-        "release" if only.is_empty() => release::run(&project),
-        "release" => return usage("release takes no options"),
-        "sketches" if only.is_empty() => sketches::run(&project),
-        "sketches" => return usage("sketches takes no options"),
-        "tidy" => return usage("tidy takes no options"),
+        "firmware" => firmware::run(&project),
+        "site" => site::run(&project),
+        "release" => release::run(&project),
+        "sketches" => sketches::run(&project),
         other => return usage(&format!("unknown command `{other}`")),
     };
     match outcome {
@@ -158,28 +160,22 @@ fn main() -> ExitCode {
 
 fn parse(mut args: lexopt::Parser) -> Result<Request, lexopt::Error> {
     use lexopt::prelude::{Long, Short, Value, ValueExt};
-    let (mut command, mut only, mut help) = (None, Vec::new(), false);
-    let (mut seeds, mut seconds, mut full) = (None, None, false);
+    let (mut task, mut help) = (Task::default(), false);
     while let Some(arg) = args.next()? {
         match arg {
-            Long("full") => full = true,
+            Long("full") => task.full = true,
             Long("help") | Short('h') => help = true,
-            Long("seeds") => seeds = Some(args.value()?.parse()?),
-            Long("seconds") => seconds = Some(args.value()?.parse()?),
-            Long("only") => only.push(args.value()?.string()?),
-            Value(value) if command.is_none() => command = Some(value.string()?),
+            Long("seeds") => task.seeds = Some(args.value()?.parse()?),
+            Long("seconds") => task.seconds = Some(args.value()?.parse()?),
+            Long("only") => task.only.push(args.value()?.string()?),
+            Value(value) if task.command.is_empty() => task.command = value.string()?,
             _ => return Err(arg.unexpected()),
         }
     }
-    Ok(match command {
-        Some(command) if !help => Request::Run {
-            command,
-            only,
-            seeds,
-            seconds,
-            full,
-        },
-        command => Request::Help(command),
+    let Task { command, .. } = &task;
+    Ok(match help || command.is_empty() {
+        true => Request::Help((!command.is_empty()).then(|| command.clone())),
+        false => Request::Run(task),
     })
 }
 
@@ -215,13 +211,11 @@ mod tests {
         let only = vec!["fmt".to_owned(), "clippy".to_owned()];
         assert_eq!(
             chosen,
-            Ok(Request::Run {
+            Ok(Request::Run(Task {
                 command: "test".to_owned(),
                 only,
-                seeds: None,
-                seconds: None,
-                full: false
-            })
+                ..Task::default()
+            }))
         );
     }
 
@@ -230,13 +224,11 @@ mod tests {
         let chosen = request(&["campaign", "--seeds", "50"]);
         assert_eq!(
             chosen,
-            Ok(Request::Run {
+            Ok(Request::Run(Task {
                 command: "campaign".to_owned(),
-                only: Vec::new(),
                 seeds: Some(50),
-                seconds: None,
-                full: false
-            })
+                ..Task::default()
+            }))
         );
         assert!(request(&["campaign", "--seeds", "many"]).is_err());
     }
@@ -268,7 +260,7 @@ mod tests {
                 };
                 let words = text[at + name.len()..].split(ends).next().unwrap();
                 let found = request(&words.split_whitespace().collect::<Vec<_>>());
-                let Ok(Request::Run { command, .. }) = &found else {
+                let Ok(Request::Run(Task { command, .. })) = &found else {
                     assert!(matches!(found, Ok(Request::Help(_))), "{path}: {words}");
                     continue;
                 };

@@ -51,13 +51,8 @@ struct Linked {
 
 /// Builds the release, or reports the missing tool.
 pub(crate) fn run(project: &Project) -> Result<bool, String> {
-    match build(project) {
-        Ok(dist) => {
-            println!("{}", dist.display());
-            Ok(true)
-        }
-        Err(Stop::Failed(error) | Stop::Missing(error)) => Err(error),
-    }
+    println!("{}", build(project)?.display());
+    Ok(true)
 }
 
 /// Builds the release anew and returns its folder.

@@ -41,10 +41,8 @@ const VARIANTS: [(&str, &[Variant]); 1] = [(
 
 /// Builds every sketch, or reports the missing tool.
 pub(crate) fn run(project: &Project) -> Result<bool, String> {
-    match build(project) {
-        Ok(()) => Ok(true),
-        Err(Stop::Failed(error) | Stop::Missing(error)) => Err(error),
-    }
+    build(project)?;
+    Ok(true)
 }
 
 /// Builds every sketch that has changed.

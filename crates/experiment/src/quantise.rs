@@ -7,8 +7,8 @@ use crate::files::policy::{BIAS_LIMIT, Input, Network, Neuron};
 use crate::files::{FileError, PolicyFile, near_or_all};
 use rumbo_control::policy::{MOST_LAYERS, MOST_SHIFT, MOST_VALUES, OBSERVED, ONE, OUTPUTS};
 use serde::Deserialize;
-use std::fmt;
 use std::ops::RangeInclusive;
+use thiserror::Error;
 
 /// A network in floats: `x = clip((column - centre) / scale, -1, 1)`, then `clip(weights x + biases, -1, 1)` for each layer.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
@@ -58,69 +58,48 @@ pub struct FloatLayer {
 }
 
 /// Why a network cannot be quantised.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum QuantiseError {
     /// Its neurons do something else than the robot's.
+    #[error(
+        "activation = {0:?}: the robot's neurons are clipped to -1..1, so that they need no table; train with \
+         torch.nn.Hardtanh or jnp.clip, and say \"clip\""
+    )]
     Activation(String),
     /// An input is no column of the observation.
+    #[error("`{0}` is no column of the observation; did you mean {near}?", near = near_or_all(.0, OBSERVED).join(", "))]
     Column(String),
     /// An input is the setpoint of a task, for which mode 9 has no source; what it is.
+    #[error(
+        "input `{0}`: mode 9 has no source for it: on the robot it is given a goal, never {1}; only policies of \
+         the goal task can be exported"
+    )]
     Setpoint(String, &'static str),
     /// A layer has not as many weights or biases as it must: which, and what is wrong.
+    #[error("{0} has {1} values: must be {2}")]
     Count(String, usize, usize),
     /// A weight or bias is not finite, or too large.
+    #[error(
+        "{0} = {1}: must be a finite number that 8 bits can hold, less than 127; train with smaller weights"
+    )]
     Number(String, f64),
     /// The centre or scale of an input makes no sense, and what it must be.
+    #[error("{0} = {1}: must be {2}")]
     Input(String, f64, &'static str),
     /// There are too many or too few of something; the robot's limits.
+    #[error("{0}: there are {1}, must be {limits}", limits = within(.2))]
     Shape(String, usize, RangeInclusive<usize>),
     /// The file that was made is not read.
+    #[error(transparent)]
     File(FileError),
 }
 
-impl fmt::Display for QuantiseError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Activation(name) => write!(
-                f,
-                "activation = {name:?}: the robot's neurons are clipped to -1..1, so that they need no table; train with \
-                 torch.nn.Hardtanh or jnp.clip, and say \"clip\""
-            ),
-            Self::Setpoint(name, what) => write!(
-                f,
-                "input `{name}`: mode 9 has no source for it: on the robot it is given a goal, never {what}; only policies \
-                 of the goal task can be exported"
-            ),
-            Self::Column(name) => {
-                let near = near_or_all(name, OBSERVED).join(", ");
-                write!(
-                    f,
-                    "`{name}` is no column of the observation; did you mean {near}?"
-                )
-            }
-            Self::Count(what, count, needed) => {
-                write!(f, "{what} has {count} values: must be {needed}")
-            }
-            Self::Number(what, value) => write!(
-                f,
-                "{what} = {value}: must be a finite number that 8 bits can hold, less than 127; train with smaller weights"
-            ),
-            Self::Input(what, value, must) => write!(f, "{what} = {value}: must be {must}"),
-            Self::Shape(what, count, limits) if limits.start() == limits.end() => {
-                write!(f, "{what}: there are {count}, must be {}", limits.end())
-            }
-            Self::Shape(what, count, limits) => write!(
-                f,
-                "{what}: there are {count}, must be {} to {}",
-                limits.start(),
-                limits.end()
-            ),
-            Self::File(error) => error.fmt(f),
-        }
+fn within(limits: &RangeInclusive<usize>) -> String {
+    match (limits.start(), limits.end()) {
+        (least, most) if least == most => most.to_string(),
+        (least, most) => format!("{least} to {most}"),
     }
 }
-
-impl std::error::Error for QuantiseError {}
 
 /// The policy of a network, in a file of this title.
 ///

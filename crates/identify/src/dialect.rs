@@ -2,19 +2,12 @@
 //! first line that names the separator, UTF-16, a byte-order mark, lines ended as on an old Macintosh.
 
 use std::borrow::Cow;
-use std::fmt;
+use thiserror::Error;
 
 /// Bytes that are no text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("is no text; give a CSV")]
 pub struct NoText;
-
-impl fmt::Display for NoText {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("is no text; give a CSV")
-    }
-}
-
-impl std::error::Error for NoText {}
 
 /// The text of a CSV of numbers with commas between the columns and points in the numbers, whatever stood there. Lines
 /// stay lines, but for a first one that only names the separator (`sep=;`), which a spreadsheet does not count either.

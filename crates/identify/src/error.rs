@@ -2,11 +2,13 @@
 
 use std::fmt;
 use std::path::PathBuf;
+use thiserror::Error;
 
 /// Why a run could not be identified. Each message names the place and the remedy.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum IdentifyError {
     /// A file cannot be read or is no CSV.
+    #[error("{path}: {cause}")]
     Read {
         /// The file.
         path: PathBuf,
@@ -14,6 +16,10 @@ pub enum IdentifyError {
         cause: String,
     },
     /// The columns are not those of a mode that records PWM.
+    #[error(
+        "{path}: no columns dt_ms, pwm_a, pwm_b with speeds or distances in `{found}`; give a log of modes 1 to 7, \
+         or that of another program as `rumbo import` makes it"
+    )]
     Header {
         /// The file.
         path: PathBuf,
@@ -21,6 +27,7 @@ pub enum IdentifyError {
         found: String,
     },
     /// A cell of a log is not what it should be.
+    #[error("{path}, line {line}, column {column}: `{value}`, allowed is {allowed}")]
     Value {
         /// The file.
         path: PathBuf,
@@ -34,12 +41,21 @@ pub enum IdentifyError {
         allowed: &'static str,
     },
     /// A log of ranges cannot be used.
+    #[error(transparent)]
     Sonar(SonarLogError),
     /// No log shows speeds or a distance ahead.
+    #[error(
+        "no log shows wheel speeds (modes 5 to 7) or a wall ahead (modes 1, 2); add one that does"
+    )]
     NothingToFit,
     /// There is one log only, and it is to be left out.
+    #[error("there is one log only; add others to fit it without")]
     NothingLeft,
     /// No common plant explains these logs.
+    #[error(
+        "{one} and {other} contradict each other: no common robot explains both (the errors of the first are \
+         {ratio:.2} times those of a fit of its own); give the logs of one robot with one wiring"
+    )]
     Contradiction {
         /// The one that the common fit explains worst.
         one: String,
@@ -49,55 +65,12 @@ pub enum IdentifyError {
         ratio: f64,
     },
     /// The optimiser failed.
+    #[error("the fit did not converge: {0}")]
     Optimiser(String),
     /// Somebody wanted it to end.
+    #[error("interrupted")]
     Interrupted,
 }
-
-impl fmt::Display for IdentifyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Read { path, cause } => write!(f, "{}: {cause}", path.display()),
-            Self::Header { path, found } => write!(
-                f,
-                "{}: no columns dt_ms, pwm_a, pwm_b with speeds or distances in `{found}`; give a log of modes 1 to 7, or that of another program as `rumbo import` makes it",
-                path.display()
-            ),
-            Self::Value {
-                path,
-                line,
-                column,
-                value,
-                allowed,
-            } => {
-                write!(
-                    f,
-                    "{}, line {line}, column {column}: `{value}`, allowed is {allowed}",
-                    path.display()
-                )
-            }
-            Self::Sonar(error) => error.fmt(f),
-            Self::NothingToFit => {
-                write!(
-                    f,
-                    "no log shows wheel speeds (modes 5 to 7) or a wall ahead (modes 1, 2); add one that does"
-                )
-            }
-            Self::NothingLeft => {
-                write!(f, "there is one log only; add others to fit it without")
-            }
-            Self::Contradiction { one, other, ratio } => write!(
-                f,
-                "{one} and {other} contradict each other: no common robot explains both (the errors of the first are {ratio:.2} \
-                 times those of a fit of its own); give the logs of one robot with one wiring"
-            ),
-            Self::Optimiser(cause) => write!(f, "the fit did not converge: {cause}"),
-            Self::Interrupted => f.write_str("interrupted"),
-        }
-    }
-}
-
-impl std::error::Error for IdentifyError {}
 
 /// A log of ranges that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]

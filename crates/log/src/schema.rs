@@ -50,61 +50,42 @@ pub(crate) enum Topic {
 }
 
 impl Topic {
-    /// All of them, in the order of their numbers.
-    pub(crate) const ALL: [Self; 20] = [
-        Self::Telemetry,
-        Self::State,
-        Self::Parameters,
-        Self::Events,
-        Self::Estimated,
-        Self::True,
-        Self::World,
-        Self::Body,
-        Self::Frames,
-        Self::ServoFrame,
-        Self::FixedFrames,
-        Self::Scene,
-        Self::FromRobot,
-        Self::ToRobot,
-        Self::Console,
-        Self::Digest,
-        Self::Truth,
-        Self::Printed,
-        Self::Loops,
-        Self::Others,
+    /// All of them, in the order of their numbers, each with its name in the log.
+    pub(crate) const ALL: [(Self, &str); 20] = [
+        (Self::Telemetry, "/telemetry"),
+        (Self::State, "/state"),
+        (Self::Parameters, "/parameters"),
+        (Self::Events, "/events"),
+        (Self::Estimated, "/pose/estimated"),
+        (Self::True, "/pose/true"),
+        (Self::World, "/world"),
+        (Self::Body, "/robot"),
+        (Self::Frames, "/frames"),
+        (Self::ServoFrame, "/frames/servo"),
+        (Self::FixedFrames, "/frames/fixed"),
+        (Self::Scene, "/scene"),
+        (Self::FromRobot, "/link/from_robot"),
+        (Self::ToRobot, "/link/to_robot"),
+        (Self::Console, "/console"),
+        (Self::Digest, "/digest"),
+        (Self::Truth, "/truth"),
+        (Self::Printed, "/printed"),
+        (Self::Loops, "/loops"),
+        (Self::Others, "/pose/others"),
     ];
 
     /// Its name in the log.
     #[must_use]
     pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Telemetry => "/telemetry",
-            Self::State => "/state",
-            Self::Parameters => "/parameters",
-            Self::Events => "/events",
-            Self::Estimated => "/pose/estimated",
-            Self::True => "/pose/true",
-            Self::World => "/world",
-            Self::Body => "/robot",
-            Self::Frames => "/frames",
-            Self::ServoFrame => "/frames/servo",
-            Self::FixedFrames => "/frames/fixed",
-            Self::Scene => "/scene",
-            Self::FromRobot => "/link/from_robot",
-            Self::ToRobot => "/link/to_robot",
-            Self::Console => "/console",
-            Self::Digest => "/digest",
-            Self::Truth => "/truth",
-            Self::Printed => "/printed",
-            Self::Loops => "/loops",
-            Self::Others => "/pose/others",
-        }
+        let (_, name) = Self::ALL[self as usize];
+        name
     }
 
     /// The topic of this name.
     #[must_use]
     pub(crate) fn find(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|topic| topic.name() == name)
+        let found = Self::ALL.into_iter().find(|(_, known)| *known == name);
+        found.map(|(topic, _)| topic)
     }
 
     /// Whether it is written again where nothing changes, for who looks at a part of a log: viewers keep frames.

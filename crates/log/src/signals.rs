@@ -134,7 +134,7 @@ fn true_range(truth: &Truth, sonar: SonarId) -> f64 {
 
 /// The signals, in the order of a row. A line here brings one into logs, tables, Python and the page.
 #[rustfmt::skip]
-pub const SIGNALS: [Signal; 50] = [
+pub const SIGNALS: &[Signal] = &[
     unplotted("t_s", |s| (s.t_ms as f64 / 1e3) as f32),
     unplotted("mode", |s| f32::from(s.mode as u8)),
     unplotted("state", |s| f32::from(s.telemetry.state)),
@@ -191,7 +191,8 @@ impl Sample {
     /// The values of the row.
     #[must_use]
     pub fn row(&self) -> Row {
-        Row::new(self.t_ms, SIGNALS.map(|signal| (signal.value)(self)))
+        let value = |column: usize| (SIGNALS[column].value)(self);
+        Row::new(self.t_ms, std::array::from_fn(value))
     }
 
     /// A sample of which only the telemetry is known.

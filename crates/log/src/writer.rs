@@ -169,7 +169,7 @@ impl<W: Write> LogWriter<W> {
     /// What `into` does not take.
     pub fn finish(mut self) -> io::Result<W> {
         self.put_joined()?;
-        for topic in Topic::ALL {
+        for (topic, _) in Topic::ALL {
             self.put_still(topic)?;
         }
         self.log.finish()

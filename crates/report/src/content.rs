@@ -11,12 +11,13 @@
 use crate::language::Language;
 use include_dir::{Dir, include_dir};
 use std::borrow::Cow;
-use std::fmt;
+use thiserror::Error;
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/content");
 
 /// What is wrong in a file of the report's content: which file, which line, what, and what to do.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{file}:{line}: {what}")]
 pub struct ContentError {
     /// Path from the project's folder.
     pub file: String,
@@ -25,15 +26,6 @@ pub struct ContentError {
     /// What is wrong, and the remedy.
     pub what: String,
 }
-
-impl fmt::Display for ContentError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, line, what } = self;
-        write!(f, "{file}:{line}: {what}")
-    }
-}
-
-impl std::error::Error for ContentError {}
 
 /// A file of the content.
 #[derive(Clone, Debug)]

@@ -6,111 +6,93 @@ use rumbo_control::mode::ReferenceKind;
 use rumbo_experiment::files::ScenarioFile;
 use rumbo_wire::Command;
 
-/// A metric's name, what its value is multiplied with to be shown, and the unit then.
+/// A metric's name, and the unit that people read it in.
 struct Known {
     stem: &'static str,
     name: Text,
-    factor: f64,
     unit: Text,
 }
 
-const fn known(stem: &'static str, name: Text, factor: f64, unit: &'static str) -> Known {
+const fn known(stem: &'static str, name: Text, unit: &'static str) -> Known {
     Known {
         stem,
         name,
-        factor,
         unit: same(unit),
     }
 }
 
-const PWM: f64 = 255.0;
-
 const KNOWN: &[Known] = &[
-    known("contacts", word("contacts-with-an-obstacle"), 1.0, ""),
-    known("control_period_s", word("control-period"), 1000.0, "ms"),
+    known("contacts", word("contacts-with-an-obstacle"), ""),
+    known("control_period_s", word("control-period"), "ms"),
     known(
         "reverse_drive_rad_s",
         word("wheel-driven-against-its-motion"),
-        RPM,
         "rpm",
     ),
     Known {
         stem: "telemetry_hz",
         name: word("telemetry"),
-        factor: 1.0,
         unit: word("frames-s"),
     },
-    known("settling_s", word("settling-time"), 1.0, "s"),
-    known("within_2cm_s", word("time-until-within-2-cm"), 1.0, "s"),
-    known("rise_s", word("rise-time"), 1.0, "s"),
-    known("overshoot_m", word("overshoot"), CM, "cm"),
-    known("overshoot_rad_s", word("overshoot"), RPM, "rpm"),
-    known("steady_error_m", word("steady-error"), CM, "cm"),
-    known("steady_error_rad_s", word("steady-error"), RPM, "rpm"),
-    known("rms_m", word("error-rms"), CM, "cm"),
-    known("rms_rad_s", word("error-rms"), RPM, "rpm"),
-    known("ripple_m", word("ripple-standard-deviation"), CM, "cm"),
-    known(
-        "ripple_rad_s",
-        word("ripple-standard-deviation"),
-        RPM,
-        "rpm",
-    ),
-    known("angle_rad", word("angle-to-the-wall-at-rest"), DEG, "°"),
-    known("cruise_m_s", word("slowest-along-the-wall"), 1.0, "m/s"),
-    known("distance_rms_m", word("distance-error-rms"), CM, "cm"),
-    known("distance_worst_m", word("distance-error-worst"), CM, "cm"),
-    known("heading_rad", word("true-drift-of-the-heading"), DEG, "°"),
-    known("sideways_m", word("true-drift-sideways"), CM, "cm"),
-    known("forward_m", word("way-ahead"), 1.0, "m"),
-    known("left_rad_s", word("speed-of-the-left-wheel"), RPM, "rpm"),
-    known("right_rad_s", word("speed-of-the-right-wheel"), RPM, "rpm"),
-    known("end_error_m", word("true-distance-from-the-end"), CM, "cm"),
-    known("finish_s", word("time-to-the-end"), 1.0, "s"),
-    known("odometry_rms_m", word("off-the-route-rms"), CM, "cm"),
-    known("odometry_worst_m", word("off-the-route-worst"), CM, "cm"),
-    known("true_rms_m", word("truly-off-the-route-rms"), CM, "cm"),
-    known("true_worst_m", word("truly-off-the-route-worst"), CM, "cm"),
-    known("path_m", word("way-driven"), 1.0, "m"),
+    known("settling_s", word("settling-time"), "s"),
+    known("within_2cm_s", word("time-until-within-2-cm"), "s"),
+    known("rise_s", word("rise-time"), "s"),
+    known("overshoot_m", word("overshoot"), "cm"),
+    known("overshoot_rad_s", word("overshoot"), "rpm"),
+    known("steady_error_m", word("steady-error"), "cm"),
+    known("steady_error_rad_s", word("steady-error"), "rpm"),
+    known("rms_m", word("error-rms"), "cm"),
+    known("rms_rad_s", word("error-rms"), "rpm"),
+    known("ripple_m", word("ripple-standard-deviation"), "cm"),
+    known("ripple_rad_s", word("ripple-standard-deviation"), "rpm"),
+    known("angle_rad", word("angle-to-the-wall-at-rest"), "°"),
+    known("cruise_m_s", word("slowest-along-the-wall"), "m/s"),
+    known("distance_rms_m", word("distance-error-rms"), "cm"),
+    known("distance_worst_m", word("distance-error-worst"), "cm"),
+    known("heading_rad", word("true-drift-of-the-heading"), "°"),
+    known("sideways_m", word("true-drift-sideways"), "cm"),
+    known("forward_m", word("way-ahead"), "m"),
+    known("left_rad_s", word("speed-of-the-left-wheel"), "rpm"),
+    known("right_rad_s", word("speed-of-the-right-wheel"), "rpm"),
+    known("end_error_m", word("true-distance-from-the-end"), "cm"),
+    known("finish_s", word("time-to-the-end"), "s"),
+    known("odometry_rms_m", word("off-the-route-rms"), "cm"),
+    known("odometry_worst_m", word("off-the-route-worst"), "cm"),
+    known("true_rms_m", word("truly-off-the-route-rms"), "cm"),
+    known("true_worst_m", word("truly-off-the-route-worst"), "cm"),
+    known("path_m", word("way-driven"), "m"),
     known(
         "contact_speed_m_s",
         word("speed-of-the-hardest-contact"),
-        1.0,
         "m/s",
     ),
-    known("error_m", word("true-distance-from-the-goal"), CM, "cm"),
-    known("excess_m", word("excess-error"), CM, "cm"),
-    known("time_s", word("time"), 1.0, "s"),
-    known("reached", word("goals-reached"), 1.0, ""),
-    known("unreachable", word("goals-given-up"), 1.0, ""),
-    known("total_time_s", word("time-to-the-last-arrival"), 1.0, "s"),
-    known(
-        "clearance_m",
-        word("least-distance-from-an-obstacle"),
-        CM,
-        "cm",
-    ),
+    known("error_m", word("true-distance-from-the-goal"), "cm"),
+    known("excess_m", word("excess-error"), "cm"),
+    known("time_s", word("time"), "s"),
+    known("reached", word("goals-reached"), ""),
+    known("unreachable", word("goals-given-up"), ""),
+    known("total_time_s", word("time-to-the-last-arrival"), "s"),
+    known("clearance_m", word("least-distance-from-an-obstacle"), "cm"),
     known(
         "heading_error_rad",
         word("heading-error-on-the-straights"),
-        DEG,
         "°",
     ),
-    known("straights", word("straights-driven"), 1.0, ""),
-    known("turn_rad", word("turned-by"), DEG, "°"),
-    known("asymmetry", word("right-wheel-faster"), 100.0, "%"),
-    known("radius_m", word("radius-of-the-circle"), CM, "cm"),
-    known("left_dead_zone_duty", word("left-wheel-starts"), PWM, ""),
-    known("right_dead_zone_duty", word("right-wheel-starts"), PWM, ""),
-    known("left_stop_duty", word("left-wheel-stops"), PWM, ""),
-    known("right_stop_duty", word("right-wheel-stops"), PWM, ""),
-    known("wait_longest_s", word("longest-wait"), 1000.0, "ms"),
-    known("wait_share", word("time-spent-waiting"), 100.0, "%"),
-    known("turn_longest_s", word("longest-turn"), 1000.0, "ms"),
-    known("interrupt_longest_s", word("longest-interrupt"), 1e6, "µs"),
-    known("interrupt_float_s", word("float-in-interrupts"), 1e6, "µs"),
-    known("stack_bytes", word("depth-of-the-stack"), 1.0, "bytes"),
-    known("heap_calls", word("calls-of-the-heap"), 1.0, ""),
+    known("straights", word("straights-driven"), ""),
+    known("turn_rad", word("turned-by"), "°"),
+    known("asymmetry", word("right-wheel-faster"), "%"),
+    known("radius_m", word("radius-of-the-circle"), "cm"),
+    known("left_dead_zone_duty", word("left-wheel-starts"), ""),
+    known("right_dead_zone_duty", word("right-wheel-starts"), ""),
+    known("left_stop_duty", word("left-wheel-stops"), ""),
+    known("right_stop_duty", word("right-wheel-stops"), ""),
+    known("wait_longest_s", word("longest-wait"), "ms"),
+    known("wait_share", word("time-spent-waiting"), "%"),
+    known("turn_longest_s", word("longest-turn"), "ms"),
+    known("interrupt_longest_s", word("longest-interrupt"), "µs"),
+    known("interrupt_float_s", word("float-in-interrupts"), "µs"),
+    known("stack_bytes", word("depth-of-the-stack"), "bytes"),
+    known("heap_calls", word("calls-of-the-heap"), ""),
 ];
 
 const PROGRAM: Text = word("of-the-program");
@@ -135,45 +117,34 @@ pub(crate) struct Shown {
 pub(crate) fn shown(language: Language, scenario: &ScenarioFile, key: &str) -> Option<Shown> {
     let (prefix, stem) = key.split_once('.').unwrap_or(("", key));
     let number = |name: &str| -> Option<usize> { prefix.strip_prefix(name)?.parse().ok() };
+    let numbered = |name: &str, text: Text, value: &str| {
+        number(name).map(|number| text.with(language, &[(value, number.to_string())]))
+    };
+    let step = || {
+        let number = number("step")?;
+        let mut references = step_references(language, scenario).into_iter();
+        let reference = references.nth(number.checked_sub(1)?).unwrap_or_default();
+        let values = [("number", number.to_string()), ("reference", reference)];
+        Some(STEP.with(language, &values))
+    };
+    let of = match prefix {
+        "after_3_m" => Some(AFTER.of(language).to_owned()),
+        "program" => Some(PROGRAM.of(language).to_owned()),
+        "end" => Some(END.of(language).to_owned()),
+        _ => step()
+            .or_else(|| numbered("goal", GOAL, "number"))
+            .or_else(|| numbered("up", UP, "percent"))
+            .or_else(|| numbered("down", DOWN, "percent")),
+    };
     let turn = stem
         .strip_prefix("turn")
         .and_then(|rest| rest.strip_suffix("_rad"));
-    let (of, stem) = if let Some(index) = number("step") {
-        let reference = step_references(language, scenario)
-            .into_iter()
-            .nth(index - 1);
-        (
-            STEP.with(
-                language,
-                &[
-                    ("number", &index.to_string()),
-                    ("reference", &reference.unwrap_or_default()),
-                ],
-            ),
-            stem,
-        )
-    } else if let Some(index) = number("goal") {
-        (GOAL.with(language, &[("number", &index.to_string())]), stem)
-    } else if let Some(percent) = number("up") {
-        (
-            UP.with(language, &[("percent", &percent.to_string())]),
-            stem,
-        )
-    } else if let Some(percent) = number("down") {
-        (
-            DOWN.with(language, &[("percent", &percent.to_string())]),
-            stem,
-        )
-    } else if prefix == "after_3_m" {
-        (AFTER.of(language).to_owned(), stem)
-    } else if prefix == "program" {
-        (PROGRAM.of(language).to_owned(), stem)
-    } else if prefix == "end" {
-        (END.of(language).to_owned(), stem)
-    } else if let Some(index) = turn.filter(|index| !index.is_empty()) {
-        (TURN.with(language, &[("number", index)]), "turn_rad")
-    } else {
-        (prefix.to_owned(), stem)
+    let (of, stem) = match (of, turn) {
+        (Some(of), _) => (of, stem),
+        (None, Some(index)) if !index.is_empty() => {
+            (TURN.with(language, &[("number", index)]), "turn_rad")
+        }
+        (None, _) => (prefix.to_owned(), stem),
     };
     let shown = bare(language, stem)?;
     let name = match of.is_empty() {
@@ -190,9 +161,23 @@ pub(crate) fn bare(language: Language, stem: &str) -> Option<Shown> {
     Some(Shown {
         name: capital(name),
         bare: name,
-        factor: known.factor,
+        factor: factor(known),
         unit: known.unit.of(language),
     })
+}
+
+/// What its value is multiplied with to be shown; a duty is shown as PWM, of 255.
+fn factor(known: &Known) -> f64 {
+    match known.unit {
+        Text::Same("cm") => CM,
+        Text::Same("rpm") => RPM,
+        Text::Same("°") => DEG,
+        Text::Same("%") => 100.0,
+        Text::Same("ms") => 1e3,
+        Text::Same("µs") => 1e6,
+        Text::Same("") if known.stem.ends_with("_duty") => 255.0,
+        _ => 1.0,
+    }
 }
 
 /// The reference of each step of a run, as its metrics count them: those in force while the robot is armed.

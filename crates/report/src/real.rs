@@ -9,7 +9,7 @@ pub use folder::read;
 use crate::text::{Text, word};
 use rumbo_wire::text::TextRow;
 use std::collections::BTreeMap;
-use std::fmt;
+use thiserror::Error;
 
 /// A recorded run.
 #[derive(Clone, Debug)]
@@ -50,16 +50,9 @@ pub struct Real {
 }
 
 /// Why the recordings of a folder cannot be read: what, where, what to do.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
 pub struct RealError(String);
-
-impl fmt::Display for RealError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for RealError {}
 
 /// Why a file is shown nowhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

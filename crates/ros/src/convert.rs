@@ -14,8 +14,8 @@ use crate::types::{Byte, Covariance, Message, encode};
 use rumbo_log::{
     Level, Log, LoggedEvent, MapPose, Row, SceneObstacle, SonarMount, State, TaskState, compose,
 };
-use std::fmt;
 use std::time::UNIX_EPOCH;
+use thiserror::Error;
 
 /// The sonars' signals, by `SonarId` number.
 const RANGES: [&str; 3] = ["range_left_m", "range_right_m", "range_front_m"];
@@ -34,31 +34,23 @@ pub struct TopicMessage {
 }
 
 /// Why a log is no bag.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 pub enum ConvertError {
     /// It has no telemetry.
+    #[error(
+        "holds no telemetry of a robot: no pose and no ranges; --format csv writes what there is"
+    )]
     NoTelemetry,
     /// Nothing tells the size of wheels and base.
+    #[error(
+        "tells neither the radii of the wheels nor the distance between them: the robot's parameters were not \
+         received"
+    )]
     NoGeometry,
     /// A message could not be encoded.
+    #[error("a message cannot be encoded: {0}")]
     Encoding(cdr_encoding::Error),
 }
-
-impl fmt::Display for ConvertError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoTelemetry => f.write_str(
-                "holds no telemetry of a robot: no pose and no ranges; --format csv writes what there is",
-            ),
-            Self::NoGeometry => f.write_str(
-                "tells neither the radii of the wheels nor the distance between them: the robot's parameters were not received",
-            ),
-            Self::Encoding(error) => write!(f, "a message cannot be encoded: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for ConvertError {}
 
 /// All messages of a log, in order of time; with the sonars as a scan besides, if it is wanted.
 ///

@@ -1,7 +1,7 @@
 //! Watches the link and reports trouble, at limited intervals: a silent one, undecodable bytes, a full link, a noisy one.
 
 use crate::client::LinkFigures;
-use std::fmt;
+use thiserror::Error;
 
 /// Speed of the robot's Bluetooth module \[baud\].
 pub const DEFAULT_BAUD: u32 = 9_600;
@@ -23,23 +23,13 @@ const TELEMETRY_HZ: u32 = 25;
 const HEARTBEAT_BYTES_S: u32 = 47;
 
 /// A link of this speed carries too few heartbeats: the robot would stop again and again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error(
+    "{baud} baud carry {bytes_s} bytes/s, too few for the heartbeats ({HEARTBEAT_BYTES_S} bytes/s) and answers that \
+     keep the robot going; it needs at least {least}, its own speed is {DEFAULT_BAUD}",
+    baud = .0, bytes_s = .0 / 10, least = 20 * HEARTBEAT_BYTES_S
+)]
 pub struct BaudTooLow(u32);
-
-impl fmt::Display for BaudTooLow {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(baud) = self;
-        write!(
-            f,
-            "{baud} baud carry {} bytes/s, too few for the heartbeats ({HEARTBEAT_BYTES_S} bytes/s) and answers that keep the robot going; \
-             it needs at least {}, its own speed is {DEFAULT_BAUD}",
-            baud / 10,
-            20 * HEARTBEAT_BYTES_S
-        )
-    }
-}
-
-impl std::error::Error for BaudTooLow {}
 
 /// The limitation of a link of this speed, if any.
 ///

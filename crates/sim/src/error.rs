@@ -4,12 +4,13 @@ use crate::boards::Board;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::ParamId;
 use rumbo_wire::Refusal;
-use std::fmt;
+use thiserror::Error;
 
 /// Values of a configuration that do not fit together.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum SimError {
     /// The robot refuses a parameter.
+    #[error("parameter {} = {value}: {}", .id.name(), .refusal.explanation())]
     Parameter {
         /// Which.
         id: ParamId,
@@ -19,6 +20,11 @@ pub enum SimError {
         refusal: Refusal,
     },
     /// The report has no program for this mode with these sonars.
+    #[error(
+        "the report's program does not do mode {} on rig {rig}; leave out the program baseline or choose another \
+         scenario",
+        .mode.name()
+    )]
     NoBaseline {
         /// The mode.
         mode: ModeId,
@@ -26,6 +32,11 @@ pub enum SimError {
         rig: String,
     },
     /// A wiring's link has the pins of a USART, exchanged.
+    #[error(
+        "wiring {wiring}: link_rx and link_tx are exchanged: the {} receives on one and sends on the other; write \
+         {}",
+        .board.title, right_way(.board, *.usart)
+    )]
     LinkExchanged {
         /// Name of the wiring.
         wiring: String,
@@ -36,33 +47,8 @@ pub enum SimError {
     },
 }
 
-impl fmt::Display for SimError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Parameter { id, value, refusal } => {
-                let (name, why) = (id.name(), refusal.explanation());
-                write!(f, "parameter {name} = {value}: {why}")
-            }
-            Self::NoBaseline { mode, rig } => write!(
-                f,
-                "the report's program does not do mode {} on rig {rig}; leave out the program baseline or choose another scenario",
-                mode.name()
-            ),
-            Self::LinkExchanged {
-                wiring,
-                board,
-                usart,
-            } => {
-                let [receive, transmit] = board.usart_pins(*usart);
-                write!(
-                    f,
-                    "wiring {wiring}: link_rx and link_tx are exchanged: the {} receives on one and sends on the other; \
-                     write link_rx = {receive}, link_tx = {transmit}",
-                    board.title
-                )
-            }
-        }
-    }
+/// The pins of a USART as a wiring names them.
+fn right_way(board: &Board, usart: u8) -> String {
+    let [receive, transmit] = board.usart_pins(usart);
+    format!("link_rx = {receive}, link_tx = {transmit}")
 }
-
-impl std::error::Error for SimError {}

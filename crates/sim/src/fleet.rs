@@ -13,6 +13,7 @@ use rumbo_plant::moving::{Body, Course};
 use rumbo_plant::sonar::Ping;
 use rumbo_plant::world::{Obstacle, ShapeError};
 use std::borrow::BorrowMut;
+use thiserror::Error;
 
 /// Longest step, and the grid it keeps to [us].
 const STEP_US: u64 = 1_000;
@@ -33,38 +34,21 @@ pub struct Fleet {
 }
 
 /// Why robots cannot be in one world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum FleetError {
     /// These two would stand inside each other.
+    #[error("robots {one} and {other} stand inside each other; move one of them", one = .0 + 1, other = .1 + 1)]
     Inside(usize, usize),
     /// There are none.
+    #[error("there is no robot")]
     Empty,
     /// There are more than a world has room for.
+    #[error("there are more robots and movers than the 63 that fit; leave some out")]
     TooMany,
     /// Their clocks show different times.
+    #[error("the robots' clocks show different times")]
     Clocks,
 }
-
-impl std::fmt::Display for FleetError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Inside(one, other) => {
-                let (one, other) = (one + 1, other + 1);
-                write!(
-                    f,
-                    "robots {one} and {other} stand inside each other; move one of them"
-                )
-            }
-            Self::TooMany => {
-                f.write_str("there are more robots and movers than the 63 that fit; leave some out")
-            }
-            Self::Empty => f.write_str("there is no robot"),
-            Self::Clocks => f.write_str("the robots' clocks show different times"),
-        }
-    }
-}
-
-impl std::error::Error for FleetError {}
 
 /// What a robot met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,12 +4,12 @@
 //! without an end nobody writes any more.
 
 use rumbo_log::{Log, ReadError, Summary};
-use std::fmt;
 #[cfg(not(windows))]
 use std::fs::TryLockError;
 use std::fs::{File, Metadata};
 use std::io::{self, BufReader, BufWriter, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use thiserror::Error;
 
 /// Reads a log.
 ///
@@ -154,27 +154,41 @@ fn of(path: &Path) -> impl FnOnce(ReadError) -> LogError {
 }
 
 /// What is wrong with a log's file.
-#[derive(Debug)]
+#[derive(Debug, Error)]
+#[error("{path}: {problem}")]
 pub struct LogError {
     path: PathBuf,
     problem: Problem,
 }
 
 /// What is wrong.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 pub(crate) enum Problem {
     /// It cannot be read, or is no log.
+    #[error("{0}{hint}", hint = hint(.0))]
     NotRead(ReadError),
     /// It cannot be made; the option that names another folder.
+    #[error("cannot be written ({0}); choose another folder {1}")]
     NotMade(io::Error, &'static str),
     /// No thread to write it.
+    #[error("no thread to write it ({0})")]
     NoThread(io::Error),
     /// It could not be written to its end.
+    #[error("recording ended: the log cannot be written ({0}); is the disk full?")]
     NotWritten(io::Error),
     /// The disk did not take all.
+    #[error("recording: the disk is slow; entries missing in the log: {0}")]
     Dropped(u64),
     /// The thread that wrote it panicked.
+    #[error("recording ended by a fault of its own; please report it")]
     Broken,
+}
+
+fn hint(error: &ReadError) -> &'static str {
+    match error {
+        ReadError::Unreadable(_) => "; `rumbo list logs` shows what there is",
+        _ => "",
+    }
 }
 
 impl LogError {
@@ -191,38 +205,5 @@ impl LogError {
     #[must_use]
     pub fn of(self, path: &Path) -> Self {
         Self::new(path, self.problem)
-    }
-}
-
-impl fmt::Display for LogError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.path.display(), self.problem)
-    }
-}
-
-impl std::error::Error for LogError {}
-
-impl fmt::Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotRead(error @ ReadError::Unreadable(_)) => {
-                write!(f, "{error}; `rumbo list logs` shows what there is")
-            }
-            Self::NotRead(error) => error.fmt(f),
-            Self::NotMade(error, option) => write!(
-                f,
-                "cannot be written ({error}); choose another folder {option}"
-            ),
-            Self::NoThread(error) => write!(f, "no thread to write it ({error})"),
-            Self::NotWritten(error) => write!(
-                f,
-                "recording ended: the log cannot be written ({error}); is the disk full?"
-            ),
-            Self::Dropped(entries) => write!(
-                f,
-                "recording: the disk is slow; entries missing in the log: {entries}"
-            ),
-            Self::Broken => f.write_str("recording ended by a fault of its own; please report it"),
-        }
     }
 }

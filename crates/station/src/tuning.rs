@@ -8,6 +8,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+use thiserror::Error;
 use tokio::sync::{Semaphore, oneshot, watch};
 use tokio::time::timeout;
 
@@ -21,16 +22,9 @@ const TOO_LONG: &str = "ended after an hour; ask for fewer runs";
 const BROKEN: &str = "a fault of the program; please report it";
 
 /// Why nothing was tuned, for a person.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
 pub struct NotTuned(pub String);
-
-impl fmt::Display for NotTuned {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for NotTuned {}
 
 /// What searches for parameters.
 pub trait Tuner: fmt::Debug + Send + Sync {

@@ -60,13 +60,7 @@ pub(crate) fn main() -> ExitCode {
         eprintln!("beside: --seeds N, --write or --seed N");
         return ExitCode::from(2);
     };
-    match compare(&args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("beside: {error}");
-            ExitCode::from(2)
-        }
-    }
+    crate::ended("beside", compare(&args).map(|()| true))
 }
 
 /// The runs in a seed's world, in order of [`NAMES`].

@@ -5,8 +5,6 @@ pub(crate) struct Figure {
     pub(crate) what: &'static str,
     /// A metric of the run; `measured.stepN` is the settling of a step by the speeds that the program measured.
     pub(crate) metric: &'static str,
-    /// From the metric's unit to the one shown.
-    pub(crate) factor: f64,
     pub(crate) unit: &'static str,
     /// What the recorded run shows, or the report says where no recording is left; NaN where it is read from the run.
     pub(crate) recorded: f64,
@@ -42,19 +40,15 @@ impl Experiment {
     }
 }
 
-const RPM: f64 = 30.0 / std::f64::consts::PI;
-
 const fn figure(
     what: &'static str,
     metric: &'static str,
-    factor: f64,
     unit: &'static str,
     recorded: f64,
 ) -> Figure {
     Figure {
         what,
         metric,
-        factor,
         unit,
         recorded,
     }
@@ -95,16 +89,10 @@ pub(crate) const EXPERIMENTS: [Experiment; 9] = [
         "mode1",
         Some("mode1_stop_at_wall.csv"),
         &[
-            figure(
-                "107 -> 30 cm, within 5 %",
-                "step1.settling_s",
-                1.0,
-                "s",
-                3.0,
-            ),
-            figure("overshoot", "step1.overshoot_m", 100.0, "cm", 0.6),
-            figure("30 -> 50 cm, within 5 %", "step2.settling_s", 1.0, "s", 1.2),
-            figure("period of the loop", "control_period_s", 1e3, "ms", 65.5),
+            figure("107 -> 30 cm, within 5 %", "step1.settling_s", "s", 3.0),
+            figure("overshoot", "step1.overshoot_m", "cm", 0.6),
+            figure("30 -> 50 cm, within 5 %", "step2.settling_s", "s", 1.2),
+            figure("period of the loop", "control_period_s", "ms", 65.5),
         ],
     ),
     experiment(
@@ -114,7 +102,6 @@ pub(crate) const EXPERIMENTS: [Experiment; 9] = [
         &[figure(
             "119 -> 30 cm, within 5 %",
             "step1.settling_s",
-            1.0,
             "s",
             3.4,
         )],
@@ -124,14 +111,8 @@ pub(crate) const EXPERIMENTS: [Experiment; 9] = [
         "mode3",
         Some("mode3_follow_wall.csv"),
         &[
-            figure("distance error, rms", "distance_rms_m", 100.0, "cm", 1.2),
-            figure(
-                "distance error, worst",
-                "distance_worst_m",
-                100.0,
-                "cm",
-                4.6,
-            ),
+            figure("distance error, rms", "distance_rms_m", "cm", 1.2),
+            figure("distance error, worst", "distance_worst_m", "cm", 4.6),
         ],
     ),
     Experiment {
@@ -142,27 +123,9 @@ pub(crate) const EXPERIMENTS: [Experiment; 9] = [
             "mode4",
             None,
             &[
-                figure(
-                    "59 -> 50 cm, within 2 cm",
-                    "step1.within_2cm_s",
-                    1.0,
-                    "s",
-                    7.1,
-                ),
-                figure(
-                    "50 -> 30 cm, within 2 cm",
-                    "step2.within_2cm_s",
-                    1.0,
-                    "s",
-                    6.3,
-                ),
-                figure(
-                    "30 -> 40 cm, within 2 cm",
-                    "step3.within_2cm_s",
-                    1.0,
-                    "s",
-                    9.0,
-                ),
+                figure("59 -> 50 cm, within 2 cm", "step1.within_2cm_s", "s", 7.1),
+                figure("50 -> 30 cm, within 2 cm", "step2.within_2cm_s", "s", 6.3),
+                figure("30 -> 40 cm, within 2 cm", "step3.within_2cm_s", "s", 9.0),
             ],
         )
     },
@@ -174,21 +137,14 @@ pub(crate) const EXPERIMENTS: [Experiment; 9] = [
             figure(
                 "0 -> 60 rpm, within 3.2 rpm",
                 "measured.step1",
-                1.0,
                 "s",
                 f64::NAN,
             ),
-            figure("50 -> 100 rpm", "measured.step3", 1.0, "s", f64::NAN),
-            figure("0 -> -100 rpm", "measured.step6", 1.0, "s", f64::NAN),
-            figure("0 -> 40 rpm", "measured.step9", 1.0, "s", f64::NAN),
-            figure(
-                "ripple at 60 rpm, mean",
-                "step1.ripple_rad_s",
-                RPM,
-                "rpm",
-                1.5,
-            ),
-            figure("period of the loop", "control_period_s", 1e3, "ms", 42.9),
+            figure("50 -> 100 rpm", "measured.step3", "s", f64::NAN),
+            figure("0 -> -100 rpm", "measured.step6", "s", f64::NAN),
+            figure("0 -> 40 rpm", "measured.step9", "s", f64::NAN),
+            figure("ripple at 60 rpm, mean", "step1.ripple_rad_s", "rpm", 1.5),
+            figure("period of the loop", "control_period_s", "ms", 42.9),
         ],
     ),
     Experiment {
@@ -198,16 +154,15 @@ pub(crate) const EXPERIMENTS: [Experiment; 9] = [
             "mode7",
             Some("mode7_square.csv"),
             &[
-                figure("once round", "finish_s", 1.0, "s", 30.0),
+                figure("once round", "finish_s", "s", 30.0),
                 figure(
                     "off the square by odometry, worst",
                     "odometry_worst_m",
-                    100.0,
                     "cm",
                     6.0,
                 ),
-                figure("the same, rms", "odometry_rms_m", 100.0, "cm", 2.4),
-                figure("period of the loop", "control_period_s", 1e3, "ms", 66.9),
+                figure("the same, rms", "odometry_rms_m", "cm", 2.4),
+                figure("period of the loop", "control_period_s", "ms", 66.9),
             ],
         )
     },
@@ -215,21 +170,21 @@ pub(crate) const EXPERIMENTS: [Experiment; 9] = [
         "mode 8, goals",
         "mode8-goals",
         &[
-            figure("all four", "total_time_s", 1.0, "s", 32.0),
-            figure("way", "path_m", 1.0, "m", 4.3),
+            figure("all four", "total_time_s", "s", 32.0),
+            figure("way", "path_m", "m", 4.3),
         ],
     ),
     mission(
         "mode 8, lane",
         "mode8-lane",
-        &[figure("four straights", "finish_s", 1.0, "s", 57.8)],
+        &[figure("four straights", "finish_s", "s", 57.8)],
     ),
     mission(
         "mode 8, obstacles",
         "mode8-obstacles",
         &[
-            figure("time", "total_time_s", 1.0, "s", 73.6),
-            figure("way", "path_m", 1.0, "m", 4.16),
+            figure("time", "total_time_s", "s", 73.6),
+            figure("way", "path_m", "m", 4.16),
         ],
     ),
 ];

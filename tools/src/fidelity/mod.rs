@@ -19,7 +19,7 @@ mod measured;
 mod place;
 mod robots;
 
-use crate::pages;
+use crate::{factor, pages};
 use arguments::Arguments;
 use days::Days;
 use figures::{EXPERIMENTS, Experiment};
@@ -33,13 +33,8 @@ use std::process::ExitCode;
 const PAGE: &str = "docs/theory/baseline.md";
 
 pub(crate) fn main() -> ExitCode {
-    match Arguments::read().and_then(|arguments| compare(&arguments)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("fidelity: {error}");
-            ExitCode::from(2)
-        }
-    }
+    let compared = Arguments::read().and_then(|arguments| compare(&arguments));
+    crate::ended("fidelity", compared.map(|()| true))
 }
 
 /// Prints the table and draws it.
@@ -127,7 +122,9 @@ fn runs(
                 _ => result.metrics.get(figure.metric).copied(),
             };
             let value = value.filter(|value| !value.is_nan());
-            values.push(value.map_or(f64::INFINITY, |value| value * figure.factor));
+            values.push(value.map_or(f64::INFINITY, |value| {
+                value * factor(figure.metric, figure.unit)
+            }));
         }
     })?;
     Ok(figures)

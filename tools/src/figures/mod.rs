@@ -4,8 +4,9 @@
 //! pages ──► runs (20 seeds of each program) ──► plot (SVG in docs/img/theory/) and table (Markdown between markers)
 //! ```
 //!
-//! Beside them it writes the page's table of signals. The text of a page between `<!-- figures:NAME -->` and `<!-- /figures -->` is replaced. The same sources give the
-//! same bytes: `--check` writes nothing and lists what is out of date.
+//! Beside them it writes the page's table of signals. The text of a page between `<!-- figures:NAME -->` and
+//! `<!-- /figures -->` is replaced. The same sources give the same bytes: `--check` writes nothing and lists what is out
+//! of date.
 
 #![allow(missing_docs)]
 
@@ -40,20 +41,16 @@ pub(crate) fn main() -> ExitCode {
         .collect();
     // The figures belong to the checkout that this program was built from.
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
-    match files(root, &only).and_then(|files| settle(root, &files, check)) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("figures: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    crate::ended(
+        "figures",
+        files(root, &only).and_then(|files| settle(root, &files, check)),
+    )
 }
 
 /// All figures, and the pages with their new sections; those of `only`, if it names any.
 fn files(root: &Path, only: &[&str]) -> Result<Vec<File>, String> {
     let mut files = Vec::new();
-    if only.is_empty() {
+    if only.is_empty() || only.contains(&signals::NAME) {
         files.push(signals::file());
     }
     for page in pages::PAGES {

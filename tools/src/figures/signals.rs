@@ -3,6 +3,9 @@
 use super::File;
 use rumbo_log::{SIGNALS, Signal};
 
+/// For `--only`.
+pub(super) const NAME: &str = "signals";
+
 const HEAD: &str = "// @ts-check
 /** The signals of a frame that are plotted. Written by `cargo xtask figures` from the table in crates/log/src/signals.rs. */
 

@@ -1,5 +1,6 @@
 //! Tables of metrics, a column per program.
 
+use crate::factor;
 use crate::figures::runs::Runs;
 
 /// One metric.
@@ -7,8 +8,6 @@ use crate::figures::runs::Runs;
 pub(crate) struct Row {
     pub(crate) what: &'static str,
     pub(crate) metric: &'static str,
-    /// From the metric's unit to the one shown.
-    pub(crate) factor: f64,
     pub(crate) unit: &'static str,
     /// The report's robot, from its report or its recorded run.
     pub(crate) real: &'static str,
@@ -20,14 +19,12 @@ pub(crate) struct Row {
 pub(crate) const fn row(
     what: &'static str,
     metric: &'static str,
-    factor: f64,
     unit: &'static str,
     real: &'static str,
 ) -> Row {
     Row {
         what,
         metric,
-        factor,
         unit,
         real,
         least_is_worst: false,
@@ -78,7 +75,7 @@ pub(crate) fn spread(row: &Row, runs: &Runs) -> String {
 
 fn in_words(value: f64, row: &Row) -> String {
     if value.is_finite() {
-        number(value * row.factor)
+        number(value * factor(row.metric, row.unit))
     } else {
         "never".into()
     }
@@ -100,9 +97,13 @@ fn cell(row: &Row, runs: &Runs) -> String {
 }
 
 fn with_unit(value: f64, row: &Row) -> String {
-    format!("{} {}", number(value * row.factor), row.unit)
-        .trim_end()
-        .to_owned()
+    format!(
+        "{} {}",
+        number(value * factor(row.metric, row.unit)),
+        row.unit
+    )
+    .trim_end()
+    .to_owned()
 }
 
 /// Two significant digits, three from 10 on.

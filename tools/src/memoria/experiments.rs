@@ -4,8 +4,6 @@
 pub(crate) struct Metric {
     pub(crate) what: &'static str,
     pub(crate) name: &'static str,
-    /// From the metric's unit to the one shown.
-    pub(crate) factor: f64,
     pub(crate) unit: &'static str,
 }
 
@@ -20,13 +18,8 @@ pub(crate) struct Experiment {
     pub(crate) metric: Metric,
 }
 
-const fn metric(what: &'static str, name: &'static str, factor: f64, unit: &'static str) -> Metric {
-    Metric {
-        what,
-        name,
-        factor,
-        unit,
-    }
+const fn metric(what: &'static str, name: &'static str, unit: &'static str) -> Metric {
+    Metric { what, name, unit }
 }
 
 pub(crate) const EXPERIMENTS: [Experiment; 12] = [
@@ -35,83 +28,83 @@ pub(crate) const EXPERIMENTS: [Experiment; 12] = [
         sketch: "mode1",
         duration_s: 9.0,
         line: "REF 30",
-        metric: metric("107 to 30 cm, within 5 %", "step1.settling_s", 1.0, "s"),
+        metric: metric("107 to 30 cm, within 5 %", "step1.settling_s", "s"),
     },
     Experiment {
         scenario: "mode2",
         sketch: "mode2",
         duration_s: 24.0,
         line: "REF 30",
-        metric: metric("119 to 30 cm, within 5 %", "step1.settling_s", 1.0, "s"),
+        metric: metric("119 to 30 cm, within 5 %", "step1.settling_s", "s"),
     },
     Experiment {
         scenario: "mode3",
         sketch: "mode3",
         duration_s: 28.0,
         line: "",
-        metric: metric("distance error, rms", "distance_rms_m", 100.0, "cm"),
+        metric: metric("distance error, rms", "distance_rms_m", "cm"),
     },
     Experiment {
         scenario: "mode4",
         sketch: "mode4",
         duration_s: 28.0,
         line: "REF 50",
-        metric: metric("59 to 50 cm, within 2 cm", "step1.within_2cm_s", 1.0, "s"),
+        metric: metric("59 to 50 cm, within 2 cm", "step1.within_2cm_s", "s"),
     },
     Experiment {
         scenario: "mode5",
         sketch: "mode5",
         duration_s: 45.5,
         line: "REF 60",
-        metric: metric("0 to 60 rpm, within 5 %", "step1.settling_s", 1.0, "s"),
+        metric: metric("0 to 60 rpm, within 5 %", "step1.settling_s", "s"),
     },
     Experiment {
         scenario: "mode5-reversal",
         sketch: "mode5",
         duration_s: 15.5,
         line: "REF 70",
-        metric: metric("70 to -100 rpm", "step2.settling_s", 1.0, "s"),
+        metric: metric("70 to -100 rpm", "step2.settling_s", "s"),
     },
     Experiment {
         scenario: "mode6",
         sketch: "mode6",
         duration_s: 26.0,
         line: "REF 40",
-        metric: metric("sideways after 3 m", "after_3_m.sideways_m", 100.0, "cm"),
+        metric: metric("sideways after 3 m", "after_3_m.sideways_m", "cm"),
     },
     Experiment {
         scenario: "mode7",
         sketch: "mode7",
         duration_s: 60.0,
         line: "",
-        metric: metric("once round", "finish_s", 1.0, "s"),
+        metric: metric("once round", "finish_s", "s"),
     },
     Experiment {
         scenario: "mode7-repeat",
         sketch: "mode7",
         duration_s: 60.0,
         line: "",
-        metric: metric("off the square in 60 s, true", "true_worst_m", 100.0, "cm"),
+        metric: metric("off the square in 60 s, true", "true_worst_m", "cm"),
     },
     Experiment {
         scenario: "mode8-goals",
         sketch: "mode8",
         duration_s: 150.0,
         line: "GOAL 1 1",
-        metric: metric("all four goals", "total_time_s", 1.0, "s"),
+        metric: metric("all four goals", "total_time_s", "s"),
     },
     Experiment {
         scenario: "mode8-obstacles",
         sketch: "mode8",
         duration_s: 150.0,
         line: "GOAL 2.5 0",
-        metric: metric("time", "total_time_s", 1.0, "s"),
+        metric: metric("time", "total_time_s", "s"),
     },
     Experiment {
         scenario: "mode8-lane",
         sketch: "lane",
         duration_s: 150.0,
         line: "",
-        metric: metric("time", "finish_s", 1.0, "s"),
+        metric: metric("time", "finish_s", "s"),
     },
 ];

@@ -8,7 +8,7 @@
 mod experiments;
 mod time;
 
-use crate::{pages, runs};
+use crate::{factor, pages, runs};
 use experiments::{EXPERIMENTS, Experiment, Metric};
 use rumbo_experiment::files::{FileError, Library, NativeProgram, Overrides, Setup};
 use rumbo_experiment::run::RunResult;
@@ -23,13 +23,8 @@ pub(crate) fn main() -> ExitCode {
         .first()
         .and_then(|first| first.parse().ok())
         .inspect(|_: &u64| drop(names.remove(0)));
-    match print(seeds.unwrap_or(SEEDS), &names) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("memoria: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    let printed = print(seeds.unwrap_or(SEEDS), &names);
+    crate::ended("memoria", printed.map(|()| true))
 }
 
 /// Prints the tables, and writes the complete ones.
@@ -171,7 +166,7 @@ fn with_unit(number: String, metric: &Metric) -> String {
 }
 
 fn shown(metric: &Metric, value: f64) -> String {
-    match value * metric.factor {
+    match value * factor(metric.name, metric.unit) {
         value if !value.is_finite() => "never".to_owned(),
         value if value.abs() >= 10.0 => format!("{value:.1}"),
         0.0 => "0".to_owned(),

@@ -29,9 +29,7 @@ struct Counts {
 
 /// Counts, and writes the file where that is asked for.
 pub(crate) fn measure(project: &Project) -> Result<Vec<Figure>, String> {
-    let found = count(project).map_err(|stop| match stop {
-        Stop::Failed(error) | Stop::Missing(error) => error,
-    })?;
+    let found = count(project)?;
     let known = read(project).map(|known| known.instructions);
     if std::env::var_os("RUMBO_BLESS").is_some() {
         let mut text = format!("{HEAD}rustc = \"{}\"\n\n[instructions]\n", found.rustc);

@@ -24,10 +24,8 @@ const ROBOT: &str = "robots/memoria.toml";
 
 /// Builds the image, or reports the missing tool.
 pub(crate) fn run(project: &Project) -> Result<bool, String> {
-    match build(project) {
-        Ok(()) => Ok(true),
-        Err(Stop::Failed(error) | Stop::Missing(error)) => Err(error),
-    }
+    build(project)?;
+    Ok(true)
 }
 
 /// Builds the image and checks it.

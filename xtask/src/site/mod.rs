@@ -58,13 +58,8 @@ const HEAD: &str = r#"  <meta http-equiv="Content-Security-Policy" content="defa
 
 /// Builds the site, or reports the missing tool.
 pub(crate) fn run(project: &Project) -> Result<bool, String> {
-    match build(project) {
-        Ok(site) => {
-            println!("{}", site.display());
-            Ok(true)
-        }
-        Err(Stop::Failed(error) | Stop::Missing(error)) => Err(error),
-    }
+    println!("{}", build(project)?.display());
+    Ok(true)
 }
 
 /// Builds the site anew and returns its folder.

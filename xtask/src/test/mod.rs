@@ -50,6 +50,14 @@ pub(crate) enum Stop {
     Missing(String),
 }
 
+impl From<Stop> for String {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::Failed(error) | Stop::Missing(error) => error,
+        }
+    }
+}
+
 impl From<String> for Stop {
     fn from(error: String) -> Self {
         Self::Failed(error)

@@ -19,34 +19,25 @@ use gimli::{EndianSlice, LittleEndian, SectionId, constants};
 use object::{Object, ObjectSection};
 use rumbo_emulator::image::Image;
 use std::collections::BTreeSet;
-use std::fmt;
 use std::path::{Path, PathBuf};
+use thiserror::Error;
 
 /// Why an image cannot be debugged.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SymbolError {
     /// It is no ELF file, or a broken one.
+    #[error("it is no ELF file ({0}); give the .elf that the linker made")]
     Elf(String),
     /// It has no lines.
+    #[error(
+        "it has no debugging information; compile and link it with -gdwarf-4 -Og (plain -g of gcc-avr 5.4 writes \
+         an older kind), or give the folder of the sketch"
+    )]
     NoDebugInformation,
     /// They cannot be read.
+    #[error("its debugging information cannot be read: {0}")]
     Dwarf(String),
 }
-
-impl fmt::Display for SymbolError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            SymbolError::Elf(what) => write!(f, "it is no ELF file ({what}); give the .elf that the linker made"),
-            SymbolError::NoDebugInformation => f.write_str(
-                "it has no debugging information; compile and link it with -gdwarf-4 -Og (plain -g of gcc-avr 5.4 writes an \
-                 older kind), or give the folder of the sketch",
-            ),
-            SymbolError::Dwarf(what) => write!(f, "its debugging information cannot be read: {what}"),
-        }
-    }
-}
-
-impl std::error::Error for SymbolError {}
 
 /// The symbols of a program.
 #[derive(Debug)]

@@ -2,6 +2,7 @@
 
 use rumbo_sim::SimError;
 use std::{fmt, io};
+use thiserror::Error;
 
 /// One problem in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,9 +25,10 @@ impl fmt::Display for FileProblem {
 }
 
 /// Why a robot, a world or a scenario cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum FileError {
     /// No built-in file and no setting has this name.
+    #[error("unknown {kind} `{name}`; {}", did_you_mean(.near))]
     Unknown {
         /// What was requested: `scenario`, `world`, `robot`, `rig`, ...
         kind: &'static str,
@@ -36,6 +38,7 @@ pub enum FileError {
         near: Vec<String>,
     },
     /// The file does not exist or cannot be read.
+    #[error("{path}: cannot be read ({reason}); give {wanted}")]
     Unreadable {
         /// Its path.
         path: String,
@@ -47,8 +50,10 @@ pub enum FileError {
         wanted: &'static str,
     },
     /// The file was read and is wrong; at least one problem, in the order of lines.
+    #[error("{}", lines(.0))]
     Invalid(Vec<FileProblem>),
     /// A value given from outside the file, such as `--param`, is wrong.
+    #[error("{0}")]
     Setting(String),
 }
 
@@ -64,38 +69,15 @@ impl FileError {
     }
 }
 
-impl fmt::Display for FileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown { kind, name, near } => {
-                write!(f, "unknown {kind} `{name}`; {}", did_you_mean(near))
-            }
-            Self::Unreadable {
-                path,
-                reason,
-                wanted,
-                ..
-            } => {
-                write!(f, "{path}: cannot be read ({reason}); give {wanted}")
-            }
-            Self::Invalid(problems) => {
-                for (index, problem) in problems.iter().enumerate() {
-                    let separator = if index == 0 { "" } else { "\n" };
-                    write!(f, "{separator}{problem}")?;
-                }
-                Ok(())
-            }
-            Self::Setting(text) => f.write_str(text),
-        }
-    }
-}
-
-impl std::error::Error for FileError {}
-
 impl From<SimError> for FileError {
     fn from(error: SimError) -> Self {
         Self::Setting(error.to_string())
     }
+}
+
+fn lines(problems: &[FileProblem]) -> String {
+    let lines: Vec<String> = problems.iter().map(FileProblem::to_string).collect();
+    lines.join("\n")
 }
 
 /// `did you mean ...?` in words.

@@ -5,57 +5,46 @@ use super::near;
 use super::value::Allowed;
 use rumbo_control::mode::ModeId;
 use rumbo_control::params::{ParamId, ParamKind};
-use std::fmt;
+use thiserror::Error;
 
 /// A refused word or number.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum WordError {
     /// No mode has this name or number; those to choose from.
+    #[error("unknown mode; did you mean {}?", modes(.0))]
     Mode(Vec<ModeId>),
     /// No basic movement has this name; those to choose from.
+    #[error("unknown movement; {}", did_you_mean(.0))]
     Movement(Vec<String>),
     /// No parameter has this name.
+    #[error("unknown parameter; {}", near::remedy_for_key(.0, None, &ParamId::ALL.map(ParamId::name)))]
     Parameter(String),
     /// A value is infinite or none.
+    #[error("the value must be finite")]
     NotFinite,
     /// This text is no number.
+    #[error("`{0}` is not a number")]
     NotANumber(String),
     /// The switch or choice of this name has no value of this name.
+    #[error("{name} {must}, not `{1}`", name = .0.name(), must = named(.0.kind()))]
     NoValue(ParamId, String),
     /// The parameter may not have this value.
+    #[error("{}", remedy(*.0))]
     NotAllowed(ParamId),
 }
 
-impl fmt::Display for WordError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Mode(modes) => {
-                let name = |mode: &ModeId| format!("`{}` ({})", mode.name(), *mode as u8);
-                let names: Vec<String> = modes.iter().map(name).collect();
-                write!(f, "unknown mode; did you mean {}?", names.join(" or "))
-            }
-            Self::Movement(names) => {
-                write!(f, "unknown movement; {}", did_you_mean(names))
-            }
-            Self::Parameter(name) => {
-                let known = ParamId::ALL.map(ParamId::name);
-                let remedy = near::remedy_for_key(name, None, &known);
-                write!(f, "unknown parameter; {remedy}")
-            }
-            Self::NotFinite => f.write_str("the value must be finite"),
-            Self::NotANumber(text) => write!(f, "`{text}` is not a number"),
-            Self::NoValue(id, text) => {
-                write!(f, "{} {}, not `{text}`", id.name(), named(id.kind()))
-            }
-            Self::NotAllowed(id) => f.write_str(&match id.kind() {
-                ParamKind::Number => allowed(*id).remedy(),
-                kind => named(kind),
-            }),
-        }
-    }
+fn modes(modes: &[ModeId]) -> String {
+    let name = |mode: &ModeId| format!("`{}` ({})", mode.name(), *mode as u8);
+    let names: Vec<String> = modes.iter().map(name).collect();
+    names.join(" or ")
 }
 
-impl std::error::Error for WordError {}
+fn remedy(id: ParamId) -> String {
+    match id.kind() {
+        ParamKind::Number => allowed(id).remedy(),
+        kind => named(kind),
+    }
+}
 
 /// A limit or default as it is written in the table: an `f32` of 0.1 is 0.1 for people, not 0.10000000149.
 pub fn exact(value: f32) -> f64 {

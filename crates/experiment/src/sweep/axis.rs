@@ -2,7 +2,7 @@
 
 use crate::files::parameters;
 use rumbo_control::params::ParamId;
-use std::fmt;
+use thiserror::Error;
 
 /// Most values of an axis.
 const MOST_VALUES: usize = 10_000;
@@ -35,41 +35,32 @@ pub enum Values {
 }
 
 /// An axis that makes no sense, with its text.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("`{text}`: {problem}")]
 pub struct AxisError {
     text: String,
     problem: Problem,
 }
 
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 enum Problem {
+    #[error(
+        "write it as NAME=FROM:TO:COUNT, as NAME=FROM:TO:COUNT:log or as NAME=VALUE,VALUE, e.g. front_kp=1:20:10"
+    )]
     Form,
+    #[error("{0}")]
     Value(String),
+    #[error("a range goes from a lower to a higher value")]
     Order,
+    #[error("the count must be a whole number within 2..{MOST_VALUES}")]
     Count,
+    #[error("a range in even steps of the logarithm begins above 0")]
     Logarithm,
+    #[error("{0} stands there twice")]
     Twice(String),
+    #[error("an axis has at most {MOST_VALUES} values")]
     TooMany,
 }
-
-impl fmt::Display for AxisError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "`{}`: ", self.text)?;
-        match &self.problem {
-            Problem::Form => f.write_str(
-                "write it as NAME=FROM:TO:COUNT, as NAME=FROM:TO:COUNT:log or as NAME=VALUE,VALUE, e.g. front_kp=1:20:10",
-            ),
-            Problem::Value(why) => f.write_str(why),
-            Problem::Order => f.write_str("a range goes from a lower to a higher value"),
-            Problem::Count => write!(f, "the count must be a whole number within 2..{MOST_VALUES}"),
-            Problem::Logarithm => f.write_str("a range in even steps of the logarithm begins above 0"),
-            Problem::Twice(value) => write!(f, "{value} stands there twice"),
-            Problem::TooMany => write!(f, "an axis has at most {MOST_VALUES} values"),
-        }
-    }
-}
-
-impl std::error::Error for AxisError {}
 
 impl std::str::FromStr for Axis {
     type Err = AxisError;

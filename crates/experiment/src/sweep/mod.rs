@@ -16,7 +16,7 @@ use crate::files::{FileError, Setup};
 use crate::run::{RunResult, run_each};
 use rumbo_plant::noise::{Noise, source};
 use std::borrow::Cow;
-use std::fmt;
+use thiserror::Error;
 
 /// Most runs of a sweep.
 pub const MOST_RUNS: usize = 10_000_000;
@@ -54,48 +54,34 @@ pub struct SweepPlan {
 }
 
 /// Why there is no plan.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum PlanError {
     /// A parameter has two axes.
+    #[error("{0} has two axes; give each parameter once")]
     Twice(String),
     /// A grid needs a count.
+    #[error(
+        "{0}: a grid needs a count, e.g. {0}=1:20:10; or have points drawn, at random or of a Sobol sequence"
+    )]
     NoCount(String),
     /// Drawn points have no count.
+    #[error("{0}: points are drawn from the whole range; leave its count away")]
     Count(String),
     /// More points or runs than can be.
+    #[error(
+        "{0} points are too many: at most {MOST_POINTS} points and {MOST_RUNS} runs; take fewer values or fewer \
+         runs, or have points of a Sobol sequence drawn"
+    )]
     TooMany(usize),
     /// The same of a Sobol sequence.
+    #[error(
+        "{0} points are too many: a Sobol sequence has at most {MOST_SOBOL}; have them drawn at random"
+    )]
     TooManySobol(usize),
     /// More parameters than can vary at once.
+    #[error("at most {MOST_AXES} parameters vary at once")]
     TooManyAxes,
 }
-
-impl fmt::Display for PlanError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Twice(name) => write!(f, "{name} has two axes; give each parameter once"),
-            Self::NoCount(name) => write!(
-                f,
-                "{name}: a grid needs a count, e.g. {name}=1:20:10; or have points drawn, at random or of a Sobol sequence"
-            ),
-            Self::Count(name) => write!(
-                f,
-                "{name}: points are drawn from the whole range; leave its count away"
-            ),
-            Self::TooMany(points) => write!(
-                f,
-                "{points} points are too many: at most {MOST_POINTS} points and {MOST_RUNS} runs; take fewer values or fewer runs, or have points of a Sobol sequence drawn"
-            ),
-            Self::TooManySobol(points) => write!(
-                f,
-                "{points} points are too many: a Sobol sequence has at most {MOST_SOBOL}; have them drawn at random"
-            ),
-            Self::TooManyAxes => write!(f, "at most {MOST_AXES} parameters vary at once"),
-        }
-    }
-}
-
-impl std::error::Error for PlanError {}
 
 impl SweepPlan {
     /// The points of these axes; `seed` is the first run's and draws the points of a random design.

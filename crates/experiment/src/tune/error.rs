@@ -3,65 +3,38 @@
 use super::limits;
 use crate::files::FileError;
 use rumbo_control::params::ParamId;
-use std::fmt;
+use thiserror::Error;
 
 /// Why nothing is tuned.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum TuneError {
     /// A parameter is given twice.
+    #[error("{0} is given twice; give it once")]
     Twice(String),
     /// A switch or a choice.
+    #[error("{}: is a switch or a choice; compare its values with `rumbo compare`", .0.name())]
     NoNumber(ParamId),
     /// The range is not within the parameter's limits.
+    #[error("{}: its range must lie within {}..{} {}", .0.name(), limits(*.0)[0], limits(*.0)[1], .0.unit())]
     Range(ParamId),
     /// A list or a count, where a range is needed.
+    #[error("{0}: is searched in a range; write {0} or {0}=FROM:TO")]
     Form(String),
     /// Fewer runs than a search needs.
+    #[error("a search needs at least {0} runs")]
     Budget(usize),
     /// A scenario without limits, and no aim.
+    #[error("scenario {0} has no limits; give an aim, such as `settling_s`")]
     NoAim(String),
     /// The search drives the robot of a seed on which its values are to be checked.
+    #[error(
+        "seed {0}: the search drives that robot; check on consecutive seeds, or on fewer that are near each other"
+    )]
     Seen(u64),
     /// It was ended before it was done.
+    #[error("the search was ended")]
     Ended,
 }
-
-impl fmt::Display for TuneError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Twice(name) => write!(f, "{name} is given twice; give it once"),
-            Self::NoNumber(id) => write!(
-                f,
-                "{}: is a switch or a choice; compare its values with `rumbo compare`",
-                id.name()
-            ),
-            Self::Range(id) => write!(
-                f,
-                "{}: its range must lie within {}..{} {}",
-                id.name(),
-                limits(*id)[0],
-                limits(*id)[1],
-                id.unit()
-            ),
-            Self::Form(name) => write!(
-                f,
-                "{name}: is searched in a range; write {name} or {name}=FROM:TO"
-            ),
-            Self::Budget(least) => write!(f, "a search needs at least {least} runs"),
-            Self::Seen(seed) => write!(
-                f,
-                "seed {seed}: the search drives that robot; check on consecutive seeds, or on fewer that are near each other"
-            ),
-            Self::NoAim(scenario) => write!(
-                f,
-                "scenario {scenario} has no limits; give an aim, such as `settling_s`"
-            ),
-            Self::Ended => f.write_str("the search was ended"),
-        }
-    }
-}
-
-impl std::error::Error for TuneError {}
 
 impl From<TuneError> for FileError {
     fn from(error: TuneError) -> Self {

@@ -3,7 +3,7 @@
 use crate::files::{MetricBounds, ScenarioFile};
 use crate::metrics::{self, Metrics, more_is_better};
 use std::collections::BTreeMap;
-use std::fmt;
+use thiserror::Error;
 
 /// Cost of what never happened, in units of what is to be made small.
 const NEVER: f64 = 5.0;
@@ -24,27 +24,17 @@ pub struct Objective {
 }
 
 /// A text that is no objective.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ObjectiveError {
     /// A part is neither a metric nor a limit.
+    #[error(
+        "`{0}`: write metrics and limits with commas between them, e.g. \"settling_s, overshoot_m < 0.01\""
+    )]
     Part(String),
     /// A limit has no number.
+    #[error("`{0}`: its limit is not a number")]
     Number(String),
 }
-
-impl fmt::Display for ObjectiveError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Part(part) => write!(
-                f,
-                "`{part}`: write metrics and limits with commas between them, e.g. \"settling_s, overshoot_m < 0.01\""
-            ),
-            Self::Number(part) => write!(f, "`{part}`: its limit is not a number"),
-        }
-    }
-}
-
-impl std::error::Error for ObjectiveError {}
 
 impl std::str::FromStr for Objective {
     type Err = ObjectiveError;

@@ -123,7 +123,7 @@ impl Row {
             ghost: truth.copied(),
             ..Sample::empty()
         };
-        for (value, signal) in self.values.iter_mut().zip(&SIGNALS) {
+        for (value, signal) in self.values.iter_mut().zip(SIGNALS) {
             if signal.name.starts_with("ghost_") {
                 *value = (signal.value)(&sample);
             }

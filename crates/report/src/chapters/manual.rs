@@ -7,11 +7,10 @@ use super::parts::{self, LEFT, PWM, RIGHT, SPEED};
 use super::{Experiment, Highlight};
 use crate::channel::Channel;
 use crate::data::Data;
-use crate::drawing::scheme::{Part, Scheme};
 use crate::judge;
 use crate::places::Places;
 use crate::signals::{RPM, ReportedRun};
-use crate::text::{Language, Text, same, word};
+use crate::text::{Language, Text, word};
 use rumbo_plot::{Curve, Ink, Map, Panel, Plot, Points};
 
 const FLOOR: Text = word("on-the-floor-forward");
@@ -100,26 +99,8 @@ const ARCS: Text = word("arcs");
 const PIVOTS: Text = word("pivots");
 const TURNS: Text = word("turns-about-the-centre");
 
-const CONTROL: Scheme = Scheme {
-    input: same("PWM"),
-    row: &[
-        (Part::Block(&[same("L298N")]), same("U")),
-        (
-            Part::Block(&[word("gear-motors"), word("with-friction")]),
-            same("ω"),
-        ),
-        (
-            Part::Block(&[word("wheels-and"), word("floor-slip")]),
-            word("motion"),
-        ),
-    ],
-    paths: &[],
-    from_above: &[],
-};
-
 fn fill(places: &mut Places, data: &Data) {
     let language = places.language;
-    parts::scheme(places, "manual", &CONTROL);
     places.figure("manual-curves", Some(curves(language, data)));
     places.block("starts", manual_tables::starts(language, data));
     dead_zone(places, data);

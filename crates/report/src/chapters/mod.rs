@@ -11,7 +11,6 @@ mod mode6;
 mod mode7;
 mod mode8;
 mod mode8_beside;
-mod mode8_machines;
 pub(crate) mod panels;
 pub(crate) mod parts;
 mod pursuit;

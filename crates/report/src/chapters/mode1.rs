@@ -6,10 +6,9 @@ use super::parts::{self, DISTANCE, ERROR_CM, MEASURED, REFERENCE};
 use super::{Experiment, highlight};
 use crate::channel::Channel;
 use crate::data::Data;
-use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
 use crate::signals::{CM, ReportedRun, difference};
-use crate::text::{Language, Text, same, word};
+use crate::text::{Language, Text, word};
 use rumbo_plot::{Curve, Ink, Panel, Plot};
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
@@ -29,39 +28,6 @@ const LAW_Y: Text = word("speed-m-s");
 const FAR: Text = word("far-planned-deceleration");
 const NEAR: Text = word("near-proportional");
 const IN_FORCE: Text = word("in-force");
-const CONTROL: Scheme = Scheme {
-    input: word("reference"),
-    row: &[
-        (Part::Sum("−", "+", ""), same("e")),
-        (Part::Block(&[word("law"), word("far-near")]), same("v")),
-        (
-            Part::Block(&[word("wheel-speeds"), same("v ∓ b ω/2")]),
-            same("ω*"),
-        ),
-        (
-            Part::Block(&[word("speed-loops"), word("mode-5")]),
-            same("PWM"),
-        ),
-        (Part::Block(&[same("L298N,"), word("motors")]), same("")),
-        (Part::Block(&[word("robot")]), same("d")),
-    ],
-    paths: &[
-        Path {
-            from: 5,
-            to: 0,
-            block: &[word("range-filter")],
-            level: 2,
-        },
-        Path {
-            from: 5,
-            to: 2,
-            block: &[word("odometry-keeps-the-heading")],
-            level: 1,
-        },
-    ],
-    from_above: &[],
-};
-
 fn fill(places: &mut Places, data: &Data) {
     let Some(outcome) = data.outcome("mode1") else {
         return;
@@ -70,7 +36,7 @@ fn fill(places: &mut Places, data: &Data) {
     let plant = &outcome.setup.robot.plant;
     places.value("radius", language.short(CM * plant.wheels.left.radius_m, 2));
     places.value("base", language.short(CM * plant.body.base_m, 1));
-    parts::opening(places, data, "mode1", "mode_1", &CONTROL);
+    parts::opening(places, data, "mode1", "mode_1");
     places.figure("mode1-law", Some(law(language)));
     let panels = vec![
         distance_panel(language, outcome),

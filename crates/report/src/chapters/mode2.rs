@@ -6,10 +6,9 @@ use super::parts;
 use super::{Experiment, highlight};
 use crate::channel::Channel;
 use crate::data::Data;
-use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
 use crate::signals::{CM, DEG, ReportedRun, difference};
-use crate::text::{Text, same, word};
+use crate::text::{Text, word};
 use rumbo_plot::{Curve, Ink, Panel};
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
@@ -28,43 +27,8 @@ const ANGLE_AXIS: Text = word("angle-to-the-wall");
 const BY_READINGS: Text = word("of-the-two-readings");
 const TRUE: Text = word("true");
 
-const CONTROL: Scheme = Scheme {
-    input: word("reference"),
-    row: &[
-        (Part::Sum("−", "+", ""), same("e")),
-        (
-            Part::Block(&[word("distance-law"), word("mode-1")]),
-            same("v"),
-        ),
-        (
-            Part::Block(&[word("wheel-speeds"), same("v ∓ b ω/2")]),
-            same("ω*"),
-        ),
-        (
-            Part::Block(&[word("speed-loops"), word("mode-5")]),
-            same("PWM"),
-        ),
-        (Part::Block(&[word("robot")]), same("d, θ")),
-    ],
-    paths: &[
-        Path {
-            from: 4,
-            to: 2,
-            block: &[word("angle-law")],
-            level: 1,
-        },
-        Path {
-            from: 4,
-            to: 0,
-            block: &[word("wall-filter-distance-and-angle")],
-            level: 2,
-        },
-    ],
-    from_above: &[],
-};
-
 fn fill(places: &mut Places, data: &Data) {
-    parts::opening(places, data, "mode2", "mode_2", &CONTROL);
+    parts::opening(places, data, "mode2", "mode_2");
     let Some(outcome) = data.outcome("mode2") else {
         return;
     };

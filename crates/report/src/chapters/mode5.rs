@@ -6,11 +6,10 @@ use super::parts::{self, ERROR_RPM, LEFT, REFERENCE, RIGHT, SPEED};
 use super::{Experiment, highlight};
 use crate::channel::Channel;
 use crate::data::Data;
-use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
 use crate::respond::{self, Kind};
 use crate::signals::{RPM, ReportedRun, difference};
-use crate::text::{Language, Text, same, word};
+use crate::text::{Language, Text, word};
 use rumbo_plot::{Curve, Ink, Panel};
 use rumbo_wire::text::TextRow;
 
@@ -29,40 +28,8 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 const RIGHT_SPEED: Text = word("right-wheel-rpm");
 const LEFT_SPEED: Text = word("left-wheel-rpm");
 
-const CONTROL: Scheme = Scheme {
-    input: word("reference"),
-    row: &[
-        (Part::Block(&[word("ramp")]), same("ω*")),
-        (Part::Sum("+", "−", ""), same("e")),
-        (Part::Block(&[same("PI,"), word("anti-windup")]), same("")),
-        (Part::Sum("+", "", "+"), same("u")),
-        (
-            Part::Block(&[word("limits-and"), word("safe-reversal")]),
-            same("PWM"),
-        ),
-        (Part::Block(&[same("L298N,"), word("motor")]), same("")),
-        (Part::Block(&[word("wheel")]), same("ω")),
-    ],
-    paths: &[
-        Path {
-            from: 0,
-            to: 3,
-            block: &[word("feedforward")],
-            level: -1,
-        },
-        Path {
-            from: 6,
-            to: 1,
-            block: &[word("hall-encoder-time-between-edges")],
-            level: 1,
-        },
-    ],
-    from_above: &[],
-};
-
 fn fill(places: &mut Places, data: &Data) {
     parts::wiring_figure(places, data, "mode5", "mode5", "modes_5_to_7");
-    parts::scheme(places, "mode5", &CONTROL);
     if let Some(outcome) = data.outcome("mode5") {
         let panels = vec![
             speed_panel(places.language, outcome),

@@ -8,10 +8,9 @@ use super::parts::{self, MEASURED, REFERENCE, SPEED};
 use super::{Experiment, highlight};
 use crate::channel::Channel;
 use crate::data::Data;
-use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::places::Places;
 use crate::signals::{CM, DEG, RPM, ReportedRun};
-use crate::text::{Language, Text, same, word};
+use crate::text::{Language, Text, word};
 use rumbo_plot::{Curve, Ink, Map, Panel};
 use rumbo_wire::text::TextRow;
 
@@ -33,33 +32,8 @@ const RIGHT_AXIS: Text = word("right-wheel-rpm");
 const DIFFERENCE_AXIS: Text = word("difference-cm");
 const HEADING_AXIS: Text = word("true-heading");
 
-const CONTROL: Scheme = Scheme {
-    input: same("d*"),
-    row: &[
-        (Part::Sum("+", "−", ""), same("")),
-        (
-            Part::Block(&[word("line-controller-1"), word("line-controller-2")]),
-            same("Δω"),
-        ),
-        (Part::Sum("±", "", "+"), same("ω*")),
-        (
-            Part::Block(&[word("speed-loops"), word("mode-5")]),
-            same("PWM"),
-        ),
-        (Part::Block(&[word("motors-and"), word("wheels")]), same("")),
-        (Part::Block(&[word("robot")]), same("")),
-    ],
-    paths: &[Path {
-        from: 5,
-        to: 0,
-        block: &[word("encoders-difference-of-ways")],
-        level: 1,
-    }],
-    from_above: &[(2, word("commanded-speed"))],
-};
-
 fn fill(places: &mut Places, data: &Data) {
-    parts::opening(places, data, "mode6", "modes_5_to_7", &CONTROL);
+    parts::opening(places, data, "mode6", "modes_5_to_7");
     let Some(outcome) = data.outcome("mode6") else {
         return;
     };

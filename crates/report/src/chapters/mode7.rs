@@ -6,12 +6,11 @@ use super::panels;
 use super::parts;
 use super::{Experiment, highlight};
 use crate::data::Data;
-use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::judge;
 use crate::places::Places;
 use crate::respond::rms_and_worst;
 use crate::signals::{CM, ReportedRun};
-use crate::text::{Language, Text, capital, same, word};
+use crate::text::{Language, Text, capital, word};
 use rumbo_plot::{Curve, Ink, Map, Panel, Points};
 use rumbo_wire::text::TextRow;
 
@@ -33,39 +32,8 @@ const LAP: Text = word("time-once-round");
 const WORST: Text = word("off-the-square-worst");
 const RMS: Text = word("off-the-square-rms");
 
-const CONTROL: Scheme = Scheme {
-    input: word("goal-position"),
-    row: &[
-        (Part::Sum("+", "−", ""), same("")),
-        (
-            Part::Block(&[word("distance-to-goal"), word("bearing-of-goal")]),
-            same(""),
-        ),
-        (
-            Part::Block(&[word("distance-to-speed"), word("heading-to-yaw-rate")]),
-            same("v, ω"),
-        ),
-        (
-            Part::Block(&[word("wheel-speeds-1"), word("wheel-speeds-2")]),
-            same("ω*"),
-        ),
-        (
-            Part::Block(&[word("speed-loops-1"), word("speed-loops-2")]),
-            same("PWM"),
-        ),
-        (Part::Block(&[word("robot")]), same("")),
-    ],
-    paths: &[Path {
-        from: 5,
-        to: 0,
-        block: &[word("encoders-and-odometry")],
-        level: 1,
-    }],
-    from_above: &[],
-};
-
 fn fill(places: &mut Places, data: &Data) {
-    parts::opening(places, data, "mode7", "modes_5_to_7", &CONTROL);
+    parts::opening(places, data, "mode7", "modes_5_to_7");
     let Some(outcome) = data.outcome("mode7") else {
         return;
     };

@@ -2,7 +2,6 @@
 
 use super::maps;
 use super::mode8_beside;
-use super::mode8_machines as machines;
 use super::panels;
 use super::parts;
 use super::{Experiment, Highlight};
@@ -48,13 +47,29 @@ const STRAIGHT: Text = word("straight-line");
 const TRUE: Text = word("true");
 const START: Text = word("start");
 
+/// Names of the states, in the order of their numbers.
+const STATES: [Text; 13] = [
+    word("wait-for-goal"),
+    word("initial-turn"),
+    word("initialise"),
+    word("go-to-goal"),
+    word("sweep-right"),
+    word("sweep-left"),
+    word("decide"),
+    word("avoidance-turn"),
+    word("advance-seek-the-obstacle"),
+    word("advance-along-it"),
+    word("advance-safe-distance"),
+    word("unreachable"),
+    word("straight-on"),
+];
+
+/// The original program in a lane numbers its states from 0 again.
+const ORIGINAL_LANE: [Text; 5] = [STATES[12], STATES[4], STATES[5], STATES[6], STATES[7]];
+
 fn fill(places: &mut Places, data: &Data) {
     parts::rig_figure(places, data, "mode8", "mode8-goals");
     parts::wiring_figure(places, data, "mode8", "mode8-goals", "final");
-    let goal = machines::GOAL.svg(places.language);
-    places.figure("mode8-goal-machine", Some(goal));
-    let lane = machines::LANE.svg(places.language);
-    places.figure("mode8-lane-machine", Some(lane));
     goals(places, data);
     lane_results(places, data);
     obstacles(places, data);
@@ -113,7 +128,7 @@ fn goals(places: &mut Places, data: &Data) {
     }
     .svg(language);
     places.figure("mode8-goals-way", Some(svg));
-    let panel = panels::state_panel(language, outcome, &machines::STATES);
+    let panel = panels::state_panel(language, outcome, &STATES);
     until(places, outcome, "mode8-goals-states", vec![panel]);
 }
 
@@ -131,9 +146,9 @@ fn lane_results(places: &mut Places, data: &Data) {
     let panels = pose_panels(language, outcome, false);
     until(places, outcome, "mode8-lane-pose", panels);
     let names: &[Text] = if outcome.has_text_rows() {
-        &machines::ORIGINAL_LANE
+        &ORIGINAL_LANE
     } else {
-        &machines::STATES
+        &STATES
     };
     let panel = panels::state_panel(language, outcome, names);
     until(places, outcome, "mode8-lane-states", vec![panel]);
@@ -154,7 +169,7 @@ fn obstacles(places: &mut Places, data: &Data) {
     parts::timed(places, "mode8-obstacles-speeds", vec![panel]);
     let panels = panels::range_panels(language, outcome);
     until(places, outcome, "mode8-obstacles-ranges", panels);
-    let panel = panels::state_panel(language, outcome, &machines::STATES);
+    let panel = panels::state_panel(language, outcome, &STATES);
     parts::timed(places, "mode8-obstacles-states", vec![panel]);
 }
 

@@ -1,7 +1,6 @@
 //! What all chapters have in common: headings, names of axes, rig and wiring, figures over time.
 
 use crate::data::Data;
-use crate::drawing::scheme::Scheme;
 use crate::drawing::{rig, wiring};
 use crate::judge;
 use crate::places::Places;
@@ -43,17 +42,10 @@ pub(super) fn wiring_figure(
     places.figure(&format!("{id}-wiring"), svg);
 }
 
-/// What most chapters begin with: rig and wiring of its scenario, and the control scheme.
-pub(super) fn opening(places: &mut Places, data: &Data, id: &str, wiring: &str, control: &Scheme) {
+/// What most chapters begin with: rig and wiring of its scenario.
+pub(super) fn opening(places: &mut Places, data: &Data, id: &str, wiring: &str) {
     rig_figure(places, data, id, id);
     wiring_figure(places, data, id, id, wiring);
-    scheme(places, id, control);
-}
-
-/// The control scheme.
-pub(super) fn scheme(places: &mut Places, id: &str, scheme: &Scheme) {
-    let svg = scheme.svg(places.language);
-    places.figure(&format!("{id}-scheme"), Some(svg));
 }
 
 /// The metrics of runs against their limits.

@@ -6,12 +6,11 @@ use super::parts::{self, ERROR_CM};
 use super::{Experiment, highlight};
 use crate::channel::Channel;
 use crate::data::Data;
-use crate::drawing::scheme::{Part, Path, Scheme};
 use crate::judge;
 use crate::places::Places;
 use crate::respond::rms_and_worst;
 use crate::signals::{CM, ReportedRun, between, difference};
-use crate::text::{Text, capital, same, word};
+use crate::text::{Text, capital, word};
 use rumbo_plot::{Curve, Ink, Panel, Points};
 
 pub(super) const MODE3: Experiment = Experiment {
@@ -39,57 +38,8 @@ pub(super) const MODE4: Experiment = Experiment {
 
 const DIFFERENCE_AXIS: Text = word("difference-cm");
 
-const ROW: &[(Part, Text)] = &[
-    (Part::Sum("−", "+", ""), word("distance-error-short")),
-    (
-        Part::Block(&[word("distance-controller"), same("PI, ±24°")]),
-        same("α*"),
-    ),
-    (Part::Sum("+", "−", ""), same("")),
-    (
-        Part::Block(&[word("angle-controller"), same("k")]),
-        same("ω"),
-    ),
-    (
-        Part::Block(&[word("wheel-speeds-1"), word("wheel-speeds-2")]),
-        same("ω*"),
-    ),
-    (
-        Part::Block(&[word("speed-loops-1"), word("speed-loops-2")]),
-        same("PWM"),
-    ),
-    (Part::Block(&[word("robot")]), same("d, α")),
-];
-const PATHS: &[Path] = &[
-    Path {
-        from: 6,
-        to: 2,
-        block: &[word("angle-fed-back")],
-        level: 1,
-    },
-    Path {
-        from: 6,
-        to: 0,
-        block: &[word("wall-filter")],
-        level: 2,
-    },
-];
-const CRUISE: &[(usize, Text)] = &[];
-const CONTROL3: Scheme = Scheme {
-    input: word("distance-at-start"),
-    row: ROW,
-    paths: PATHS,
-    from_above: CRUISE,
-};
-const CONTROL4: Scheme = Scheme {
-    input: word("commanded-d"),
-    row: ROW,
-    paths: PATHS,
-    from_above: CRUISE,
-};
-
 fn fill_mode3(places: &mut Places, data: &Data) {
-    parts::opening(places, data, "mode3", "modes_3_and_4", &CONTROL3);
+    parts::opening(places, data, "mode3", "modes_3_and_4");
     let Some(outcome) = data.outcome("mode3") else {
         return;
     };
@@ -104,7 +54,7 @@ fn fill_mode3(places: &mut Places, data: &Data) {
 }
 
 fn fill_mode4(places: &mut Places, data: &Data) {
-    parts::opening(places, data, "mode4", "modes_3_and_4", &CONTROL4);
+    parts::opening(places, data, "mode4", "modes_3_and_4");
     let Some(outcome) = data.outcome("mode4") else {
         return;
     };

@@ -1,9 +1,7 @@
-//! Drawings that are no diagrams of values: control schemes, wirings, rigs, state machines, geometry. All inline SVG,
-//! coloured by the page. What depends on no data is a file of the content (`file`); the rest is computed.
+//! Drawings that are no diagrams of values, all inline SVG, coloured by the page. Control schemes, state machines and
+//! geometry are files of the content (`file`); rigs and wirings are computed from the robot.
 
 pub(crate) mod file;
-pub(crate) mod machine;
 pub(crate) mod rig;
-pub(crate) mod scheme;
 mod sketch;
 pub(crate) mod wiring;

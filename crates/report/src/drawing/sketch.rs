@@ -2,11 +2,6 @@
 
 use crate::text::{escape, put};
 
-/// Height of a line of text in a box [px].
-const LINE: f64 = 15.0;
-/// Width of a letter, about [px].
-pub(super) const LETTER: f64 = 6.6;
-
 /// A drawing under way.
 pub(super) struct Sketch {
     body: String,
@@ -33,20 +28,6 @@ impl Sketch {
             "<svg class=\"plot\" viewBox=\"0 0 {width:.0} {height:.0}\">{}</svg>",
             self.body
         )
-    }
-
-    /// A box around a point, with lines of text in it.
-    pub(super) fn block(
-        &mut self,
-        (x, y): (f64, f64),
-        (width, height): (f64, f64),
-        lines: &[&str],
-    ) {
-        self.rectangle((x - 0.5 * width, y - 0.5 * height), (width, height), "b");
-        let top = y - 0.5 * LINE * (lines.len() as f64 - 1.0) + 4.0;
-        for (index, line) in lines.iter().enumerate() {
-            self.text((x, top + LINE * index as f64), line, Anchor::Middle);
-        }
     }
 
     pub(super) fn rectangle(
@@ -151,19 +132,4 @@ impl Sketch {
         );
         self.text(middle, name, Anchor::Middle);
     }
-}
-
-/// Width of the longest of these lines [px].
-pub(super) fn width_of(lines: &[&str]) -> f64 {
-    let longest = lines
-        .iter()
-        .map(|line| line.chars().count())
-        .max()
-        .unwrap_or(0);
-    LETTER * longest as f64
-}
-
-/// Height of a box with this many lines [px].
-pub(super) fn height_of(lines: usize) -> f64 {
-    LINE * lines as f64 + 14.0
 }

@@ -23,7 +23,7 @@ use crate::error::SimError;
 use crate::floor::DarkLine;
 use crate::mega::Mega;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
-use crate::wire_fault::{TimedWireFault, WireFaults};
+use crate::wire_fault::WireFaults;
 pub use native::Latched;
 use native::{Memory, Native};
 use rumbo_control::mode::ModeId;
@@ -309,11 +309,6 @@ impl Sim {
     /// Makes a sonar fail at a time. The report's program, which times its own edges, is affected only by a cut.
     pub fn fail_sonar(&mut self, fault: TimedSonarFault) {
         self.sonar_faults.add(fault);
-    }
-
-    /// Makes a wire fail at a time.
-    pub fn fail_wire(&mut self, fault: TimedWireFault) {
-        self.wire_faults.add(fault);
     }
 
     /// Cuts a sonar's wires: from now on it answers no ping.

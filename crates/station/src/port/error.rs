@@ -1,9 +1,11 @@
 //! Why a port cannot be opened, with what to do about it on this system.
 
-use std::{fmt, io};
+use std::io;
+use thiserror::Error;
 
 /// A port that cannot be opened.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
 pub struct PortError(String);
 
 impl PortError {
@@ -28,14 +30,6 @@ impl PortError {
         ))
     }
 }
-
-impl fmt::Display for PortError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for PortError {}
 
 const IN_USE: &str =
     "another program has it open, such as another rumbo or a serial monitor: close that one";

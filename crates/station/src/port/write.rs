@@ -2,9 +2,9 @@
 
 use super::{EMPTY_READS, PortError, TCP, is_patience};
 use rumbo_flash::{BAUD, FlashError, PortAction, Programmer};
-use std::fmt;
 use std::io::{self, Read, Write};
 use std::time::{Duration, Instant};
+use thiserror::Error;
 
 /// Longest wait for bytes before the programmer gets its turn again.
 const TURN: Duration = Duration::from_millis(20);
@@ -12,32 +12,23 @@ const TURN: Duration = Duration::from_millis(20);
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Why a program was not written.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 pub enum WriteError {
     /// The port cannot be opened.
+    #[error(transparent)]
     Port(PortError),
     /// It is no serial port.
+    #[error(
+        "it is no serial port: the Mega is written over its USB cable; `rumbo list ports` shows the ports"
+    )]
     Network,
     /// The port was lost meanwhile.
+    #[error("the port is gone ({0}): plug it in and write again")]
     Lost(io::Error),
     /// The board does not take it.
+    #[error(transparent)]
     Board(FlashError),
 }
-
-impl fmt::Display for WriteError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Port(error) => error.fmt(f),
-            Self::Network => f.write_str(
-                "it is no serial port: the Mega is written over its USB cable; `rumbo list ports` shows the ports",
-            ),
-            Self::Lost(error) => write!(f, "the port is gone ({error}): plug it in and write again"),
-            Self::Board(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for WriteError {}
 
 /// Has the programmer write its program to the board at this port, and calls `turn` every few milliseconds.
 ///

@@ -72,7 +72,7 @@ fn starts(floor: &[Runs; 2], air: &[Runs; 2]) -> String {
         ("in the air", air, "35"),
     ] {
         for (way, runs) in [("forward", forward), ("backward", backward)] {
-            let cell = |metric| spread(&row("", metric, 255.0, "", ""), runs);
+            let cell = |metric| spread(&row("", metric, "", ""), runs);
             text += &format!(
                 "| {place}, {way} | {} | {} | {real} |\n",
                 cell("left_dead_zone_duty"),
@@ -88,25 +88,19 @@ fn movements() -> Result<Option<String>, String> {
     let rows = [
         (
             "manual-straight",
-            row("straight on: turned by", "turn_rad", DEG, "deg", ""),
+            row("straight on: turned by", "turn_rad", "deg", ""),
         ),
         (
             "manual-straight",
-            row("straight on: to the side", "sideways_m", 100.0, "cm", ""),
+            row("straight on: to the side", "sideways_m", "cm", ""),
         ),
         (
             "manual-arc-left",
-            row("arc to the left: radius", "radius_m", 100.0, "cm", ""),
+            row("arc to the left: radius", "radius_m", "cm", ""),
         ),
         (
             "manual-turn-left",
-            row(
-                "turn on the spot: path of its centre",
-                "path_m",
-                100.0,
-                "cm",
-                "",
-            ),
+            row("turn on the spot: path of its centre", "path_m", "cm", ""),
         ),
     ];
     let mut text =

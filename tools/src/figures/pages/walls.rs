@@ -14,40 +14,20 @@ pub(super) fn mode1() -> Result<Option<Made>, String> {
     let distance = Panel::new("distance to the wall, cm", distance);
     let plot = Plot::over_time(vec![distance, pwm(&baseline, &ours)]);
     let rows = [
-        row(
-            "107 -> 30 cm, within 5 %",
-            "step1.settling_s",
-            1.0,
-            "s",
-            "3.0 s",
-        ),
-        row("overshoot", "step1.overshoot_m", 100.0, "cm", "0.6 cm"),
-        row(
-            "steady error",
-            "step1.steady_error_m",
-            100.0,
-            "cm",
-            "0.02 cm",
-        ),
-        row(
-            "30 -> 50 cm, within 5 %",
-            "step2.settling_s",
-            1.0,
-            "s",
-            "1.2 s",
-        ),
-        row("overshoot", "step2.overshoot_m", 100.0, "cm", ""),
+        row("107 -> 30 cm, within 5 %", "step1.settling_s", "s", "3.0 s"),
+        row("overshoot", "step1.overshoot_m", "cm", "0.6 cm"),
+        row("steady error", "step1.steady_error_m", "cm", "0.02 cm"),
+        row("30 -> 50 cm, within 5 %", "step2.settling_s", "s", "1.2 s"),
+        row("overshoot", "step2.overshoot_m", "cm", ""),
         row(
             "driven against its motion",
             "reverse_drive_rad_s",
-            1.0,
             "rad/s",
             "",
         ),
         row(
             "time between two settings of the PWM",
             "control_period_s",
-            1000.0,
             "ms",
             "65 ms",
         ),
@@ -85,36 +65,22 @@ pub(super) fn mode2() -> Result<Option<Made>, String> {
         return Ok(None);
     };
     let rows = [
-        row(
-            "119 -> 30 cm, within 5 %",
-            "step1.settling_s",
-            1.0,
-            "s",
-            "3.4 s",
-        ),
-        row(
-            "steady error",
-            "step1.steady_error_m",
-            100.0,
-            "cm",
-            "0.64 cm",
-        ),
+        row("119 -> 30 cm, within 5 %", "step1.settling_s", "s", "3.4 s"),
+        row("steady error", "step1.steady_error_m", "cm", "0.64 cm"),
         row(
             "angle to the wall at rest",
             "step1.angle_rad",
-            DEG,
             "deg",
             "not measured",
         ),
         row(
             "50 -> 15 cm, within 2 cm",
             "step3.within_2cm_s",
-            1.0,
             "s",
             "5.5 s",
         ),
-        row("overshoot", "step3.overshoot_m", 100.0, "cm", "5.7 cm"),
-        row("contacts", "contacts", 1.0, "", "0"),
+        row("overshoot", "step3.overshoot_m", "cm", "5.7 cm"),
+        row("contacts", "contacts", "", "0"),
     ];
     Ok(Some(Made {
         figures: vec![(
@@ -149,19 +115,13 @@ pub(super) fn mode3() -> Result<Option<Made>, String> {
     });
     let plot = Plot::over_time(vec![Panel::new("error of the distance, cm", curves)]);
     let rows = [
-        row(
-            "distance error, rms",
-            "distance_rms_m",
-            100.0,
-            "cm",
-            "1.2 cm",
-        ),
-        row("worst", "distance_worst_m", 100.0, "cm", "4.6 cm"),
+        row("distance error, rms", "distance_rms_m", "cm", "1.2 cm"),
+        row("worst", "distance_worst_m", "cm", "4.6 cm"),
         Row {
             least_is_worst: true,
-            ..row("slowest half second", "cruise_m_s", 1.0, "m/s", "")
+            ..row("slowest half second", "cruise_m_s", "m/s", "")
         },
-        row("contacts", "contacts", 1.0, "", "0"),
+        row("contacts", "contacts", "", "0"),
     ];
     Ok(Some(Made {
         figures: vec![(
@@ -178,12 +138,11 @@ pub(super) const MODE_4: [Row; 3] = [
     row(
         "59 -> 50 cm, within 2 cm",
         "step1.within_2cm_s",
-        1.0,
         "s",
         "7.1 s",
     ),
-    row("50 -> 30 cm", "step2.within_2cm_s", 1.0, "s", "6.3 s"),
-    row("30 -> 40 cm", "step3.within_2cm_s", 1.0, "s", "9.0 s"),
+    row("50 -> 30 cm", "step2.within_2cm_s", "s", "6.3 s"),
+    row("30 -> 40 cm", "step3.within_2cm_s", "s", "9.0 s"),
 ];
 
 pub(super) fn mode4() -> Result<Option<Made>, String> {
@@ -207,19 +166,12 @@ pub(super) fn mode4() -> Result<Option<Made>, String> {
         row(
             "swing at 50 cm, standard deviation",
             "step1.ripple_m",
-            100.0,
             "cm",
             "",
         ),
-        row("swing at 30 cm", "step2.ripple_m", 100.0, "cm", ""),
-        row(
-            "overshoot of 50 -> 30 cm",
-            "step2.overshoot_m",
-            100.0,
-            "cm",
-            "",
-        ),
-        row("contacts", "contacts", 1.0, "", "0"),
+        row("swing at 30 cm", "step2.ripple_m", "cm", ""),
+        row("overshoot of 50 -> 30 cm", "step2.overshoot_m", "cm", ""),
+        row("contacts", "contacts", "", "0"),
     ];
     Ok(Some(Made {
         figures: vec![(

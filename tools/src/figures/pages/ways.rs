@@ -34,26 +34,18 @@ pub(super) fn mode7() -> Result<Option<Made>, String> {
         row(
             "off the square by odometry, worst",
             "odometry_worst_m",
-            100.0,
             "cm",
             "6 cm",
         ),
-        row("the same, rms", "odometry_rms_m", 100.0, "cm", "2.4 cm"),
+        row("the same, rms", "odometry_rms_m", "cm", "2.4 cm"),
         row(
             "truly off the square, worst",
             "true_worst_m",
-            100.0,
             "cm",
             "not measured",
         ),
-        row(
-            "true closing error",
-            "end_error_m",
-            100.0,
-            "cm",
-            "not measured",
-        ),
-        row("once round", "finish_s", 1.0, "s", "30 s"),
+        row("true closing error", "end_error_m", "cm", "not measured"),
+        row("once round", "finish_s", "s", "30 s"),
     ];
     let titles = ["Mode 7: the report's program", "ours, calibrated"];
     Ok(Some(Made {
@@ -96,13 +88,12 @@ pub(super) fn pursuit() -> Result<Option<Made>, String> {
         row(
             "off the path by odometry, worst",
             "odometry_worst_m",
-            100.0,
             "cm",
             "",
         ),
-        row("the same, rms", "odometry_rms_m", 100.0, "cm", ""),
-        row("truly off the path, worst", "true_worst_m", 100.0, "cm", ""),
-        row("finished after", "finish_s", 1.0, "s", ""),
+        row("the same, rms", "odometry_rms_m", "cm", ""),
+        row("truly off the path, worst", "true_worst_m", "cm", ""),
+        row("finished after", "finish_s", "s", ""),
     ];
     let columns = [("line", &line), ("curve", &curve)];
     Ok(Some(Made {
@@ -164,10 +155,10 @@ fn mission(
 
 pub(super) fn mode8_goals() -> Result<Option<Made>, String> {
     let rows = [
-        row("all four goals", "total_time_s", 1.0, "s", "32 s"),
+        row("all four goals", "total_time_s", "s", "32 s"),
         Row {
             least_is_worst: true,
-            ..row("goals reached", "reached", 1.0, "", "4")
+            ..row("goals reached", "reached", "", "4")
         },
     ];
     mission(
@@ -180,12 +171,12 @@ pub(super) fn mode8_goals() -> Result<Option<Made>, String> {
 
 pub(super) fn mode8_obstacles() -> Result<Option<Made>, String> {
     let rows = [
-        row("time", "total_time_s", 1.0, "s", "73.6 s"),
-        row("path", "path_m", 1.0, "m", "4.16 m"),
-        row("contacts", "contacts", 1.0, "", "0"),
+        row("time", "total_time_s", "s", "73.6 s"),
+        row("path", "path_m", "m", "4.16 m"),
+        row("contacts", "contacts", "", "0"),
         Row {
             least_is_worst: true,
-            ..row("reached", "reached", 1.0, "", "1")
+            ..row("reached", "reached", "", "1")
         },
     ];
     mission(
@@ -198,15 +189,15 @@ pub(super) fn mode8_obstacles() -> Result<Option<Made>, String> {
 
 pub(super) fn mode8_lane() -> Result<Option<Made>, String> {
     let rows = [
-        row("time of the four straights", "finish_s", 1.0, "s", "57.8 s"),
+        row("time of the four straights", "finish_s", "s", "57.8 s"),
         Row {
             least_is_worst: true,
-            ..row("straights driven", "straights", 1.0, "", "4")
+            ..row("straights driven", "straights", "", "4")
         },
-        row("contacts", "contacts", 1.0, "", "0"),
+        row("contacts", "contacts", "", "0"),
         Row {
             least_is_worst: true,
-            ..row("least clearance", "clearance_m", 100.0, "cm", "")
+            ..row("least clearance", "clearance_m", "cm", "")
         },
     ];
     mission(

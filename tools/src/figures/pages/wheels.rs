@@ -7,17 +7,15 @@ pub(super) const MODE_5: [Row; 5] = [
     row(
         "0 -> 60 rpm, within 3.2 rpm",
         "step1.settling_s",
-        1.0,
         "s",
         "3.7 s",
     ),
-    row("50 -> 100 rpm", "step3.settling_s", 1.0, "s", "1.8 s"),
-    row("0 -> -100 rpm", "step6.settling_s", 1.0, "s", "5.3 s"),
-    row("0 -> 40 rpm", "step9.settling_s", 1.0, "s", "5.5 s"),
+    row("50 -> 100 rpm", "step3.settling_s", "s", "1.8 s"),
+    row("0 -> -100 rpm", "step6.settling_s", "s", "5.3 s"),
+    row("0 -> 40 rpm", "step9.settling_s", "s", "5.5 s"),
     row(
         "ripple at 60 rpm",
         "step1.ripple_rad_s",
-        RPM,
         "rpm",
         "0.9 to 2.1 rpm",
     ),
@@ -55,11 +53,10 @@ pub(super) fn mode5() -> Result<Option<Made>, String> {
         sheet.with(title, plot.picture(Words::default(), WIDTH))
     });
     let more = [
-        row("ripple at 100 rpm", "step3.ripple_rad_s", RPM, "rpm", ""),
+        row("ripple at 100 rpm", "step3.ripple_rad_s", "rpm", ""),
         row(
             "time between two settings of the PWM",
             "control_period_s",
-            1000.0,
             "ms",
             "41 ms",
         ),
@@ -107,14 +104,12 @@ pub(super) fn mode6() -> Result<Option<Made>, String> {
         row(
             "to the side after 3 m",
             "after_3_m.sideways_m",
-            100.0,
             "cm",
             "not measured",
         ),
         row(
             "heading after 3 m",
             "after_3_m.heading_rad",
-            DEG,
             "deg",
             "not measured",
         ),
