@@ -134,10 +134,10 @@ export class PlotPanel {
     this.#chips.forEach(({ chip, value, name, unit }, index) => {
       const { decimals } = UNITS[unit];
       const column = /** @type {(number | null | undefined)[]} */ (data[index + 1] ?? []);
-      const unused = !plottedIn(column) && !plottedIn(column, data[0], this.#view.range_s);
+      const table = this.#store.tableOf(name);
+      const unused = !table.knows(name) || (!plottedIn(column) && !plottedIn(column, data[0], this.#view.range_s));
       if (chip.hidden !== unused) chip.hidden = unused;
       // What is drawn may be thinned.
-      const table = this.#store.tableOf(name);
       const now = table.at(name, at_s);
       const then = mark_s === null ? null : table.at(name, mark_s);
       const difference = typeof now === 'number' && typeof then === 'number' ? ` Δ ${format(now - then, decimals)}` : '';
@@ -180,7 +180,8 @@ export class PlotPanel {
         draw: [(/** @type {uPlot} */ each) => {
           drawLine(each, this.#view.mark_s, colours.goal);
           drawLine(each, this.#store.playhead_s, colours.text);
-          if (!each.data.slice(1).some((column, index) => each.series[index + 1]?.show && plottedIn(column, each.data[0], this.#view.range_s))) drawNothing(each);
+          const isPlotted = (/** @type {Curve} */ { name }, /** @type {number} */ index) => each.series[index + 1]?.show && this.#store.tableOf(name).knows(name) && plottedIn(each.data[index + 1] ?? [], each.data[0], this.#view.range_s);
+          if (!this.curves.some(isPlotted)) drawNothing(each);
         }],
       },
     }, [[], ...this.curves.map(() => [])], body);

@@ -86,6 +86,8 @@ export class Table extends Lines {
   #bucket;
   #inBucket = 0;
   #bucketFrom_s = 0;
+  /** Columns that have had a number: the others are asked in each frame, and are not searched. @type {Set<string>} */
+  #known = new Set();
 
   /** @param {string[]} names @param {number} kept_s how long lines are kept [s] */
   constructor(names, kept_s) {
@@ -117,6 +119,7 @@ export class Table extends Lines {
     for (const [name, column] of this.columns) {
       column.push(values[name]);
       this.#bucket.get(name)?.add(values[name]);
+      if (typeof values[name] === 'number') this.#known.add(name);
     }
     this.#inBucket += 1;
     if (this.#inBucket === BUCKET) this.#close(t_s);
@@ -149,6 +152,7 @@ export class Table extends Lines {
       into.t = [...from.t];
       into.columns = new Map([...from.columns].map(([name, column]) => [name, [...column]]));
     }
+    for (const [name, column] of made.columns) if (column.some((value) => typeof value === 'number')) made.#known.add(name);
     return made;
   }
 
@@ -156,7 +160,13 @@ export class Table extends Lines {
     this.drop(this.t.length);
     this.coarse.drop(this.coarse.t.length);
     for (const extent of this.#bucket.values()) extent.clear();
+    this.#known.clear();
     this.#inBucket = 0;
+  }
+
+  /** Whether a signal has had a value. @param {string} name */
+  knows(name) {
+    return this.#known.has(name);
   }
 
   /** A signal's value at a time, or the last before it; lines without it and two gaps are passed over. @param {string} name @param {number} t_s */

@@ -11,3 +11,12 @@ test('a legend shows the last value up to the time, however the curve is thinned
   assert.equal(table.at('b', 42.05), 1050);
   assert.deepEqual([42, 42.01].map((t_s) => table.indexAt(t_s)), [1050, 1051]);
 });
+
+test('a signal is known once it has had a value, also to a copy, until all is cleared', () => {
+  const table = new Table(['a', 'b'], 600);
+  for (let line = 0; line < 3; line++) table.push(line, { a: line === 1 ? 5 : null, b: null });
+  const known = (/** @type {Table} */ of) => ['a', 'b', 'c'].map((name) => of.knows(name));
+  const copy = table.copy();
+  table.clear();
+  assert.deepEqual([known(copy), known(table)], [[true, false, false], [false, false, false]]);
+});
