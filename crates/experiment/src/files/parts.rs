@@ -113,7 +113,7 @@ fn read_codes(codes: &Table<'_, '_>, order: fn(u32) -> u32) -> Vec<Key> {
         ))
     });
     let read: Vec<Key> = read.collect();
-    if read.is_empty() {
+    if codes.keys().is_empty() {
         codes.complain_here("needs a key, e.g. forward = 0xFF18E7");
     }
     codes.finish();

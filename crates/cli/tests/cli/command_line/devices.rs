@@ -437,7 +437,7 @@ void loop() { if (done) { Serial.println(value, HEX); delay(150); done = false; 
     for (keys, why) in [
         ("keys = 20", "there is one with arrows, 17 keys"),
         ("keys = {}", "needs a key, e.g. forward = 0xFF18E7"),
-        ("keys = { go = 0x1FFFFFFFF }", "must be within"),
+        ("keys = { go = 0x1FFFFFFFF }", "within 0..4294967295"),
     ] {
         let refused = stderr(&with(keys, &[]));
         assert!(refused.contains(why), "{refused}");
