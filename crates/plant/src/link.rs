@@ -82,16 +82,25 @@ impl Link {
 
     /// Queues bytes behind those that still wait; the line takes as long as its baud rate says.
     pub fn send(&mut self, now_us: u64, bytes: &[u8]) {
-        self.line_free_ns = self.line_free_ns.max(now_us * 1000);
-        for &byte in bytes {
-            self.line_free_ns += self.byte_ns;
-            let at_us = self.line_free_ns.div_ceil(1000) + self.params.latency_us;
+        self.send_before(now_us, u64::MAX, bytes.iter().copied());
+    }
+
+    /// Sends what comes while the line is free before `end_us`.
+    #[inline]
+    pub fn send_before(&mut self, now_us: u64, end_us: u64, mut bytes: impl Iterator<Item = u8>) {
+        let mut free_us = self.line_free_us();
+        while free_us < end_us
+            && let Some(byte) = bytes.next()
+        {
+            self.line_free_ns = self.line_free_ns.max(now_us * 1000) + self.byte_ns;
+            free_us = self.line_free_us();
             let index = self.sent;
             self.sent += 1;
-            self.deliver(index, at_us, byte);
+            self.deliver(index, free_us + self.params.latency_us, byte);
         }
     }
 
+    #[inline]
     fn deliver(&mut self, index: u64, at_us: u64, byte: u8) {
         let chance = |fault: u32, rate| self.noise.chance(self.source + fault, index, rate);
         let silent = self

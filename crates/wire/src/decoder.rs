@@ -91,6 +91,7 @@ impl<const N: usize> Decoder<N> {
     }
 
     /// Drops the oldest bytes of a full buffer: finished lines, then the start of a frame too long to be valid.
+    #[cfg_attr(not(target_arch = "avr"), inline(never))]
     fn make_room(&mut self) {
         self.frame_cut = true;
         let keep_from = match self.after_text {
@@ -108,6 +109,8 @@ impl<const N: usize> Decoder<N> {
         self.line_start -= keep_from;
     }
 
+    // Most bytes end nothing, and are not to save the registers that this and its like need.
+    #[cfg_attr(not(target_arch = "avr"), inline(never))]
     fn end_frame(&mut self) -> Option<FrameBody> {
         let pending = self.buffer.get(..self.len).unwrap_or(&[]);
         let after_text = self.after_text.and_then(|start| pending.get(start..));
@@ -141,6 +144,7 @@ impl<const N: usize> Decoder<N> {
     }
 
     /// Where the line that ends here lies in the buffer, if it is one.
+    #[cfg_attr(not(target_arch = "avr"), inline(never))]
     fn end_line(&mut self) -> Option<core::ops::Range<usize>> {
         let cut = self.line_cut;
         let line = self.buffer.get(self.line_start..self.len).unwrap_or(&[]);

@@ -125,7 +125,7 @@ fn response(
     start: f64,
     reference: f64,
     band: f64,
-    signal: impl Fn(&TruthSample) -> f64,
+    signal: impl FnMut(&TruthSample) -> f64,
 ) -> Response {
     if !start.is_finite() {
         return Response::NONE;
@@ -193,18 +193,19 @@ pub(super) fn sound_scale(sim: &Sim) -> f64 {
 /// it.
 pub(super) fn distance_steps(setup: &Setup, sim: &Sim, trace: &Trace, metrics: &mut Metrics) {
     let scale = sound_scale(sim);
-    let distance = |sample: &TruthSample| trace.range_m(sample, SonarId::Front as usize) * scale;
+    let mut range_m = trace.ranges_m(SonarId::Front as usize);
+    let mut distance = |sample: &TruthSample| range_m(sample) * scale;
     for (index, step) in steps(&setup.scenario.commands, setup.scenario.duration_s)
         .iter()
         .enumerate()
     {
         let samples = trace.between(step.from_s, step.until_s);
-        let Some(start) = samples.first().map(distance) else {
+        let Some(start) = samples.first().map(&mut distance) else {
             continue;
         };
         let [reference, _] = step.reference;
         let band = DISTANCE_BAND * (reference - start).abs();
-        let response = response(samples, step.from_s, start, reference, band, distance);
+        let response = response(samples, step.from_s, start, reference, band, &mut distance);
         let mut put =
             |name: &str, value| metrics.insert(format!("step{}.{name}", index + 1), value);
         put("settling_s", response.settling_s);

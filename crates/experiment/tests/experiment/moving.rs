@@ -58,6 +58,10 @@ fn movers_are_met_alike_on_any_number_of_threads_and_by_a_repetition() {
         samples.any(|sample| run.trace.range_m(sample, 2) < 1.0)
     };
     assert!(one.iter().all(sees));
+    // Also while it stands itself.
+    let trace = &one[0].trace;
+    let each = trace.samples.iter().map(|sample| trace.range_m(sample, 2));
+    assert!(each.eq(trace.samples.iter().map(trace.ranges_m(2))));
 }
 
 /// Ranges are measured when somebody asks for them, in the world as it was.
@@ -75,6 +79,8 @@ fn what_a_sonar_saw_stays_so_when_a_hand_moves_the_wall() {
     }
     let asked = trace.samples.iter().map(|sample| trace.range_m(sample, 2));
     assert_eq!(asked.collect::<Vec<_>>(), seen_m);
+    let in_order = trace.samples.iter().map(trace.ranges_m(2));
+    assert_eq!(in_order.collect::<Vec<_>>(), seen_m);
     assert!(seen_m[2] > seen_m[1] + 0.2, "{seen_m:?}");
 }
 

@@ -216,11 +216,8 @@ fn set_param(robot: &mut Robot, id: ParamId, value: f32) -> Result<(), SimError>
 impl Sim {
     /// Advances robot and plant to this time [us].
     pub(super) fn advance_native(&mut self, native: &mut Native, until_us: u64) {
-        loop {
+        while !self.act_native(native, until_us) {
             self.sense(native, native.next_us(until_us));
-            if self.act_native(native, until_us) {
-                return;
-            }
         }
     }
 
@@ -326,12 +323,9 @@ impl Sim {
             return;
         }
         // The transmit interrupt hands a byte to the line whenever the line is free.
-        while self.downlink.line_free_us() < native.next_tick_us {
-            let Some(byte) = native.robot.transmit() else {
-                break;
-            };
-            self.downlink.send(now_us, &[byte]);
-        }
+        let waiting = std::iter::from_fn(|| native.robot.transmit());
+        self.downlink
+            .send_before(now_us, native.next_tick_us, waiting);
     }
 
     /// Passes the bytes of a robot without a link to the tap. Cold: most robots have no tap.
