@@ -51,7 +51,7 @@ fn parse() -> Option<Args> {
 
 pub(crate) fn main() -> ExitCode {
     let Some(args) = parse() else {
-        eprintln!("faults: see the head of tools/src/bin/faults.rs for the arguments");
+        eprintln!("faults: see the head of tools/src/faults.rs for the arguments");
         return ExitCode::from(2);
     };
     crate::ended("faults", campaign(&args))

@@ -65,7 +65,7 @@ fn parse() -> Option<Args> {
 
 pub(crate) fn main() -> ExitCode {
     let Some(args) = parse() else {
-        eprintln!("moving: see the head of tools/src/bin/moving.rs for the arguments");
+        eprintln!("moving: see the head of tools/src/moving.rs for the arguments");
         return ExitCode::from(2);
     };
     if args.print {

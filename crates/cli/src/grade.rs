@@ -59,16 +59,7 @@ fn grade_class(args: &GradeArgs, folder: &Path) -> Result<(), Failure> {
     let hand_ins::Class { found, others, .. } = &hand_ins::find(folder)?;
     let files = file_names(found.iter().map(hand_ins::Found::name));
     check_files(args, &assignment, &stamp, &files)?;
-    if !others.is_empty() {
-        let more = match others.len().saturating_sub(MOST_NAMED) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        output::note(&format!(
-            "not graded: {}{more}; a hand-in is a folder with a sketch, an .ino, an .elf, a .hex, or a .zip of these; it is no link, and its name begins with no full stop",
-            others[..others.len().min(MOST_NAMED)].join(", ")
-        ));
-    }
+    note_others(others);
     let sketches = found.iter().filter(|one| one.is_sketch()).count();
     // Images need no compiler.
     let compiler = match sketches {
@@ -113,6 +104,21 @@ fn grade_class(args: &GradeArgs, folder: &Path) -> Result<(), Failure> {
         ));
     }
     report(args, &marks, &notes)
+}
+
+/// Names what lies among the hand-ins and is none.
+fn note_others(others: &[String]) {
+    if others.is_empty() {
+        return;
+    }
+    let more = match others.len().saturating_sub(MOST_NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    output::note(&format!(
+        "not graded: {}{more}; a hand-in is a folder with a sketch, an .ino, an .elf, a .hex, or a .zip of these; it is no link, and its name begins with no full stop",
+        others[..others.len().min(MOST_NAMED)].join(", ")
+    ));
 }
 
 /// What was done, all of it; says how much, where it was interrupted.

@@ -30,16 +30,7 @@ const SETTINGS: [&str; 7] = [
 ];
 
 pub(super) fn compare(args: &CompareArgs, scenario: &str) -> Result<(), Failure> {
-    let texts = args.variants.iter().map(String::as_str);
-    let alone = (args.variants.len() == 1).then_some("");
-    let texts: Vec<&str> = alone.into_iter().chain(texts).collect();
-    for (index, text) in texts.iter().enumerate() {
-        if texts[..index].contains(text) {
-            return Err(Failure::Input(format!(
-                "--with {text}: is there twice; a variant differs in nothing from itself"
-            )));
-        }
-    }
+    let texts = different(&args.variants)?;
     let library = Library::new();
     let variants = texts.iter().map(|text| {
         let overrides = overrides(scenario, text)?;
@@ -94,6 +85,21 @@ pub(super) fn compare(args: &CompareArgs, scenario: &str) -> Result<(), Failure>
         true => output::json(&as_json(scenario, &runs, &seeds)),
         false => print(scenario, &runs, &seeds),
     }
+}
+
+/// The texts of the variants, none of them twice; one alone is compared with the scenario as it is.
+fn different(variants: &[String]) -> Result<Vec<&str>, Failure> {
+    let alone = (variants.len() == 1).then_some("");
+    let texts = variants.iter().map(String::as_str);
+    let texts: Vec<&str> = alone.into_iter().chain(texts).collect();
+    for (index, text) in texts.iter().enumerate() {
+        if texts[..index].contains(text) {
+            return Err(Failure::Input(format!(
+                "--with {text}: is there twice; a variant differs in nothing from itself"
+            )));
+        }
+    }
+    Ok(texts)
 }
 
 /// The overrides of a variant: `front_kp=5,robot=mine.toml`.

@@ -386,11 +386,7 @@ impl Cpu {
                 if round.is_level(self) {
                     let limit = limit.min(round.steady_until);
                     if round.is_closed(self) {
-                        if self.search.begins_at(round.program_counter) {
-                            let stores = round.stores().collect();
-                            let kept = Kept::of(self, io, &round.steps, stores);
-                            self.search.keep(round.program_counter, kept);
-                        }
+                        self.keep(io, round);
                         let period = self.cycle - round.cycle;
                         self.leave_out(limit.saturating_sub(self.cycle) / period * period);
                         return Some(round.lowest);
@@ -417,6 +413,15 @@ impl Cpu {
             }
         }
         None
+    }
+
+    /// Keeps a closed round that a known loop begins with.
+    fn keep<I: Io>(&mut self, io: &mut I, round: &Round) {
+        if self.search.begins_at(round.program_counter) {
+            let stores = round.stores().collect();
+            let kept = Kept::of(self, io, &round.steps, stores);
+            self.search.keep(round.program_counter, kept);
+        }
     }
 
     pub(super) fn leave_out(&mut self, cycles: u64) {

@@ -112,8 +112,17 @@ fn own_remote(codes: &str) -> String {
         Some(codes) => ("raw_keys", codes),
         None => ("keys", codes),
     };
-    let codes = codes.replace(':', ", ").replace('=', " = ");
-    format!(", {table} = {{ {codes} }}")
+    let is_bare = |key: &str| {
+        key.chars()
+            .all(|c| c.is_ascii_alphanumeric() || "-_".contains(c))
+    };
+    let entry = |code: &str| match code.split_once('=') {
+        Some((key, bits)) if is_bare(key) => format!("{key} = {bits}"),
+        Some((key, bits)) => format!("{key:?} = {bits}"),
+        None => code.to_owned(),
+    };
+    let codes: Vec<String> = codes.split(':').map(entry).collect();
+    format!(", {table} = {{ {} }}", codes.join(", "))
 }
 
 impl NewRobot {

@@ -545,7 +545,7 @@ fn a_new_robot_with_a_motor_shield_has_its_wheels_on_motors() {
         "--pins",
         "left_forward=M3,right_backward=M4,servo=10,front_trigger=A0,front_echo=A1",
         "--parts",
-        "remote=infrared:2:raw:go=0xBA45FF00:back=7,knob=potentiometer:A2,screen=ssd1306:0x3c",
+        "remote=infrared:2:raw:go=0xBA45FF00:100+=7,knob=potentiometer:A2,screen=ssd1306:0x3c",
     ];
     let made = rumbo(&folder, &new);
     assert!(made.status.success(), "{}", stderr(&made));
@@ -556,7 +556,7 @@ fn a_new_robot_with_a_motor_shield_has_its_wheels_on_motors() {
         ),
         "{text}"
     );
-    let parts = "parts.remote = { infrared = 2, raw_keys = { go = 0xBA45FF00, back = 7 } }\nparts.knob = { potentiometer = \"A2\" }\nparts.screen = { ssd1306 = 0x3c }\n";
+    let parts = "parts.remote = { infrared = 2, raw_keys = { go = 0xBA45FF00, \"100+\" = 7 } }\nparts.knob = { potentiometer = \"A2\" }\nparts.screen = { ssd1306 = 0x3c }\n";
     assert!(text.contains(parts), "{text}");
     let bare = rumbo(
         &folder,
