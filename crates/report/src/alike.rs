@@ -1,6 +1,6 @@
 //! The page of two hand-ins that are alike.
 
-use crate::grade::of;
+use crate::grade::{back, of};
 use crate::summary::shell;
 use crate::text::{Language, Text, escape, put, word};
 use rumbo_experiment::grade::Assignment;
@@ -40,9 +40,13 @@ impl AlikeHandIns<'_> {
 pub fn pair(assignment: &Assignment, alike: &AlikeHandIns<'_>, language: Language) -> String {
     let share = alike.percent(language);
     let said = PROVES_NOTHING.with(language, &[("share", &share)]);
-    let mut body = format!(
-        "<p class=\"note\">{}</p>\n<div class=\"side\">\n",
-        escape(&said)
+    let mut body = back(language);
+    put(
+        &mut body,
+        format_args!(
+            "<p class=\"note\">{}</p>\n<div class=\"side\">\n",
+            escape(&said)
+        ),
     );
     for (name, text, common) in alike.of {
         let lines = text.lines().enumerate().map(|(number, line)| {
