@@ -2,7 +2,8 @@
 
 pub use rumbo_control::mode::MovementLevel;
 pub use rumbo_control::mode::waypoints::Waypoint;
-use rumbo_control::mode::{ModeId, Movement, Reference};
+use rumbo_control::mode::{ModeId, Movement, Reference, SetpointError};
+use rumbo_control::params::ParamError;
 use rumbo_control::rig::Rig;
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Velocity, Wheels};
 
@@ -364,5 +365,24 @@ rumbo_control::numbered! {
         NoWall = 13,
         /// No network lies beside the robot's program.
         NoPolicy = 14,
+    }
+}
+
+impl From<SetpointError> for Refusal {
+    fn from(error: SetpointError) -> Self {
+        match error {
+            SetpointError::NotFinite => Self::NotFinite,
+            SetpointError::OutOfRange => Self::OutOfRange,
+            SetpointError::NotInThisMode => Self::NotInThisMode,
+        }
+    }
+}
+
+impl From<ParamError> for Refusal {
+    fn from(error: ParamError) -> Self {
+        match error {
+            ParamError::NotFinite => Self::NotFinite,
+            ParamError::OutOfRange => Self::OutOfRange,
+        }
     }
 }
