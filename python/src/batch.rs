@@ -4,6 +4,7 @@
 use crate::arrays::{MOST_DUTY, MOST_SPEED, check_actions, checked, rows};
 use crate::guard::{detached, exception, making, pool, threads};
 use crate::setup::Setup;
+use crate::snapshot::Snapshot;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2, ToPyArray};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -37,55 +38,6 @@ pub(crate) struct Batch {
     callers: Vec<bool>,
     worlds: usize,
     threads: usize,
-}
-
-/// Robots as they were at one moment.
-#[pyclass(frozen, module = "rumbo._rumbo")]
-pub(crate) struct Snapshot {
-    setup: Py<Setup>,
-    callers: Vec<bool>,
-    robots: Robots,
-}
-
-/// What defines a snapshot: its setup, which robots of a world the caller drives, seeds, and what was done to each robot.
-type Parts<'py> = (
-    Py<Setup>,
-    Vec<bool>,
-    Vec<u64>,
-    Vec<Vec<Bound<'py, PyBytes>>>,
-);
-
-#[pymethods]
-impl Snapshot {
-    fn __len__(&self) -> usize {
-        self.robots.robots().count()
-    }
-
-    /// What makes it again, anywhere, by [`Batch::new`].
-    fn parts<'py>(&self, py: Python<'py>) -> Parts<'py> {
-        let lives = self.robots.lives().into_iter();
-        let (seeds, histories) = lives
-            .map(|(seed, histories)| {
-                let histories = histories.iter();
-                let histories = histories.map(|history| PyBytes::new(py, history));
-                (seed, histories.collect())
-            })
-            .unzip();
-        (
-            self.setup.clone_ref(py),
-            self.callers.clone(),
-            seeds,
-            histories,
-        )
-    }
-
-    fn __copy__(slf: Py<Self>) -> Py<Self> {
-        slf
-    }
-
-    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
-        slf
-    }
 }
 
 #[pymethods]
@@ -353,19 +305,7 @@ impl Batch {
 
     /// Puts the robots back to a snapshot of a batch of the same size.
     fn restore(&self, snapshot: &Snapshot) -> PyResult<()> {
-        let count = |callers: &[bool], robots: usize| match callers.len() {
-            1 => format!("{robots} robots"),
-            several => format!("{robots} robots, {several} in a world,"),
-        };
-        let (theirs, own) = (
-            count(&snapshot.callers, snapshot.__len__()),
-            count(&self.callers, self.__len__()),
-        );
-        if theirs != own {
-            return Err(PyValueError::new_err(format!(
-                "a snapshot of {theirs} does not fit a batch of {own}"
-            )));
-        }
+        snapshot.check(&self.callers, self.__len__())?;
         *self.lock()? = snapshot.robots.clone();
         Ok(())
     }

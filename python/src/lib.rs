@@ -13,14 +13,14 @@ mod policy;
 mod probe;
 mod run;
 mod setup;
+mod snapshot;
 mod study;
 mod tune;
 
 #[pyo3::pymodule]
 mod _rumbo {
     #[pymodule_export]
-    use super::batch::{Batch, Snapshot};
-    #[pymodule_export]
+    use super::batch::Batch;
     #[pymodule_export]
     use super::identify::identify;
     #[pymodule_export]
@@ -36,6 +36,8 @@ mod _rumbo {
     use super::run::run;
     #[pymodule_export]
     use super::setup::{Setup, load, names, value_names};
+    #[pymodule_export]
+    use super::snapshot::Snapshot;
     #[pymodule_export]
     use super::study::{differences, plan, run_jobs};
     #[pymodule_export]

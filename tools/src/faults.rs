@@ -1,10 +1,11 @@
 //! Breaks sensors and wires in thousands of drives, and prints contacts and reported faults.
 //!
 //! `cargo xtask campaign --only faults` builds and starts it, natively and on the image. Arguments: `--seeds N` (50),
-//! `--from N` first seed (1), `--instants N` per drive (5), `--image` (the built one, on the emulated Mega), `--list`
-//! (each run that touched something), `--write` (the table of docs/faults.md), and words that the name of a drive or of
-//! a failure must contain. Exit status 1 if more happens than is allowed; the page stays as it is then.
+//! `--instants N` per drive (5), `--image` (the built one, on the emulated Mega), `--list` (each run that touched
+//! something), `--write` (the table of docs/faults.md). Exit status 1 if more happens than is allowed; the page stays as it
+//! is then.
 
+use crate::arguments::Arguments;
 use crate::pages;
 use rumbo_experiment::campaign::faults::{
     Class, DRIVES, DetectionSummary, Failure, FaultDrive, GENTLE_M_S, INSTANTS, Named, drive_all,
@@ -12,75 +13,36 @@ use rumbo_experiment::campaign::faults::{
 use rumbo_experiment::files::{FileError, Overrides};
 use std::process::ExitCode;
 
-/// The command line.
-struct Args {
-    seeds: u64,
-    from: u64,
-    instants: usize,
-    image: bool,
-    list: bool,
-    write: bool,
-    words: Vec<String>,
-}
-
-fn parse() -> Option<Args> {
-    let mut parsed = Args {
-        seeds: 50,
-        from: 1,
-        instants: INSTANTS,
-        image: false,
-        list: false,
-        write: false,
-        words: Vec::new(),
-    };
-    let mut args = crate::arguments();
-    while let Some(arg) = args.next() {
-        match arg.as_str() {
-            "--seeds" => parsed.seeds = args.next()?.parse().ok()?,
-            "--from" => parsed.from = args.next()?.parse().ok()?,
-            "--instants" => parsed.instants = args.next()?.parse().ok()?,
-            "--image" => parsed.image = true,
-            "--list" => parsed.list = true,
-            "--write" => parsed.write = true,
-            option if option.starts_with("--") => return None,
-            word => parsed.words.push(word.to_owned()),
-        }
-    }
-    Some(parsed)
-}
-
 pub(crate) fn main() -> ExitCode {
-    let Some(args) = parse() else {
-        eprintln!("faults: see the head of tools/src/faults.rs for the arguments");
-        return ExitCode::from(2);
-    };
-    crate::ended("faults", campaign(&args))
+    crate::ended("faults", campaign())
 }
 
-fn campaign(args: &Args) -> Result<bool, FileError> {
+fn campaign() -> Result<bool, FileError> {
+    let numbers = ["--seeds", "--instants"];
+    let args = Arguments::read(&numbers, &["--image", "--list", "--write"], &[])?;
     let overrides = Overrides {
-        firmware: args.image.then(|| pages::built("firmware/rumbo.elf")),
+        firmware: args
+            .has("--image")
+            .then(|| pages::built("firmware/rumbo.elf")),
         ..Overrides::default()
     };
-    let keep = |drive: &str, failure: Failure| {
-        let failure = failure.to_string();
-        (args.words.iter()).all(|word| drive.contains(word) || failure.contains(word))
-    };
-    let seeds = args.from..args.from + args.seeds;
-    let drives = drive_all(&overrides, seeds, args.instants, keep)?;
+    let instants = args.number("--instants", INSTANTS as u64) as usize;
+    let seeds = 1..1 + args.number("--seeds", 50);
+    let drives = drive_all(&overrides, seeds, instants, |_, _| true)?;
     let table = table(&drives);
     println!("{table}");
-    if args.list {
+    if args.has("--list") {
         for drive in drives.iter().filter(|drive| drive.touch.is_some()) {
             println!("{}", line(drive));
         }
     }
     let (summary, met) = summary(&drives);
     println!("{summary}");
-    if args.write && !met {
+    let writes = args.has("--write");
+    if writes && !met {
         println!("docs/faults.md stays as it is: more happened than is allowed");
-    } else if args.write {
-        let place = if args.image {
+    } else if writes {
+        let place = if args.has("--image") {
             "campaign-image"
         } else {
             "campaign"

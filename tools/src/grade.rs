@@ -4,11 +4,13 @@
 //! (5), seeds of each (10). Exit status 1 if a mark differs by a byte, a hostile program earns a point, or the model
 //! solution does not have them all.
 
+use crate::data;
 use rayon::prelude::*;
 use rumbo_experiment::grade::{Assignment, HandIn, Mark, grade};
 use rumbo_sketch::limits::Limits;
 use rumbo_sketch::sandbox::Sandbox;
 use rumbo_sketch::{BOARDS, Compiler, Given, Source, Toolchain, given};
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
@@ -17,62 +19,6 @@ use std::time::{Duration, Instant};
 const ASSIGNMENT: &str = "examples/assignments/speed";
 /// Of ten hand-ins so many are hostile.
 const HOSTILE_OF_TEN: usize = 3;
-
-/// Programs and sources that do harm: what they are called, and what they are.
-const HOSTILE: [(&str, &str); 12] = [
-    (
-        "hang",
-        "void setup() { cli(); for (;;); }\nvoid loop() { }\n",
-    ),
-    (
-        "toggle",
-        "void setup() { DDRE = DDRG = DDRH = 0xff; for (;;) { PORTE ^= 0xff; PORTG ^= 0xff; PORTH ^= 0xff; } }\nvoid loop() { }\n",
-    ),
-    (
-        "timers",
-        "void setup() { TCCR3A = 0x54; TCCR3B = 9; OCR3A = 1; TCCR4A = 0x54; TCCR4B = 9; OCR4A = 1; DDRE = DDRH = 0xff; for (;;); }\n\
-         void loop() { }\n",
-    ),
-    (
-        "interrupts",
-        "ISR(TIMER1_COMPA_vect) { }\nvoid setup() { TCCR1B = 9; OCR1A = 40; TIMSK1 = 2; DDRE = 0xff; sei(); for (;;) PORTE ^= 255; }\n\
-         void loop() { }\n",
-    ),
-    (
-        "flood",
-        "void setup() { Serial.begin(2000000); Serial1.begin(2000000); Serial2.begin(2000000); }\n\
-         void loop() { Serial.write(85); Serial1.write(85); Serial2.write(85); }\n",
-    ),
-    (
-        "frames",
-        "void setup() { Serial1.begin(9600); }\nvoid loop() { for (int i = 0; i < 64; i++) Serial1.write(i); Serial1.write((byte)0); }\n",
-    ),
-    (
-        "lies",
-        "void setup() { Serial1.begin(9600); }\nvoid loop() { Serial1.println(\"50, 60.0, 60.0, 60.0, 5, 120, 120\"); delay(50); }\n",
-    ),
-    (
-        "reset",
-        "#include <avr/wdt.h>\nvoid setup() { wdt_enable(WDTO_15MS); for (;;); }\nvoid loop() { }\n",
-    ),
-    (
-        "crash",
-        "void setup() { void (*f)() = (void (*)())0x1f000; f(); }\nvoid loop() { }\n",
-    ),
-    (
-        "stack",
-        "int f(int n) { volatile char b[100]; b[0] = n; return f(n + 1) + b[0]; }\nvoid setup() { f(0); }\nvoid loop() { }\n",
-    ),
-    (
-        "passwords",
-        "#include \"/etc/passwd\"\nvoid setup() { }\nvoid loop() { }\n",
-    ),
-    (
-        "templates",
-        "template<unsigned long long N, int D> struct T { static const int v = T<2 * N, D - 1>::v + T<2 * N + 1, D - 1>::v; };\n\
-         template<unsigned long long N> struct T<N, 0> { static const int v = 1; };\nint x = T<1, 60>::v;\nvoid setup() { }\nvoid loop() { }\n",
-    ),
-];
 
 pub(crate) fn main() -> ExitCode {
     crate::ended("grade", run())
@@ -84,22 +30,18 @@ fn run() -> Result<bool, Box<dyn Error>> {
     let number = |index: usize, usual| numbers.get(index).copied().unwrap_or(usual);
     let (count, scenarios, seeds) = (number(0, 100), number(1, 5), number(2, 10));
     let assignment = assignment(scenarios, seeds)?;
-    let toolchain = Toolchain::find()?;
-    let limits = Limits {
-        time: Duration::from_secs_f64(assignment.compile_s),
-        ..Limits::default()
-    };
-    let sandbox = Sandbox::walled(&toolchain, limits)?;
-    let cache = Path::new("target/sketches/class");
-    // What is measured is a class that comes for the first time.
-    let _ = std::fs::remove_dir_all(cache);
-    let compiler = Compiler::new(BOARDS[0], toolchain, sandbox, cache.to_owned())?;
+    let compiler = compiler(&assignment)?;
     let Given::Sketch(model) = given(&Path::new(ASSIGNMENT).join("model"), true)? else {
         return Err("the model is no sketch".into());
     };
 
+    let hostile: BTreeMap<String, String> = data(include_str!("../data/hostile.toml"))?;
+    let hostile: Vec<(String, String)> = hostile.into_iter().collect();
+
     let begun = Instant::now();
-    let sources: Vec<(bool, Source)> = (0..count).map(|index| source(&model, index)).collect();
+    let sources: Vec<(bool, Source)> = (0..count)
+        .map(|index| source(&model, &hostile, index))
+        .collect();
     let all: Vec<(bool, HandIn)> = sources
         .par_iter()
         .map(|(hostile, source)| (*hostile, compiled(&compiler, source)))
@@ -139,6 +81,24 @@ fn run() -> Result<bool, Box<dyn Error>> {
     Ok(same && gained.is_empty())
 }
 
+/// The compiler in its sandbox, with nothing kept: what is measured is a class that comes for the first time.
+fn compiler(assignment: &Assignment) -> Result<Compiler, Box<dyn Error>> {
+    let toolchain = Toolchain::find()?;
+    let limits = Limits {
+        time: Duration::from_secs_f64(assignment.compile_s),
+        ..Limits::default()
+    };
+    let sandbox = Sandbox::walled(&toolchain, limits)?;
+    let cache = Path::new("target/sketches/class");
+    let _ = std::fs::remove_dir_all(cache);
+    Ok(Compiler::new(
+        BOARDS[0],
+        toolchain,
+        sandbox,
+        cache.to_owned(),
+    )?)
+}
+
 /// The assignment with so many scenarios and seeds.
 fn assignment(scenarios: usize, seeds: usize) -> Result<Assignment, Box<dyn Error>> {
     let mut assignment = Assignment::read(&format!("{ASSIGNMENT}/assignment.toml"))?;
@@ -152,7 +112,7 @@ fn assignment(scenarios: usize, seeds: usize) -> Result<Assignment, Box<dyn Erro
 }
 
 /// A hand-in: hostile ones between models that each have a comment of their own.
-fn source(model: &Source, index: usize) -> (bool, Source) {
+fn source(model: &Source, programs: &[(String, String)], index: usize) -> (bool, Source) {
     let hostile = index % 10 < HOSTILE_OF_TEN;
     let name = format!("hand-in-{index}");
     if !hostile {
@@ -163,7 +123,7 @@ fn source(model: &Source, index: usize) -> (bool, Source) {
         return (false, Source { name, ..own });
     }
     let number = HOSTILE_OF_TEN * (index / 10) + index % 10;
-    let (what, text) = HOSTILE[number % HOSTILE.len()];
+    let (what, text) = &programs[number % programs.len()];
     let files = [(
         "bad.ino".to_owned(),
         format!("{text}// {index}\n").into_bytes(),

@@ -1,6 +1,7 @@
 //! Rumbo's tools: campaigns, comparisons and the figures of the docs, as `cargo xtask` starts them. The first argument is
 //! the tool; those that follow are its own.
 
+mod arguments;
 mod beside;
 mod campaign;
 mod counts;
@@ -18,6 +19,7 @@ mod tune;
 
 use rumbo_experiment::files::{FileError, Setup};
 use rumbo_experiment::run::{RunResult, run_all};
+use serde::de::DeserializeOwned;
 use std::f64::consts::PI;
 use std::fmt::Display;
 use std::process::ExitCode;
@@ -62,6 +64,11 @@ fn factor(metric: &str, unit: &str) -> f64 {
         "" if metric.ends_with("_duty") => 255.0,
         _ => 1.0,
     }
+}
+
+/// A file of `tools/data`.
+fn data<T: DeserializeOwned>(text: &str) -> Result<T, FileError> {
+    toml::from_str(text).map_err(|error| FileError::Setting(format!("tools/data: {error}")))
 }
 
 /// The status of a tool that found its requirements met or missed, or ended by an error.

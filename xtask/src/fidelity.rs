@@ -11,9 +11,7 @@ pub(crate) fn run(project: &Project, seeds: Option<u32>, only: &[String]) -> Res
     if let Some(seeds) = seeds {
         command.args(["--seeds", &seeds.to_string()]);
     }
-    for name in only {
-        command.args(["--only", name]);
-    }
+    command.args(only);
     if only.is_empty() && seeds.is_none() {
         command.arg("--write");
     }

@@ -28,61 +28,7 @@ mod tidy;
 
 use project::Project;
 
-const HELP: &str = "\
-The project's chores.
-
-Usage: cargo xtask <command> [options]
-
-Commands:
-  test [--full] [--only STEP]...
-                           the gate: format, tidy, dependencies, clippy, sketches, firmware, tests, figures, Python,
-                           browser, logs, README, lessons; with --full every check there is
-  tidy                     the rules of ARCHITECTURE.md: dependencies, no_std, files, links
-  bench [--only PART]...   measured figures: headless speed, the lab's CPU, memory and start time
-  firmware                 the image for the Mega, target/firmware/rumbo.elf and .hex, with its sizes
-  site                     the lab as a static page, WebAssembly in place of a station, with lessons and documents,
-                           in site/
-  release                  what a version is published as, in dist/: archive, Debian package, image, licences, checksums
-  sketches                 the Arduino sketches of examples and tests, compiled into target/sketches/*.elf
-  memoria [--seeds N] [--only SCENARIO]...
-                           the report's program as an Arduino sketch on the emulated Mega, beside its native form,
-                           our core and our image: a table of 5 robots or N, and where the chip's time goes
-  fidelity [--seeds N] [--only SCENARIO]...
-                           where the report's robot lies among 200 simulated ones or N, driven by its own program; needs
-                           its recorded runs, RUMBO_DATA=FOLDER
-  campaign [--seeds N] [--only SCENARIO]...
-                           every scenario with 1,000 seeds or N, mode 8 in as many random worlds; `link`, a million
-                           frames over a link with faults; `faults`, every sensor and wire broken in every drive
-                           (50 seeds or N); `image`, 75 minutes of the image; `medians`, the image beside the native
-                           robot; `fuzz`, the fuzz targets, ten minutes each; `grade`, a class of 100, 30 of them
-                           hostile; `tune`, gains far off tuned again; `identify`, simulated robots identified; `ray`,
-                           sweeps on Ray; `release`, the Debian package in a clean system without a network, and
-                           the crates for others: what is required beside what was measured
-  fuzz [--seconds N] [--only TARGET]...
-                           the fuzz targets of fuzz/, a minute each or N seconds
-  figures [--only NAME]... the figures and tables of docs/theory, from runs of both programs
-
-Options:
-  --help, -h    this text; after a command, its steps or parts
-
-Examples:
-  cargo xtask test
-  cargo xtask test --only fmt --only clippy
-  cargo xtask test --full
-  cargo xtask tidy
-  cargo xtask firmware
-  cargo xtask sketches
-  cargo xtask site
-  cargo xtask release
-  cargo xtask memoria --seeds 1 --only mode5
-  RUMBO_DATA=recordings cargo xtask fidelity --seeds 40 --only mode3
-  cargo xtask bench --only headless
-  cargo xtask campaign --seeds 100 --only mode8-random
-  cargo xtask figures --only mode1
-  cargo xtask fuzz --seconds 600 --only chip
-
-With CI=true in the environment a check that cannot run is a failure, otherwise it is skipped with the remedy.
-Exit status: 0 all well, 1 something failed, 2 wrong usage.";
+const HELP: &str = include_str!("../help.txt");
 
 /// The command line.
 #[derive(Debug, PartialEq)]
@@ -183,7 +129,7 @@ fn help(command: Option<&str>) -> String {
     match command {
         Some("test") => test::help(),
         Some("bench") => bench::help(),
-        _ => HELP.to_owned(),
+        _ => HELP.trim_end().to_owned(),
     }
 }
 

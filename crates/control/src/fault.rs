@@ -1,57 +1,36 @@
 //! Faults, which latch until they are cleared.
 
-/// Why a mode or the supervisor refuses to drive. Faults latch until they are cleared on purpose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Fault {
-    /// No sign of life from the other end of the link.
-    LinkLost = 1,
-    /// The sonar the mode needs is silent or gives impossible values.
-    SonarFaulty = 2,
-    /// The sonar's last good reading is too old to drive on.
-    SonarStale = 3,
-    /// The wall the mode regulates on is out of reach.
-    WallLost = 4,
-    /// The left wheel is driven and its encoder gives no edges: held, or its sensor is cut.
-    LeftEncoderSilent = 5,
-    /// The right wheel is driven and its encoder gives no edges: held, or its sensor is cut.
-    RightEncoderSilent = 6,
-    /// The battery is below its lower limit.
-    BatteryLow = 7,
-    /// A non-finite value reached the core.
-    NotFinite = 8,
-    /// A control tick took longer than its period.
-    Overrun = 9,
-    /// Something stands in the way of a mode that does not go around it, or holds both wheels.
-    Blocked = 10,
-    /// The left encoder's edges are not those of a turning wheel, or too few for its duty.
-    LeftEncoderImplausible = 11,
-    /// The right encoder's edges are not those of a turning wheel, or too few for its duty.
-    RightEncoderImplausible = 12,
+crate::numbered! {
+    /// Why a mode or the supervisor refuses to drive. Faults latch until they are cleared on purpose.
+    pub enum Fault {
+        /// No sign of life from the other end of the link.
+        LinkLost = 1,
+        /// The sonar the mode needs is silent or gives impossible values.
+        SonarFaulty = 2,
+        /// The sonar's last good reading is too old to drive on.
+        SonarStale = 3,
+        /// The wall the mode regulates on is out of reach.
+        WallLost = 4,
+        /// The left wheel is driven and its encoder gives no edges: held, or its sensor is cut.
+        LeftEncoderSilent = 5,
+        /// The right wheel is driven and its encoder gives no edges: held, or its sensor is cut.
+        RightEncoderSilent = 6,
+        /// The battery is below its lower limit.
+        BatteryLow = 7,
+        /// A non-finite value reached the core.
+        NotFinite = 8,
+        /// A control tick took longer than its period.
+        Overrun = 9,
+        /// Something stands in the way of a mode that does not go around it, or holds both wheels.
+        Blocked = 10,
+        /// The left encoder's edges are not those of a turning wheel, or too few for its duty.
+        LeftEncoderImplausible = 11,
+        /// The right encoder's edges are not those of a turning wheel, or too few for its duty.
+        RightEncoderImplausible = 12,
+    }
 }
 
 impl Fault {
-    /// All faults, by number.
-    pub const ALL: [Fault; 12] = [
-        Fault::LinkLost,
-        Fault::SonarFaulty,
-        Fault::SonarStale,
-        Fault::WallLost,
-        Fault::LeftEncoderSilent,
-        Fault::RightEncoderSilent,
-        Fault::BatteryLow,
-        Fault::NotFinite,
-        Fault::Overrun,
-        Fault::Blocked,
-        Fault::LeftEncoderImplausible,
-        Fault::RightEncoderImplausible,
-    ];
-
-    /// The fault with this number.
-    pub fn from_number(number: u8) -> Option<Fault> {
-        Self::ALL.into_iter().find(|fault| *fault as u8 == number)
-    }
-
     /// What it means and what to do, for people.
     #[cfg(feature = "names")]
     pub const fn explanation(self) -> &'static str {

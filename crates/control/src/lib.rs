@@ -19,6 +19,7 @@ mod fixtures;
 pub mod math;
 pub mod mode;
 pub mod motion;
+mod numbered;
 pub mod odometry;
 pub mod params;
 pub mod pid;

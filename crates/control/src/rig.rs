@@ -10,38 +10,25 @@
 
 use crate::types::Side;
 
-/// Which sonars the robot carries, and where.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Rig {
-    /// One sonar looking ahead.
-    FrontSingle = 0,
-    /// Two looking ahead.
-    FrontPair = 1,
-    /// Two looking to the left.
-    SidePairLeft = 2,
-    /// Two looking to the right.
-    SidePairRight = 3,
-    /// One on the servo in front, one on each side.
-    #[default]
-    Final = 4,
+crate::numbered! {
+    /// Which sonars the robot carries, and where.
+    #[derive(Default)]
+    pub enum Rig {
+        /// One sonar looking ahead.
+        FrontSingle = 0,
+        /// Two looking ahead.
+        FrontPair = 1,
+        /// Two looking to the left.
+        SidePairLeft = 2,
+        /// Two looking to the right.
+        SidePairRight = 3,
+        /// One on the servo in front, one on each side.
+        #[default]
+        Final = 4,
+    }
 }
 
 impl Rig {
-    /// All rigs, by number.
-    pub const ALL: [Rig; 5] = [
-        Rig::FrontSingle,
-        Rig::FrontPair,
-        Rig::SidePairLeft,
-        Rig::SidePairRight,
-        Rig::Final,
-    ];
-
-    /// The rig with this number.
-    pub fn from_number(number: u8) -> Option<Rig> {
-        Self::ALL.into_iter().find(|rig| *rig as u8 == number)
-    }
-
     /// The names, by number.
     #[cfg(feature = "names")]
     pub const NAMES: [&str; Self::ALL.len()] = {

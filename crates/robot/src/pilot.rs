@@ -8,7 +8,7 @@ use rumbo_control::drive::DriveLayer;
 use rumbo_control::estimate::{Estimate, Estimator};
 use rumbo_control::math::round;
 use rumbo_control::mode::{Action, ActiveMode, ModeId, MovementLevel, Reference, SetpointError};
-use rumbo_control::params::{ParamError, ParamId, Params};
+use rumbo_control::params::{ParamId, Params};
 use rumbo_control::policy::{Known, NetworkShape, observe};
 use rumbo_control::rig::Rig;
 use rumbo_control::{
@@ -371,7 +371,7 @@ impl Pilot {
             Command::Waypoint(waypoint) => mode.add_waypoint(waypoint),
             _ => Err(SetpointError::NotInThisMode),
         };
-        done.map_err(refusal_of_setpoint)?;
+        done?;
         Ok(match *command {
             Command::Reference(_) | Command::WheelReference(_) => mode.reference().numbers()[0],
             Command::Move { level, .. } => {
@@ -396,7 +396,7 @@ impl Pilot {
     /// Sets a parameter; returns the value in force.
     pub(crate) fn set_param(&mut self, number: u8, value: f32) -> Result<f32, Refusal> {
         let id = ParamId::from_number(number).ok_or(Refusal::UnknownParam)?;
-        self.params.set(id, value).map_err(refusal_of_param)
+        Ok(self.params.set(id, value)?)
     }
 
     /// The parameters, for saving.
@@ -407,10 +407,10 @@ impl Pilot {
     /// Sets several parameters, or none.
     pub(crate) fn set_params(&mut self, values: &[(ParamId, f32)]) -> Result<f32, Refusal> {
         for &(id, value) in values {
-            id.check(value).map_err(refusal_of_param)?;
+            id.check(value)?;
         }
         for &(id, value) in values {
-            self.params.set(id, value).map_err(refusal_of_param)?;
+            self.params.set(id, value)?;
         }
         Ok(0.0)
     }
@@ -435,20 +435,5 @@ impl Pilot {
     pub(crate) fn link_timeout_us(&self, id: ParamId) -> u32 {
         // At most an hour, which 32 bits hold.
         round(self.params.get(id) * 1_000.0).unsigned_abs() * 1_000
-    }
-}
-
-fn refusal_of_setpoint(error: SetpointError) -> Refusal {
-    match error {
-        SetpointError::NotFinite => Refusal::NotFinite,
-        SetpointError::OutOfRange => Refusal::OutOfRange,
-        SetpointError::NotInThisMode => Refusal::NotInThisMode,
-    }
-}
-
-fn refusal_of_param(error: ParamError) -> Refusal {
-    match error {
-        ParamError::NotFinite => Refusal::NotFinite,
-        ParamError::OutOfRange => Refusal::OutOfRange,
     }
 }

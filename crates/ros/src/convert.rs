@@ -1,19 +1,16 @@
 //! What is known of a robot as messages of ROS 2, by topic: of a log, or as it happens.
 
+mod slow;
+
 use crate::geometry::{
     BASE, BodyGeometry, LEAST_M, MAP, ODOM, Origin, SONARS, WHEELS, pose, seen_from, stamped,
     transform,
 };
-use crate::messages::{
-    BatteryState, Clock, DiagnosticStatus, Diagnostics, Event, Header, JointState, KeyValue,
-    Odometry, Range, Text, Time, Transforms,
-};
+use crate::messages::{Clock, Header, JointState, Odometry, Range, Text, Time, Transforms};
 use crate::surroundings::{self, Way};
 use crate::topics::Topic;
-use crate::types::{Byte, Covariance, Message, encode};
-use rumbo_log::{
-    Level, Log, LoggedEvent, MapPose, Row, SceneObstacle, SonarMount, State, TaskState, compose,
-};
+use crate::types::{Covariance, Message, encode};
+use rumbo_log::{Log, MapPose, Row, SceneObstacle, SonarMount, compose};
 use std::time::UNIX_EPOCH;
 use thiserror::Error;
 
@@ -388,133 +385,6 @@ impl Converter {
         };
         self.put(Topic::Range(mount.id), t_ns, &range)
     }
-
-    /// What changes slowly, and what the speaker has to say of itself.
-    ///
-    /// # Errors
-    /// [`ConvertError::Encoding`].
-    pub fn state(
-        &mut self,
-        state: &State,
-        also: Vec<DiagnosticStatus>,
-    ) -> Result<(), ConvertError> {
-        let t_ns = self.at_ms((state.t_s * 1e3) as i64);
-        let origin = self.origin.in_odom();
-        let goals = goals(&state.robot.task).into_iter();
-        self.way.aim(goals.map(|goal| compose(origin, goal)));
-        if let Some(battery_v) = state.robot.battery_v {
-            let battery = BatteryState {
-                header: self.header(t_ns, BASE),
-                voltage: battery_v as f32,
-                temperature: f32::NAN,
-                current: f32::NAN,
-                charge: f32::NAN,
-                capacity: f32::NAN,
-                design_capacity: f32::NAN,
-                percentage: f32::NAN,
-                present: true,
-                ..BatteryState::default()
-            };
-            self.put(Topic::Battery, t_ns, &battery)?;
-        }
-        let (robot, link) = (&state.robot, &state.link);
-        let of_robot = match (&robot.fault, robot.armed) {
-            (Some(fault), _) => (2, fault.to_string()),
-            (None, true) => (0, "on".to_owned()),
-            (None, false) => (0, "off".to_owned()),
-        };
-        let of_link = match link.connected {
-            true => (0, "connected".to_owned()),
-            false => (1, "the robot does not answer".to_owned()),
-        };
-        let figures = |figures: &[(&str, String)]| {
-            let figures = figures.iter().map(|(key, value)| KeyValue {
-                key: (*key).to_owned(),
-                value: value.clone(),
-            });
-            figures.collect::<Vec<_>>()
-        };
-        let of_alarms = state
-            .alarms
-            .iter()
-            .map(|alarm| ("alarm", (2, alarm.clone()), Vec::new()));
-        let robot_figures = figures(&[
-            ("mode", robot.mode.to_string()),
-            ("tick overruns", robot.overruns.to_string()),
-        ]);
-        let link_figures = figures(&[
-            (
-                "telemetry, frames a second",
-                format!("{:.1}", link.telemetry_hz),
-            ),
-            ("frames lost", link.frames_lost.to_string()),
-            (
-                "frames with a wrong checksum",
-                link.crc_errors_down.to_string(),
-            ),
-        ]);
-        let all = [
-            ("robot", of_robot, robot_figures),
-            ("link", of_link, link_figures),
-        ];
-        let status = all
-            .into_iter()
-            .chain(of_alarms)
-            .map(|(name, (level, message), values)| DiagnosticStatus {
-                level: Byte(level),
-                name: format!("{}: {name}", self.speaker),
-                message,
-                hardware_id: self.robot.clone(),
-                values,
-            })
-            .chain(also);
-        let diagnostics = Diagnostics {
-            status: status.collect(),
-            header: self.header(t_ns, ""),
-        };
-        self.put(Topic::Diagnostics, t_ns, &diagnostics)
-    }
-
-    /// What happened.
-    ///
-    /// # Errors
-    /// [`ConvertError::Encoding`].
-    pub fn event(&mut self, event: &LoggedEvent) -> Result<(), ConvertError> {
-        let LoggedEvent { t_s, level, text } = event;
-        let t_ns = self.at_ms((t_s * 1e3) as i64);
-        let event = Event {
-            stamp: stamp(t_ns),
-            level: match level {
-                Level::Info | Level::Good => 20,
-                Level::Warning => 30,
-                Level::Fault => 40,
-            },
-            name: self.speaker.replace('/', "."),
-            msg: text.clone(),
-            ..Event::default()
-        };
-        self.put(Topic::Events, t_ns, &event)
-    }
-}
-
-/// Where a task leads, from the robot's origin.
-fn goals(task: &TaskState) -> Vec<MapPose> {
-    let at = |x_m: f32, y_m: f32| MapPose {
-        x_m: x_m.into(),
-        y_m: y_m.into(),
-        heading_rad: 0.0,
-    };
-    let route = task.route.iter().flat_map(|route| {
-        let from = task.from.filter(|_| route.relative);
-        let from = from.map_or(MapPose::default(), |[x_m, y_m, heading_rad]| MapPose {
-            heading_rad: heading_rad.into(),
-            ..at(x_m, y_m)
-        });
-        let places = route.waypoints.iter();
-        places.map(move |place| compose(from, at(place.x_m, place.y_m)))
-    });
-    let goal = task.goal.map(|[x_m, y_m]| at(x_m, y_m));
-    goal.into_iter().chain(route).collect()
 }
 
 /// The frame of a sonar.

@@ -421,9 +421,7 @@ fn rig_command(name: &str) -> Result<Command, BadOrder> {
 }
 
 fn move_order(movement: u8, level: MovementLevel, held: bool) -> Result<Order, BadOrder> {
-    let movement = Movement::ALL
-        .into_iter()
-        .find(|each| *each as u8 == movement)
+    let movement = Movement::from_number(movement)
         .ok_or_else(|| BadOrder(format!("there is no movement {movement}")))?;
     let command = Command::Move { movement, level };
     Ok(if held {

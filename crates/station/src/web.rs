@@ -219,7 +219,7 @@ async fn file(request: Request) -> Response {
         return StatusCode::METHOD_NOT_ALLOWED.into_response();
     }
     match assets::find(request.uri().path()) {
-        Some(asset) if asset.path == "/index.html" => (
+        Some(asset) if asset.mime == assets::HTML => (
             [(header::CONTENT_TYPE, asset.mime)],
             Body::from(asset.bytes),
         )

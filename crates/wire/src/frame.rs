@@ -19,52 +19,33 @@ pub const MAX_FRAME: usize = MAX_PAYLOAD + OVERHEAD;
 /// Header, payload and CRC of the longest frame.
 const MAX_BODY: usize = MAX_PAYLOAD + 3;
 
-/// What a frame carries. The directions use different numbers: an echo is not mistaken for an answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Kind {
-    /// [`crate::FromRobot::Hello`].
-    RobotHello = 1,
-    /// [`crate::FromRobot::Telemetry`].
-    Telemetry = 2,
-    /// [`crate::FromRobot::Status`].
-    Status = 3,
-    /// [`crate::FromRobot::Event`].
-    Event = 4,
-    /// [`crate::FromRobot::Ack`].
-    Ack = 5,
-    /// [`crate::FromRobot::HeadingRef`].
-    HeadingRef = 6,
-    /// [`crate::ToRobot::Hello`].
-    StationHello = 8,
-    /// [`crate::ToRobot::Heartbeat`].
-    Heartbeat = 9,
-    /// [`crate::ToRobot::Command`].
-    Command = 10,
-    /// [`crate::ToRobot::Velocity`].
-    Velocity = 11,
+rumbo_control::numbered! {
+    /// What a frame carries. The directions use different numbers: an echo is not mistaken for an answer.
+    pub enum Kind {
+        /// [`crate::FromRobot::Hello`].
+        RobotHello = 1,
+        /// [`crate::FromRobot::Telemetry`].
+        Telemetry = 2,
+        /// [`crate::FromRobot::Status`].
+        Status = 3,
+        /// [`crate::FromRobot::Event`].
+        Event = 4,
+        /// [`crate::FromRobot::Ack`].
+        Ack = 5,
+        /// [`crate::FromRobot::HeadingRef`].
+        HeadingRef = 6,
+        /// [`crate::ToRobot::Hello`].
+        StationHello = 8,
+        /// [`crate::ToRobot::Heartbeat`].
+        Heartbeat = 9,
+        /// [`crate::ToRobot::Command`].
+        Command = 10,
+        /// [`crate::ToRobot::Velocity`].
+        Velocity = 11,
+    }
 }
 
 impl Kind {
-    /// All kinds.
-    pub const ALL: [Kind; 10] = [
-        Kind::RobotHello,
-        Kind::Telemetry,
-        Kind::Status,
-        Kind::Event,
-        Kind::Ack,
-        Kind::HeadingRef,
-        Kind::StationHello,
-        Kind::Heartbeat,
-        Kind::Command,
-        Kind::Velocity,
-    ];
-
-    /// The kind with this number.
-    pub fn from_number(number: u8) -> Option<Kind> {
-        Self::ALL.iter().copied().find(|kind| *kind as u8 == number)
-    }
-
     /// The byte mixed into the CRC in this version of the protocol.
     const fn schema(self, protocol: u8) -> u8 {
         match self {

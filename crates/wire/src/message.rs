@@ -2,7 +2,8 @@
 
 pub use rumbo_control::mode::MovementLevel;
 pub use rumbo_control::mode::waypoints::Waypoint;
-use rumbo_control::mode::{ModeId, Movement, Reference};
+use rumbo_control::mode::{ModeId, Movement, Reference, SetpointError};
+use rumbo_control::params::ParamError;
 use rumbo_control::rig::Rig;
 use rumbo_control::{AgedRange, Duty, Fault, Pose, Velocity, Wheels};
 
@@ -116,32 +117,17 @@ pub struct Hello {
     pub reset: ResetCause,
 }
 
-/// Why the robot's program started.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum ResetCause {
-    /// Power applied, or the start of a simulation.
-    PowerOn = 0,
-    /// The reset button or the serial adapter.
-    External = 1,
-    /// The supply dipped.
-    BrownOut = 2,
-    /// The watchdog: a tick hung.
-    Watchdog = 3,
-}
-
-impl ResetCause {
-    /// All causes, by number.
-    pub const ALL: [ResetCause; 4] = [
-        ResetCause::PowerOn,
-        ResetCause::External,
-        ResetCause::BrownOut,
-        ResetCause::Watchdog,
-    ];
-
-    /// The cause with this number.
-    pub fn from_number(number: u8) -> Option<ResetCause> {
-        Self::ALL.into_iter().find(|cause| *cause as u8 == number)
+rumbo_control::numbered! {
+    /// Why the robot's program started.
+    pub enum ResetCause {
+        /// Power applied, or the start of a simulation.
+        PowerOn = 0,
+        /// The reset button or the serial adapter.
+        External = 1,
+        /// The supply dipped.
+        BrownOut = 2,
+        /// The watchdog: a tick hung.
+        Watchdog = 3,
     }
 }
 
@@ -232,35 +218,19 @@ pub enum EventKind {
     Saved,
 }
 
-/// Which of the two saved copies of the parameters the robot started with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Recalled {
-    /// The first.
-    First = 1,
-    /// The second.
-    Second = 2,
-    /// The first; the second is damaged or of another table.
-    FirstAlone = 3,
-    /// The second; the first is damaged or of another table.
-    SecondAlone = 4,
-    /// Neither is good: the defaults.
-    Neither = 5,
-}
-
-impl Recalled {
-    /// All of them, by number.
-    pub const ALL: [Recalled; 5] = [
-        Recalled::First,
-        Recalled::Second,
-        Recalled::FirstAlone,
-        Recalled::SecondAlone,
-        Recalled::Neither,
-    ];
-
-    /// The one with this number.
-    pub fn from_number(number: u8) -> Option<Recalled> {
-        Self::ALL.into_iter().find(|one| *one as u8 == number)
+rumbo_control::numbered! {
+    /// Which of the two saved copies of the parameters the robot started with.
+    pub enum Recalled {
+        /// The first.
+        First = 1,
+        /// The second.
+        Second = 2,
+        /// The first; the second is damaged or of another table.
+        FirstAlone = 3,
+        /// The second; the first is damaged or of another table.
+        SecondAlone = 4,
+        /// Neither is good: the defaults.
+        Neither = 5,
     }
 }
 
@@ -364,63 +334,55 @@ pub struct Ack {
     pub result: Result<f32, Refusal>,
 }
 
-/// Why a command was refused; the robot continues as before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Refusal {
-    /// The value is not a finite number.
-    NotFinite = 1,
-    /// The value is outside the allowed range.
-    OutOfRange = 2,
-    /// No such parameter.
-    UnknownParam = 3,
-    /// The mode has no such command.
-    NotInThisMode = 4,
-    /// Not while armed: disarm first.
-    Armed = 5,
-    /// A fault is latched: clear it first.
-    Faulted = 6,
-    /// The sonar the mode needs gives no good reading.
-    SonarNotReady = 7,
-    /// No heartbeat: the link is not alive.
-    NoLink = 8,
-    /// The command could not be understood.
-    Malformed = 9,
-    /// The rig lacks the sonars that the mode needs.
-    WrongRig = 10,
-    /// The battery is below its lower limit.
-    BatteryLow = 11,
-    /// The command was issued too long ago, or before the robot's last start.
-    TooOld = 12,
-    /// The sonar the mode needs works, and sees no wall that the mode can drive by.
-    NoWall = 13,
-    /// No network lies beside the robot's program.
-    NoPolicy = 14,
+rumbo_control::numbered! {
+    /// Why a command was refused; the robot continues as before.
+    pub enum Refusal {
+        /// The value is not a finite number.
+        NotFinite = 1,
+        /// The value is outside the allowed range.
+        OutOfRange = 2,
+        /// No such parameter.
+        UnknownParam = 3,
+        /// The mode has no such command.
+        NotInThisMode = 4,
+        /// Not while armed: disarm first.
+        Armed = 5,
+        /// A fault is latched: clear it first.
+        Faulted = 6,
+        /// The sonar the mode needs gives no good reading.
+        SonarNotReady = 7,
+        /// No heartbeat: the link is not alive.
+        NoLink = 8,
+        /// The command could not be understood.
+        Malformed = 9,
+        /// The rig lacks the sonars that the mode needs.
+        WrongRig = 10,
+        /// The battery is below its lower limit.
+        BatteryLow = 11,
+        /// The command was issued too long ago, or before the robot's last start.
+        TooOld = 12,
+        /// The sonar the mode needs works, and sees no wall that the mode can drive by.
+        NoWall = 13,
+        /// No network lies beside the robot's program.
+        NoPolicy = 14,
+    }
 }
 
-impl Refusal {
-    /// All refusals, by number.
-    pub const ALL: [Refusal; 14] = [
-        Refusal::NotFinite,
-        Refusal::OutOfRange,
-        Refusal::UnknownParam,
-        Refusal::NotInThisMode,
-        Refusal::Armed,
-        Refusal::Faulted,
-        Refusal::SonarNotReady,
-        Refusal::NoLink,
-        Refusal::Malformed,
-        Refusal::WrongRig,
-        Refusal::BatteryLow,
-        Refusal::TooOld,
-        Refusal::NoWall,
-        Refusal::NoPolicy,
-    ];
+impl From<SetpointError> for Refusal {
+    fn from(error: SetpointError) -> Self {
+        match error {
+            SetpointError::NotFinite => Self::NotFinite,
+            SetpointError::OutOfRange => Self::OutOfRange,
+            SetpointError::NotInThisMode => Self::NotInThisMode,
+        }
+    }
+}
 
-    /// The refusal with this number.
-    pub fn from_number(number: u8) -> Option<Refusal> {
-        Self::ALL
-            .into_iter()
-            .find(|refusal| *refusal as u8 == number)
+impl From<ParamError> for Refusal {
+    fn from(error: ParamError) -> Self {
+        match error {
+            ParamError::NotFinite => Self::NotFinite,
+            ParamError::OutOfRange => Self::OutOfRange,
+        }
     }
 }

@@ -1,12 +1,13 @@
 //! Mode 8 beside planners of the literature that know all ranges around them exactly, in the same random worlds.
 //!
 //! `cargo xtask campaign --only beside` builds and starts it. Arguments: `--seeds N` (1,000), `--write` (the table of
-//! docs/theory/mission.md), `--seed N` (each one's run of that world).
+//! docs/theory/mission.md).
 
 mod bugs;
 mod disc;
 mod histogram;
 
+use crate::arguments::Arguments;
 use crate::pages;
 use bugs::{Bug2, DistBug, TangentBug};
 use disc::{Outcome, Planner, TOP_M_S, drive};
@@ -31,36 +32,8 @@ fn planner(name: &str) -> Option<Box<dyn Planner>> {
     }
 }
 
-struct Args {
-    seeds: u64,
-    write: bool,
-    only: Option<u64>,
-}
-
-fn parse() -> Option<Args> {
-    let mut parsed = Args {
-        seeds: 1_000,
-        write: false,
-        only: None,
-    };
-    let mut args = crate::arguments();
-    while let Some(arg) = args.next() {
-        match arg.as_str() {
-            "--seeds" => parsed.seeds = args.next()?.parse().ok().filter(|seeds| *seeds > 0)?,
-            "--write" => parsed.write = true,
-            "--seed" => parsed.only = Some(args.next()?.parse().ok()?),
-            _ => return None,
-        }
-    }
-    Some(parsed)
-}
-
 pub(crate) fn main() -> ExitCode {
-    let Some(args) = parse() else {
-        eprintln!("beside: --seeds N, --write or --seed N");
-        return ExitCode::from(2);
-    };
-    crate::ended("beside", compare(&args).map(|()| true))
+    crate::ended("beside", compare().map(|()| true))
 }
 
 /// The runs in a seed's world, in order of [`NAMES`].
@@ -70,25 +43,16 @@ struct Runs {
     outcomes: [Outcome; NAMES.len()],
 }
 
-fn compare(args: &Args) -> Result<(), FileError> {
+fn compare() -> Result<(), FileError> {
+    let args = Arguments::read(&["--seeds"], &["--write"], &[])?;
     let setup = Library::new().setup("mode8-random", &Overrides::default())?;
-    let seeds = args.only.map_or(1..args.seeds + 1, |seed| seed..seed + 1);
-    let runs: Vec<Runs> = seeds
+    let runs: Vec<Runs> = (1..1 + args.number("--seeds", 1_000))
         .into_par_iter()
         .map(|seed| runs_of(&setup, seed))
         .collect::<Result<_, _>>()?;
-    if args.only.is_some() {
-        for (name, outcome) in runs
-            .iter()
-            .flat_map(|runs| NAMES.iter().zip(&runs.outcomes))
-        {
-            println!("{name}: {outcome:?}");
-        }
-        return Ok(());
-    }
     let table = table(&runs);
     println!("{table}");
-    if args.write {
+    if args.has("--write") {
         pages::write("docs/theory/mission.md", "beside", &table)?;
     }
     Ok(())

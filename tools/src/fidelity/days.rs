@@ -1,23 +1,11 @@
 //! Battery and floor of the days on which the runs were recorded, as `rumbo identify --check` finds them.
 
-use crate::fidelity::arguments::Arguments;
-use crate::fidelity::figures::{EXPERIMENTS, Experiment};
+use crate::fidelity::figures::Experiment;
 use rumbo_experiment::files::FileError;
 use rumbo_identify::{DriveLog, Nuisance, check};
 use rumbo_plant::params::Params;
 use std::collections::BTreeMap;
 use std::path::Path;
-
-/// The recorded runs that have a scenario and PWM.
-pub(crate) fn recordings(folder: &Path) -> Result<Vec<DriveLog>, FileError> {
-    let names = EXPERIMENTS
-        .iter()
-        .filter_map(|experiment| experiment.recording);
-    let read = |name| {
-        DriveLog::read(&folder.join(name)).map_err(|error| FileError::Setting(error.to_string()))
-    };
-    names.map(read).collect()
-}
 
 pub(crate) struct Days {
     plant: Params,
@@ -26,9 +14,15 @@ pub(crate) struct Days {
 
 impl Days {
     /// Repeats each recorded run on the plant.
-    pub(crate) fn read(arguments: &Arguments, plant: &Params) -> Result<Self, FileError> {
+    pub(crate) fn read(
+        folder: &Path,
+        experiments: &[Experiment],
+        plant: &Params,
+    ) -> Result<Self, FileError> {
         let mut nuisances = BTreeMap::new();
-        for log in recordings(&arguments.recordings)? {
+        for name in experiments.iter().filter_map(|one| one.recording.as_ref()) {
+            let log = DriveLog::read(&folder.join(name));
+            let log = log.map_err(|error| FileError::Setting(error.to_string()))?;
             // A run that does not show the drive does not show its day either.
             if let Ok(check) = check(std::slice::from_ref(&log), plant)
                 && let Some(run) = check.runs.first()
@@ -45,7 +39,7 @@ impl Days {
 
     /// Numbers of the plant on the day of this experiment, where its recording shows them.
     pub(crate) fn of(&self, experiment: &Experiment) -> Option<Vec<(String, f64)>> {
-        let day = self.nuisances.get(experiment.recording?)?;
+        let day = self.nuisances.get(experiment.recording.as_ref()?)?;
         Some(vec![
             ("battery.open_circuit_v".to_owned(), day.battery_v),
             (

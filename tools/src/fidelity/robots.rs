@@ -1,36 +1,23 @@
 //! The robots of the comparison, as scenarios draw them.
 
-use crate::fidelity::arguments::Arguments;
 use rumbo_experiment::files::{FileError, Library, NativeProgram, Overrides, Setup};
 use rumbo_experiment::run::{RunResult, run_all};
 use rumbo_plant::params::Params;
 
 pub(crate) struct Robots {
     library: Library,
-    overrides: Overrides,
     plant: Params,
-    seeds: u64,
+    pub(crate) seeds: u64,
 }
 
 impl Robots {
-    pub(crate) fn new(arguments: &Arguments) -> Result<Self, FileError> {
+    pub(crate) fn new(seeds: u64) -> Result<Self, FileError> {
         let library = Library::new();
-        let mut plant = library.robot(&arguments.robot)?.plant;
-        for (key, value) in &arguments.parameters {
-            let set = plant.set(key, *value);
-            set.map_err(|error| FileError::Setting(error.to_string()))?;
-        }
-        let overrides = Overrides {
-            robot: Some(arguments.robot.clone()),
-            program: NativeProgram::Baseline,
-            parameters: arguments.parameters.clone(),
-            ..Overrides::default()
-        };
+        let plant = library.robot("memoria")?.plant;
         Ok(Self {
             library,
-            overrides,
             plant,
-            seeds: arguments.seeds,
+            seeds,
         })
     }
 
@@ -45,8 +32,12 @@ impl Robots {
         scenario: &str,
         plant: &[(String, f64)],
     ) -> Result<Setup, FileError> {
-        let mut overrides = self.overrides.clone();
-        overrides.parameters.extend_from_slice(plant);
+        let overrides = Overrides {
+            robot: Some("memoria".to_owned()),
+            program: NativeProgram::Baseline,
+            parameters: plant.to_vec(),
+            ..Overrides::default()
+        };
         self.library.setup(scenario, &overrides)
     }
 

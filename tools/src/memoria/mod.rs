@@ -9,7 +9,7 @@ mod experiments;
 mod time;
 
 use crate::{factor, pages, runs};
-use experiments::{EXPERIMENTS, Experiment, Metric};
+use experiments::{Experiment, Metric, experiments};
 use rumbo_experiment::files::{FileError, Library, NativeProgram, Overrides, Setup};
 use rumbo_experiment::run::RunResult;
 use std::process::ExitCode;
@@ -38,8 +38,8 @@ fn print(seeds: u64, names: &[String]) -> Result<(), FileError> {
         TIMES.map(|(what, _)| what).join(" | "),
         "|---".repeat(TIMES.len() + 1) + "|"
     );
-    for experiment in EXPERIMENTS {
-        if names.is_empty() || names.iter().any(|name| name == experiment.scenario) {
+    for experiment in experiments()? {
+        if names.is_empty() || names.iter().any(|name| *name == experiment.scenario) {
             eprintln!("{} ...", experiment.scenario);
             rows(&experiment, seeds, [&mut whole, &mut times])?;
         }
@@ -58,7 +58,7 @@ fn our_setup(experiment: &Experiment) -> Result<Setup, FileError> {
         firmware: Some(pages::built("firmware/rumbo.elf")),
         ..Overrides::default()
     };
-    Library::new().setup(experiment.scenario, &overrides)
+    Library::new().setup(&experiment.scenario, &overrides)
 }
 
 /// The scenario with the sketch at the pins.
@@ -75,7 +75,7 @@ fn sketch_setup(experiment: &Experiment) -> Result<Setup, FileError> {
 
 /// With the time that the report's program needs.
 fn slow(experiment: &Experiment, overrides: &Overrides) -> Result<Setup, FileError> {
-    let mut setup = Library::new().setup(experiment.scenario, overrides)?;
+    let mut setup = Library::new().setup(&experiment.scenario, overrides)?;
     setup.scenario.duration_s = setup.scenario.duration_s.max(experiment.duration_s);
     if experiment.scenario == "mode8-goals" {
         for timed in setup.scenario.commands.iter_mut().skip(2) {
@@ -99,14 +99,14 @@ fn rows(
     let setups = [
         sketch_setup(experiment)?,
         slow(experiment, &natively)?,
-        library.setup(experiment.scenario, &Overrides::default())?,
+        library.setup(&experiment.scenario, &Overrides::default())?,
         our_setup(experiment)?,
     ];
     let mut results = Vec::new();
     for setup in &setups {
         results.push(runs(setup, seeds)?);
     }
-    let scenario = experiment.scenario;
+    let scenario = &experiment.scenario;
     let metric = &experiment.metric;
     *whole += &format!("| {scenario} | {} |", metric.what);
     for runs in &results {
@@ -152,7 +152,7 @@ fn percent(share: f64) -> String {
 
 /// The results of the runs, in order.
 fn sorted(metric: &Metric, runs: &[RunResult]) -> Vec<f64> {
-    let value = |run: &RunResult| run.metrics.get(metric.name).copied();
+    let value = |run: &RunResult| run.metrics.get(&metric.name).copied();
     let mut values: Vec<f64> = runs.iter().filter_map(value).collect();
     values.sort_by(f64::total_cmp);
     values
@@ -166,7 +166,7 @@ fn with_unit(number: String, metric: &Metric) -> String {
 }
 
 fn shown(metric: &Metric, value: f64) -> String {
-    match value * factor(metric.name, metric.unit) {
+    match value * factor(&metric.name, &metric.unit) {
         value if !value.is_finite() => "never".to_owned(),
         value if value.abs() >= 10.0 => format!("{value:.1}"),
         0.0 => "0".to_owned(),

@@ -1,3 +1,4 @@
+use super::steps::warnings;
 use super::*;
 
 #[test]

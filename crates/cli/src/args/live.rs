@@ -7,19 +7,7 @@ use std::path::PathBuf;
 
 /// Options of `rumbo lab`.
 #[derive(Args, Clone, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo lab
-  rumbo lab --scenario mode5 --speed 4
-  rumbo lab --scenario mode1 --rig final --world room
-  rumbo lab --scenario mode8-obstacles --robots 4
-  rumbo lab --scenario mode1 --sketch my_sketch
-  rumbo lab --scenario mode1 --firmware my_sketch.elf --wiring final
-  rumbo lab --scenario mode5 --firmware my_sketch.elf --gdb 1234
-  rumbo lab --port 9000 --no-browser
-  rumbo lab --listen 192.168.1.7
-  rumbo lab --pty
-  rumbo lab --sketch my_sketch --usb-pty")]
+#[command(after_help = include_str!("../../help/lab.txt"))]
 pub(crate) struct LabArgs {
     /// Scenario that the robot starts in: name or path
     #[arg(long, value_name = "NAME", default_value = "mode1")]
@@ -53,16 +41,7 @@ pub(crate) struct LabArgs {
 
 /// Options of `rumbo debug`.
 #[derive(Args, Clone, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo debug my_sketch
-  rumbo debug my_sketch --scenario mode1 --robot uno
-  rumbo debug example:wall --scenario mode5
-  rumbo debug my_sketch.elf --port 4711
-
-An editor starts this, or connects to the port, and speaks the Debug Adapter Protocol; docs/debugging.md has what to configure in VS Code,
-Neovim, Helix, Zed and Emacs. What the sketch sends to Serial appears in the editor's console; a line typed there behind
-a > goes to Serial.")]
+#[command(after_help = include_str!("../../help/debug.txt"))]
 pub(crate) struct DebugArgs {
     /// Folder of a sketch, its .ino, example:NAME, or an ELF file with debugging information [default: what the editor's
     /// launch names]
@@ -91,16 +70,7 @@ pub(crate) struct DebugArgs {
 
 /// Options of `rumbo connect`.
 #[derive(Args, Clone, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo connect /dev/rfcomm0
-  rumbo connect /dev/ttyUSB0 --baud 57600
-  rumbo connect COM5
-  rumbo connect /dev/ttyUSB0 --text
-  rumbo connect tcp:192.168.1.7:2000 --no-browser
-
-`rumbo list ports` shows the serial ports of this computer. Connecting arms nothing. Should the port go, the robot stops by itself; it is
-found again when the port is back, and needs a new ON. Warnings and faults are shown here too.")]
+#[command(after_help = include_str!("../../help/connect.txt"))]
 pub(crate) struct ConnectArgs {
     /// Serial port by its name, or tcp:host:port
     #[arg(value_name = "PORT", value_parser = clap::builder::NonEmptyStringValueParser::new())]
@@ -120,14 +90,7 @@ pub(crate) struct ConnectArgs {
 
 /// Options of `rumbo flash`.
 #[derive(Args, Clone, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo flash /dev/ttyACM0
-  rumbo flash COM5 --image my_sketch.hex
-
-The board's own boot loader writes it, and no other program is needed. The board is asked for its signature before anything is written, and all of it is
-read back. If the cable comes off meanwhile, the board does nothing until it is written again. Parameters saved on the robot stay. `rumbo list ports` shows
-the serial ports of this computer. Before the first run: docs/wiring.md.")]
+#[command(after_help = include_str!("../../help/flash.txt"))]
 pub(crate) struct FlashArgs {
     /// Serial port of the Mega's USB cable
     #[arg(value_name = "PORT", value_parser = clap::builder::NonEmptyStringValueParser::new())]

@@ -9,28 +9,7 @@ use std::path::PathBuf;
 
 /// Options of `rumbo run`.
 #[derive(Args, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo run mode1
-  rumbo run mode5 --runs 20 --json --no-record
-  rumbo run mode5 --runs 20 --program baseline
-  rumbo run mode1 --rig final --world room
-  rumbo run mode1 --sketch my_sketch
-  rumbo run mode1 --sketch example:wall --usb 'go@2'
-  rumbo run mode1 --sketch my_car --usb 'F@1' --usb 'S@3' --line-ending none
-  rumbo run mode5 --firmware my_sketch.elf --command 'REF 40@20'
-  rumbo run mode5 --firmware my_sketch.elf --profile cycles.folded --vcd pins.vcd
-  rumbo run mode5 --firmware my_sketch.elf --gdb 1234   # then: avr-gdb my_sketch.elf -ex 'target remote :1234'
-  rumbo run mode1 --seed 7 --param battery.open_circuit_v=6.9 --out out/mode1
-
-Every run is recorded, among the logs of sessions (`rumbo list logs`); of more than 20 runs those that miss a limit, the
-first 20 of them. With --out all are recorded, there; with --no-record none. A log that cannot be written is a note on
-stderr, and the run goes on.
-
-In DIR a run leaves NAME-SEED.json, .truth.csv and .mcap, and with --sketch or --firmware what the USARTs said. Files of the same
-scenario, seed and options are written again; any other file is kept, and nothing is run, unless --force is given.
-
-Exit status 0: all limits are met; 1: one is missed; 2: wrong input; 130: Ctrl-C, and what was done until then has been printed.")]
+#[command(after_help = include_str!("../../help/run.txt"))]
 pub(crate) struct RunArgs {
     /// Scenarios: names, or paths of files
     #[arg(required = true, value_name = "SCENARIO")]
@@ -100,16 +79,7 @@ pub(crate) struct RunArgs {
 
 /// Options of `rumbo experiments`.
 #[derive(Args, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo experiments
-  rumbo experiments --language es --out informe
-  rumbo experiments --only mode1 mode5 --seed 7
-  rumbo experiments --real runs
-  rumbo experiments --firmware my_sketch.elf
-
-Writes DIR/report.html: no part of it comes from elsewhere, and it prints well. The same version, seed and files give the same bytes. Exit
-status 1 if an experiment misses a limit.")]
+#[command(after_help = include_str!("../../help/experiments.txt"))]
 pub(crate) struct ExperimentsArgs {
     /// Folder for the report; made if need be
     #[arg(long, value_name = "DIR", default_value = "rumbo-report")]
@@ -148,20 +118,7 @@ pub(crate) enum LanguageName {
 
 /// Options of `rumbo grade`.
 #[derive(Args, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo grade examples/assignments/wall/assignment.toml handed_in
-  rumbo grade assignment.toml handed_in --language es --out marks
-  rumbo grade assignment.toml my_sketch
-  rumbo grade assignment.toml --gradescope autograder.zip
-
-Each folder or file in FOLDER is a hand-in: a sketch, an .ino, an .elf, a .hex, or a .zip of these. FOLDER may itself be the only
-one, or the archive of a class from Moodle or Canvas. Sketches are compiled in a sandbox (bwrap): no network, no files but their
-own, bounded time and memory.
-
-In DIR: index.html, the class; students/NAME.html; marks.csv; junit.xml; gradescope/NAME.json. The same hand-ins give the same bytes.
-
-Exit status 0: every hand-in passes; 1: one does not; 2: wrong input. More: docs/grading.md")]
+#[command(after_help = include_str!("../../help/grade.txt"))]
 pub(crate) struct GradeArgs {
     /// The assignment's file
     #[arg(value_name = "ASSIGNMENT.toml")]
@@ -196,23 +153,7 @@ pub(crate) struct GradeArgs {
 
 /// Options of `rumbo check`.
 #[derive(Args, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo check tests.toml
-  rumbo check tests.toml --only ready --out failed
-  rumbo check examples/checks/wall.toml --junit results.xml
-
-The file names a sketch or an image, and tests of steps; each begins with the program switched on, in its robot and world:
-
-  sketch = \"my_sketch\"          # beside the file
-  robot = \"uno\"
-  [[test]]
-  name = \"it says that it is ready\"
-  [[test.step]]
-  expect = \"ready\"
-  within_s = 1
-
-docs/sketches.md has all steps. Exit status 1: a test failed.")]
+#[command(after_help = include_str!("../../help/check.txt"))]
 pub(crate) struct CheckArgs {
     /// The file of tests
     #[arg(value_name = "TESTS.toml")]
@@ -238,24 +179,7 @@ pub(crate) struct CheckArgs {
 
 /// Options of `rumbo identify`.
 #[derive(Args, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo identify runs/mode5.csv runs/mode7.csv --robot my_robot.toml
-  rumbo identify runs/mode5.csv --check memoria --json --plots out
-  rumbo identify --drive /dev/rfcomm0 --battery 7.62 --write my_robot.toml
-  rumbo identify --drive lab --seed 7          # a simulated robot, beside its true values
-  rumbo identify 20261123-101500-robot.mcap --robot my_robot.toml
-
-Whole run: the recorded duty replayed, from the first row to the last. 0.5 s ahead: from the state that the rows
-up to then tell (wheel speeds, the floor's resistance), no later speed used. Of each run only the battery's
-voltage, the floor's friction and its scrubbing are fitted with --check. Beside a wall, and ahead of one, distances
-are compared over 3 s at a time. Without --check a fit to CSVs takes some three minutes, one to logs of Rumbo half a
-minute.
-
-Logs of Rumbo are cut into stretches: where frames are lost, the robot started again or the mode changed, and where it is
-OFF. The robot is believed to be of the kind of --robot, each value within some 30 %. Logs that no one robot explains are
-refused; intervals are those of 95 %. A fit is refused too, and nothing written, if it explains less than half of how the
-wheels turned, repeats the runs worse than the robot file does, or tells nothing about any parameter: --force takes it.")]
+#[command(after_help = include_str!("../../help/identify.txt"))]
 pub(crate) struct IdentifyArgs {
     /// Recorded runs: logs of Rumbo (connect, lab, run), CSV of the original program, or logs made of it by `rumbo import`
     #[arg(required_unless_present = "drive", value_name = "LOG")]
@@ -310,15 +234,7 @@ pub(crate) struct IdentifyArgs {
 
 /// Options of `rumbo calibrate`.
 #[derive(Args, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo calibrate
-  rumbo calibrate --seed 7 --json
-  rumbo calibrate --seed 7 --out my_robot.toml
-
-The robot stands 0.3 to 0.5 m beside a wall, along it, on its final rig, with 2.5 m free ahead. It drives along the wall to and fro,
-turns on the spot, and is done in less than three minutes of its time. It is recorded among the logs of runs (`rumbo list logs`), unless
---no-record is given. A real robot is calibrated from its dashboard: `rumbo connect PORT`.")]
+#[command(after_help = include_str!("../../help/calibrate.txt"))]
 pub(crate) struct CalibrateArgs {
     /// Robot: name or path
     #[arg(long, value_name = "NAME", default_value = "memoria")]

@@ -9,21 +9,7 @@ use std::path::PathBuf;
 
 /// Options of `rumbo sweep`.
 #[derive(Args, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo sweep mode1 front_kp=1:20:10
-  rumbo sweep mode1 front_kp=1:20:10 battery.open_circuit_v=6.8,7.4,8.2 --runs 50
-  rumbo sweep mode5 kv=0.01:0.1:log ki=0:1 --sobol 200 --by rms_rad_s
-  rumbo sweep mode1 front_kp=1:20:10 --resume
-  rumbo replay rumbo-sweep            the page, its best and worst runs one click away
-
-An axis is NAME=FROM:TO:COUNT (even steps, both ends included; FROM:TO:COUNT:log for even steps of the logarithm) or
-NAME=VALUE,VALUE; with --random or --sobol, NAME=FROM:TO. Every point is run with the same seeds.
-
-In DIR: index.html (curves, heat maps, parallel coordinates, best and worst points), runs.csv (a row for each run), logs of the best and the worst runs, and runs.jsonl, to which every run is added as it is done: --resume goes on from
-there after Ctrl-C, a full disk or a power cut.
-
-Exit status 0: done; 2: wrong input; 130: Ctrl-C.")]
+#[command(after_help = include_str!("../../help/sweep.txt"))]
 pub(crate) struct SweepArgs {
     /// Scenario: name, or path of its file
     #[arg(value_name = "SCENARIO")]
@@ -78,22 +64,7 @@ pub(crate) struct SweepArgs {
 
 /// Options of `rumbo tune`.
 #[derive(Args, Debug)]
-#[command(after_help = "\
-Examples:
-  rumbo tune mode1 --for settling_s --over front_kp,front_brake_m_s2
-  rumbo tune mode1 --for 'settling_s, overshoot_m < 0.01' --over front_kp=1:20 --out my_robot.toml
-  rumbo tune mode5 --over kv,speed_kp_left,speed_ki_left --param kv=0.004
-  rumbo tune mode1 --for settling_s --over front_kp --image rumbo.elf      checked on the emulated Mega too
-
-An aim is a metric that is made small (large, where more is better) on many drawn robots; of a metric with several steps or
-goals the worst counts. NAME < VALUE is a limit; the scenario's own limits always hold. Without --for the limits are
-kept with as much room as possible. A parameter is searched from an eighth of its present value to eight times it, or
-within NAME=FROM:TO, or, if it is 0, within its limits.
-
-The values found are then driven on robots that the search has not seen, beside the present ones: runs that pass, and each
-metric's mean difference with its 95 % interval. --out writes them only if no more of these runs fail than before.
-
-Exit status 0: all limits are met on the unseen robots; 1: not by all; 2: wrong input; 130: Ctrl-C.")]
+#[command(after_help = include_str!("../../help/tune.txt"))]
 pub(crate) struct TuneArgs {
     /// Scenario: name, or path of its file
     #[arg(value_name = "SCENARIO")]

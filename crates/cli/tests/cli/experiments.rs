@@ -168,24 +168,3 @@ fn a_missed_limit_is_status_1_and_stands_in_the_report() {
     );
     assert!(page(folder.path()).contains("verdict bad"));
 }
-
-#[test]
-fn bad_input_gets_one_line_with_the_remedy() {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("file"), "").unwrap();
-    for (arguments, expected) in [
-        (
-            vec!["--only", "mode9"],
-            "no such experiment; there are manual, mode1",
-        ),
-        (vec!["--real", "nowhere"], "give --real a folder"),
-        (vec!["--out", "file"], "choose another place"),
-        (vec!["--firmware", "none.elf"], "none.elf"),
-    ] {
-        let output = experiments(folder.path(), "C", &arguments);
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-        assert_eq!(said.lines().count(), 1, "{said}");
-        assert!(said.contains(expected), "{arguments:?}: {said}");
-    }
-}

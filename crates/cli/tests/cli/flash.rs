@@ -191,9 +191,6 @@ fn what_goes_wrong_is_said_with_the_remedy() {
     );
     let network = said(&["tcp:robot:2000", "--image", "image.hex"]);
     assert!(network.contains("USB cable"), "{network}");
-    std::fs::write(folder.join("text.hex"), "no program\n").unwrap();
-    let text = said(&["/dev/no_such_port", "--image", "text.hex"]);
-    assert!(text.contains("text.hex"), "{text}");
     // In the section of the boot loader.
     let boot = ":02000004000 3F7\n:02E00000FFCF50\n:00000001FF\n".replace(' ', "");
     std::fs::write(folder.join("boot.hex"), boot).unwrap();

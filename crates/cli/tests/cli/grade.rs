@@ -656,32 +656,3 @@ fn gradescope_s_container_gets_results_as_it_wants_them() {
         "{said}"
     );
 }
-
-#[test]
-fn a_wrong_assignment_is_said_with_lines_keys_and_near_names() {
-    let bench = folder().join("grade/wrong");
-    fs::create_dir_all(bench.join("in")).unwrap();
-    let text = "title = \"T\"\nstatement = \"S\"\npontis = 5\n[[scenario]]\nscenario = \"mode1\"\npublic_seeds = [1]\n\
-                [[criterion]]\ntitle = \"C\"\nmetric = \"step1.setling_s\"\npoints = 1\nfull = 2\nnone = 2\n\
-                [[criterion]]\ntitle = \"D\"\nmetric = \"telemetry_hz\"\npoints = -1\nfull = 2\n";
-    fs::write(bench.join("a.toml"), text).unwrap();
-    let mut command = program();
-    let output = command
-        .current_dir(&bench)
-        .args(["grade", "a.toml", "in"])
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    let said = stderr(&output);
-    for expected in [
-        "a.toml:3: pontis = 5: unknown key; did you mean",
-        "a.toml:9: criterion[1].metric = step1.setling_s: no such metric in its scenario; did you mean",
-        "step1.settling_s",
-        "a.toml:7: [criterion[1]] full and none are the same",
-        "a.toml:15: criterion[2].metric = telemetry_hz: is what the program says of itself",
-        "a.toml:16: criterion[2].points = -1: must be within",
-        "criterion[2].none is missing",
-    ] {
-        assert!(said.contains(expected), "{expected} in:\n{said}");
-    }
-}

@@ -44,132 +44,6 @@ const NAMES: [(&str, &[u8], &str); 17] = [
     ("spaces and options", b"a -x c -o ..cpp", IDLE),
 ];
 
-/// A sketch with this before `setup`, and what is said.
-const SOURCES: [(&str, &str, &str); 30] = [
-    ("include system", "#include \"/etc/passwd\"", NOT_THERE),
-    (
-        "include process",
-        "#include \"/proc/self/environ\"",
-        NOT_THERE,
-    ),
-    ("include device", "#include \"/dev/zero\"", NOT_THERE),
-    ("include input", "#include \"/dev/stdin\"", NOT_THERE),
-    (
-        "include above",
-        "#include \"../../../../victim.h\"",
-        NOT_THERE,
-    ),
-    (
-        "include product",
-        "#include \"../out/sketch.elf\"",
-        NOT_THERE,
-    ),
-    ("include cache", "#include \"../../../core.a\"", NOT_THERE),
-    (
-        "include itself",
-        "#include \"../main/main.ino.cpp\"",
-        "#include nested too deeply",
-    ),
-    ("include by macro", "#include __FILE__\n", "error: ././"),
-    (
-        "probe",
-        "#if __has_include(\"/etc/passwd\") || __has_include(\"/proc/1/maps\")\n#error it is there\n#endif",
-        IDLE,
-    ),
-    (
-        "depend",
-        "#pragma GCC dependency \"/etc/passwd\"",
-        NOT_THERE,
-    ),
-    (
-        "embed",
-        "asm(\".incbin \\\"/etc/passwd\\\"\");",
-        "file not found",
-    ),
-    (
-        "embed process",
-        "asm(\".incbin \\\"/proc/self/environ\\\"\");",
-        "file not found",
-    ),
-    (
-        "assemble system",
-        "asm(\".include \\\"/etc/passwd\\\"\");",
-        "can't open /etc/passwd for reading",
-    ),
-    (
-        "assemble much",
-        "asm(\".section .progmem.data\\n .fill 2000000000, 1, 7\\n .text\");",
-        "error",
-    ),
-    (
-        "repeat",
-        "asm(\".rept 100000000\\n nop\\n .endr\");",
-        "error",
-    ),
-    (
-        "plugin by pragma",
-        "#pragma GCC optimize (\"-fplugin=./plug.inc\")",
-        IDLE,
-    ),
-    (
-        "plugin by its own name",
-        "__attribute__((optimize(\"plugin=./plug.inc\"))) void f() { }",
-        IDLE,
-    ),
-    (
-        "plugin by attribute",
-        "__attribute__((optimize(\"fplugin=./plug.inc\"))) void f() { }",
-        "unrecognized command line option '-ffplugin",
-    ),
-    (
-        "linker by pragma",
-        "#pragma comment(linker, \"-T link.ld\")",
-        IDLE,
-    ),
-    (
-        "template depth",
-        "template<int N> struct T { static const int v = T<N + 1>::v; };\nint x = T<0>::v;",
-        "template instantiation depth",
-    ),
-    (
-        "memory",
-        "#define A(x) x x x x x x x x x x\n#define B(x) A(A(A(A(A(x)))))\nconst char t[] = B(B(\"0123456789\"));",
-        "error",
-    ),
-    (
-        "array",
-        "char a[2000000000]; char *p() { return a; }",
-        "is too large",
-    ),
-    (
-        "data",
-        "volatile char a[20000];\nstruct S { S() { a[millis() % 20000] = 1; } } s;",
-        "larger than the board's RAM",
-    ),
-    (
-        "constants",
-        "constexpr int f(int n) { return f(n + 1); }\nconstexpr int x = f(0);",
-        "constexpr",
-    ),
-    (
-        "place",
-        "#line 1 \"/etc/passwd\"\n#error here",
-        "passwd:1:2: error: #error here",
-    ),
-    (
-        "escapes",
-        "#error \x1b[31mred\x1b]0;title\x07",
-        "#error red",
-    ),
-    ("directions", "#error \u{202e}der", "#error der"),
-    ("zeros", "\0\0\0 int x = 0;", IDLE),
-    (
-        "markup",
-        "#error <script>alert(1)</script>",
-        "#error <script>",
-    ),
-];
-
 /// A hand-in of these files, and what is said.
 type Make = fn(&Path, &Path);
 const FILES: [(&str, Make, &str); 20] = [
@@ -449,7 +323,10 @@ fn no_hostile_hand_in_leaves_its_place_or_earns_a_point_and_each_is_told_why() {
         fs::write(file, "").unwrap();
         expected.push((name, said));
     }
-    for (name, text, said) in SOURCES {
+    let sources: toml::Table = include_str!("../programs/hostile.toml").parse().unwrap();
+    assert_eq!(sources.len(), 30);
+    for (name, source) in &sources {
+        let [text, said] = ["text", "said"].map(|key| source[key].as_str().unwrap());
         let at = folder_in(&class, name);
         sketch(&at, text);
         if text.contains("plug.inc") {

@@ -135,19 +135,6 @@ fn a_drive_is_an_ordinary_log_that_is_identified_again_and_written_into_a_robot_
     assert_eq!(std::fs::read(&file).unwrap(), before);
 }
 
-#[test]
-fn a_check_takes_no_option_of_a_drive() {
-    for option in ["--battery=7.4", "--out=elsewhere"] {
-        let output = support::program()
-            .args(["identify", "any.csv", "--check", "memoria", option])
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(said.contains("cannot be used with"), "{said}");
-        assert_eq!(output.status.code(), Some(2));
-    }
-}
-
 /// The only log of a folder.
 #[cfg(unix)]
 fn only_log(folder: &Path) -> std::path::PathBuf {

@@ -368,26 +368,6 @@ fn parameters_that_differ_are_shown_beside_the_metrics() {
 }
 
 #[test]
-fn what_is_no_log_gets_one_line_and_status_2() {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("table.mcap"), "t_s,x_m\n0,0\n").unwrap();
-    for arguments in [
-        &["export", "table.mcap"][..],
-        &["rerun", "table.mcap"],
-        &["compare", "table.mcap", "none.mcap"],
-        &["export", "none.mcap"],
-    ] {
-        let done = rumbo(arguments, folder.path());
-        let said = text(&done.stderr);
-        assert_eq!(
-            (done.status.code(), said.lines().count()),
-            (Some(2), 1),
-            "{said}"
-        );
-    }
-}
-
-#[test]
 fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     rumbo(&["run", "mode5", "--out", "."], folder.path());

@@ -19,6 +19,7 @@ mod hostile;
 mod identify;
 mod logs;
 mod recording;
+mod refused;
 mod studies;
 #[path = "../support/mod.rs"]
 mod support;

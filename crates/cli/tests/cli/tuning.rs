@@ -86,27 +86,13 @@ fn what_cannot_be_tuned_is_refused_in_the_words_of_the_command_line() {
     let many: Vec<String> = (0..13).map(|number| format!("front_kp{number}")).collect();
     for (changes, why) in [
         (json!({ "over": ["front_kq"] }), "did you mean `front_kp`"),
-        (json!({ "over": ["front_kp", "front_kp"] }), "given twice"),
-        (
-            json!({ "over": ["waypoint_tracker"] }),
-            "switch or a choice",
-        ),
-        (
-            json!({ "over": ["front_kp=1:99"] }),
-            "must lie within 0.1..20",
-        ),
         (json!({ "over": [] }), "choose a parameter"),
         (json!({ "over": many }), "at most 12 parameters"),
         (json!({ "aims": "setling_s" }), "did you mean `settling_s`"),
         (
-            json!({ "aims": "settling_s < x" }),
-            "its limit is not a number",
-        ),
-        (
             json!({ "aims": "x".repeat(501) }),
             "longer than 500 characters",
         ),
-        (json!({ "runs": 5 }), "at least 2000 runs"),
         (json!({ "runs": 200_001 }), "at most 200000 runs"),
         (json!({ "params": { "front_kp": 1e9 } }), "front_kp"),
         (json!({ "scenario": "mode11" }), "unknown scenario `mode11`"),

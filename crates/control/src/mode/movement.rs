@@ -1,55 +1,37 @@
 //! The basic movements of mode 0.
 
-/// The basic movements of the report's first section.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Movement {
-    /// Both wheels released.
-    #[default]
-    Stop = 0,
-    /// Both wheels forward.
-    Forward = 1,
-    /// Both wheels backward.
-    Backward = 2,
-    /// About the centre, counter-clockwise.
-    TurnLeft = 3,
-    /// About the centre, clockwise.
-    TurnRight = 4,
-    /// About the standing left wheel: the right wheel forward (counter-clockwise).
-    PivotLeftForward = 5,
-    /// About the standing left wheel: the right wheel backward (clockwise).
-    PivotLeftBackward = 6,
-    /// About the standing right wheel: the left wheel forward (clockwise).
-    PivotRightForward = 7,
-    /// About the standing right wheel: the left wheel backward (counter-clockwise).
-    PivotRightBackward = 8,
-    /// Forward along an arc to the left.
-    ArcLeft = 9,
-    /// Forward along an arc to the right.
-    ArcRight = 10,
-    /// Backward along an arc, the centre on the left.
-    ArcLeftBackward = 11,
-    /// Backward along an arc, the centre on the right.
-    ArcRightBackward = 12,
-}
-
-impl Movement {
-    /// All movements, by number.
-    pub const ALL: [Movement; 13] = [
-        Movement::Stop,
-        Movement::Forward,
-        Movement::Backward,
-        Movement::TurnLeft,
-        Movement::TurnRight,
-        Movement::PivotLeftForward,
-        Movement::PivotLeftBackward,
-        Movement::PivotRightForward,
-        Movement::PivotRightBackward,
-        Movement::ArcLeft,
-        Movement::ArcRight,
-        Movement::ArcLeftBackward,
-        Movement::ArcRightBackward,
-    ];
+crate::numbered! {
+    /// The basic movements of the report's first section.
+    #[derive(Default)]
+    pub enum Movement {
+        /// Both wheels released.
+        #[default]
+        Stop = 0,
+        /// Both wheels forward.
+        Forward = 1,
+        /// Both wheels backward.
+        Backward = 2,
+        /// About the centre, counter-clockwise.
+        TurnLeft = 3,
+        /// About the centre, clockwise.
+        TurnRight = 4,
+        /// About the standing left wheel: the right wheel forward (counter-clockwise).
+        PivotLeftForward = 5,
+        /// About the standing left wheel: the right wheel backward (clockwise).
+        PivotLeftBackward = 6,
+        /// About the standing right wheel: the left wheel forward (clockwise).
+        PivotRightForward = 7,
+        /// About the standing right wheel: the left wheel backward (counter-clockwise).
+        PivotRightBackward = 8,
+        /// Forward along an arc to the left.
+        ArcLeft = 9,
+        /// Forward along an arc to the right.
+        ArcRight = 10,
+        /// Backward along an arc, the centre on the left.
+        ArcLeftBackward = 11,
+        /// Backward along an arc, the centre on the right.
+        ArcRightBackward = 12,
+    }
 }
 
 /// Level of a basic movement.
@@ -59,19 +41,4 @@ pub enum MovementLevel {
     Duty(f32),
     /// Closed loop: wheel speed [rad/s], 0 to [`super::MAX_WHEEL_RAD_S`].
     Speed(f32),
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn movements_are_found_by_their_number() {
-        assert!(
-            Movement::ALL
-                .iter()
-                .enumerate()
-                .all(|(number, movement)| *movement as usize == number)
-        );
-    }
 }

@@ -6,7 +6,6 @@ use crate::files::{FileError, Kind, Library, Overrides};
 use crate::random_world::Dice;
 use crate::run::{self, RunResult};
 use rayon::prelude::*;
-use rumbo_wire::FromRobot;
 use std::f64::consts::TAU;
 
 /// What is drawn.
@@ -145,32 +144,15 @@ fn room(robots: usize, dice: &mut Dice) -> String {
     text
 }
 
-/// A touch that a robot felt.
-#[derive(Clone, Debug)]
-pub struct FeltTouch {
-    /// The robot's number.
-    pub robot: usize,
-    /// When it began [s].
-    pub at_s: f64,
-    /// State of its mode then.
-    pub state: u8,
-    /// Its own speed then [m/s].
-    pub speed_m_s: f64,
-}
-
 /// What became of a seed's robots.
 #[derive(Clone, Debug)]
 pub struct MovingOutcome {
-    /// The seed.
-    pub seed: u64,
     /// How many robots there were.
     pub robots: usize,
     /// How many of them arrived in time.
     pub arrived: usize,
     /// Fastest touch of the run [m/s]; 0 without one.
     pub fastest_m_s: f64,
-    /// Touches, in order of robots.
-    pub touches: Vec<FeltTouch>,
 }
 
 /// Runs a place with these seeds, on all cores; in order of seeds.
@@ -180,7 +162,6 @@ pub struct MovingOutcome {
 pub fn drive(
     place: MovingDraw,
     seeds: std::ops::Range<u64>,
-    overrides: &Overrides,
 ) -> Result<Vec<MovingOutcome>, FileError> {
     seeds
         .into_par_iter()
@@ -190,56 +171,24 @@ pub fn drive(
             if let Some(world) = world {
                 library = library.holding(Kind::World, "drawn", &world);
             }
-            let result = run::run(&library.setup("moving", overrides)?, seed)?;
-            Ok(MovingOutcome::of(seed, result))
+            let result = run::run(&library.setup("moving", &Overrides::default())?, seed)?;
+            Ok(MovingOutcome::of(&result))
         })
         .collect()
 }
 
 impl MovingOutcome {
-    fn of(seed: u64, result: RunResult) -> Self {
+    fn of(result: &RunResult) -> Self {
         let fastest_m_s = result.metrics.get("contact_speed_m_s").copied();
         let alone = result.robots.is_empty();
         let arrived = if alone { "reached" } else { "arrived" };
         let arrived = result.metrics.get(arrived).copied().unwrap_or_default();
-        let robots = if alone { vec![result] } else { result.robots };
         Self {
-            seed,
-            robots: robots.len(),
+            robots: result.robots.len().max(1),
             arrived: arrived as usize,
             fastest_m_s: fastest_m_s.filter(|speed| speed.is_finite()).unwrap_or(0.0),
-            touches: robots.iter().enumerate().flat_map(touches).collect(),
         }
     }
-}
-
-fn touches((robot, result): (usize, &RunResult)) -> Vec<FeltTouch> {
-    let trace = &result.trace;
-    let begins = trace.samples.windows(2).filter_map(|pair| match pair {
-        [before, now] if now.touching && !before.touching => Some((before, now)),
-        _ => None,
-    });
-    begins
-        .map(|(before, now)| {
-            let state = trace
-                .messages
-                .iter()
-                .rev()
-                .find_map(|message| match message.what {
-                    FromRobot::Telemetry(telemetry) if message.t_s <= now.t_s => {
-                        Some(telemetry.state)
-                    }
-                    _ => None,
-                });
-            let way_m = (now.x_m - before.x_m).hypot(now.y_m - before.y_m);
-            FeltTouch {
-                robot,
-                at_s: now.t_s,
-                state: state.unwrap_or_default(),
-                speed_m_s: way_m / (now.t_s - before.t_s),
-            }
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! It knows no physics and none of the real control; it answers, and it moves when armed.
 
 use rumbo_control::mode::{ModeId, Reference};
-use rumbo_control::params::{ParamError, ParamId, Params, SCHEMA};
+use rumbo_control::params::{ParamId, Params, SCHEMA};
 use rumbo_control::{AgedRange, Duty, Pose, Range, Velocity, Wheels};
 use rumbo_log::{Choice, MapPose, ScenarioOffer, Scene, SceneObstacle, SonarMount, Truth};
 use rumbo_session::{Abilities, Target, TargetError};
@@ -197,10 +197,7 @@ impl Toy {
             }
             Command::SetParam { id, value } => {
                 let id = ParamId::from_number(id).ok_or(Refusal::UnknownParam)?;
-                return self.params.set(id, value).map_err(|error| match error {
-                    ParamError::NotFinite => Refusal::NotFinite,
-                    ParamError::OutOfRange => Refusal::OutOfRange,
-                });
+                return Ok(self.params.set(id, value)?);
             }
             Command::ResetParams => self.params = Params::default(),
             _ => {}

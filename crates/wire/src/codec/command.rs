@@ -66,7 +66,7 @@ pub(super) fn command(from: &mut Reader) -> Result<Command, Malformed> {
             right: from.f32(),
         }),
         8 => Command::Move {
-            movement: movement(from.u8()).ok_or(from.wrong())?,
+            movement: Movement::from_number(from.u8()).ok_or(from.wrong())?,
             level: match from.u8() {
                 LEVEL_DUTY => MovementLevel::Duty(from.f32()),
                 LEVEL_SPEED => MovementLevel::Speed(from.f32()),
@@ -109,8 +109,4 @@ pub(super) fn command(from: &mut Reader) -> Result<Command, Malformed> {
 
 pub(super) fn mode(from: &mut Reader) -> Result<ModeId, Malformed> {
     ModeId::from_number(from.u8()).ok_or(from.wrong())
-}
-
-fn movement(number: u8) -> Option<Movement> {
-    Movement::ALL.get(usize::from(number)).copied()
 }

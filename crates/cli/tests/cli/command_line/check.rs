@@ -2,58 +2,21 @@
 
 use super::sketch::{bench, rumbo};
 use crate::support::{stderr, stdout};
-use std::path::PathBuf;
-
-const SKETCH: &str = "
-void setup() { Serial.begin(115200); Serial1.begin(9600); pinMode(7, OUTPUT); delay(100); Serial.println(\"ready\"); }
-void loop() {
-  if (Serial.read() == 'P') {
-    digitalWrite(7, HIGH); delayMicroseconds(500); digitalWrite(7, LOW);
-    Serial.println(analogRead(A0));
-  }
-  int got = Serial1.read();
-  if (got >= 0) { Serial1.print(\"got \"); Serial1.println(char(got)); analogWrite(9, 128); }
-}";
+use std::path::{Path, PathBuf};
 
 /// A folder with the sketch and a file of tests, or `None` where no compiler is installed.
 fn with(name: &str, tests: &str) -> Option<PathBuf> {
     let bench = bench(name)?;
-    std::fs::write(bench.join("it.ino"), SKETCH).unwrap();
-    std::fs::write(bench.join("tests.toml"), tests).unwrap();
+    let given = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs/check");
+    for (from, to) in [("it.ino", "it.ino"), (tests, "tests.toml")] {
+        std::fs::copy(given.join(from), bench.join(to)).unwrap();
+    }
     Some(bench)
 }
 
 #[test]
 fn claims_that_hold_pass_and_one_that_does_not_says_what_came_instead() {
-    let tests = "\
-sketch = \"it.ino\"
-[[test]]
-name = \"answers a letter with a pulse and a reading\"
-step = [
-  { expect = \"ready\" },
-  { pin = \"A0\", apply_v = 2.5 },
-  { send = \"P\", line_ending = \"none\" },
-  { pin = 7, over_s = 0.1, pulses = { min = 1, max = 1 }, width_us = { min = 499, max = 515 } },
-  { expect = \"512\" },
-]
-[[test]]
-name = \"modulates what the module asks for\"
-step = [
-  { run_s = 0.2 },
-  { send = \"x\", port = \"link\" },
-  { expect = \"got x\", port = \"link\" },
-  { pin = 9, over_s = 0.5, period_us = { min = 2039, max = 2041 }, duty = { min = 0.49, max = 0.51 } },
-  { truth = \"forward_m_s\", max = 0.01 },
-]
-[[test]]
-name = \"is steady\"
-[[test.step]]
-expect = \"ready\"
-[[test.step]]
-expect = \"steady\"
-within_s = 0.2
-";
-    let Some(bench) = with("check", tests) else {
+    let Some(bench) = with("check", "claims.toml") else {
         return;
     };
     let words = ["check", "tests.toml", "--junit", "r.xml", "--out", "failed"];
@@ -86,23 +49,7 @@ within_s = 0.2
 
 #[test]
 fn each_mistake_of_a_file_is_named_by_its_line_before_anything_is_driven() {
-    let tests = "\
-sketch = \"it.ino\"
-firmware = \"it.elf\"
-[[test]]
-name = \"one\"
-step = [
-  { wait = 1 },
-  { expect = \"a\", send = \"b\" },
-  { pin = 7, over_s = 1 },
-  { truth = \"x_mm\", min = 1 },
-  { apply_v = 7, pin = 3 },
-  { send = \"b\", port = \"usb2\" },
-]
-[[test]]
-name = \"one\"
-";
-    let Some(bench) = with("check-wrong", tests) else {
+    let Some(bench) = with("check-wrong", "wrong.toml") else {
         return;
     };
     let done = rumbo(&bench, &["check", "tests.toml"]);

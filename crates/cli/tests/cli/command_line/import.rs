@@ -355,55 +355,6 @@ fn counts_are_speeds_by_what_a_turn_counts_and_rows_of_the_serial_monitor_have_i
 }
 
 #[test]
-fn what_columns_are_missing_or_unclear_is_said_with_what_there_is() {
-    let import = Import::of("table.csv", b"millis;rpm_l;v_l\n0;1;1\n20;2;1\n40;3;1\n");
-    for (columns, said) in [
-        (
-            "t_ms=millis,left_rpm=speed",
-            "there is no column `speed`; there are millis, rpm_l, v_l",
-        ),
-        (
-            "t_ms=millis,left_rpms=rpm_l",
-            "`left_rpms` is no name of a signal; there are t_s|ms|us|ns, dt_s|",
-        ),
-        (
-            "t_ms=millis,left=v_l",
-            "in which unit is `left=v_l`? name it: left_rpm, left_rad_s,",
-        ),
-        ("left_rpm=rpm_l", "which column has the times?"),
-        ("t_ms=v_l", "t_ms does not rise"),
-        (
-            "t_ms=millis,left_turn=rpm_l/COUNTS",
-            "COUNTS stands for a number",
-        ),
-        (
-            "t_ms=millis,left_rpm=rpm_l,left_rad_s=v_l",
-            "left_rpm and left_rad_s are the same signal",
-        ),
-        ("t_s=millis*1e5,left=rpm_l", "it lasts 4000000 s"),
-    ] {
-        let refused = import.run(&["import", "table.csv", "--columns", columns]);
-        assert_eq!(refused.status.code(), Some(2), "{columns}");
-        assert!(
-            stderr(&refused).contains(said),
-            "{columns}: {}",
-            stderr(&refused)
-        );
-    }
-}
-
-#[test]
-fn columns_of_what_is_no_table_are_refused_with_what_a_table_is() {
-    for table in ["a,b\n", "a,b\n1,2\n", "a,b\n1,2,5\n2,3,5\n3,4,5\n"] {
-        let import = Import::of("table.csv", table.as_bytes());
-        let refused = import.run(&["import", "table.csv", "--columns", "t_ms=a"]);
-        let said = stderr(&refused);
-        assert!(said.contains("as many cells as the header"), "{said}");
-        assert_eq!(refused.status.code(), Some(2));
-    }
-}
-
-#[test]
 fn a_log_of_another_program_is_imported_and_only_ours_is_sent_to_replay() {
     let bags = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../ros/tests/bags");
     let import = Import::of(

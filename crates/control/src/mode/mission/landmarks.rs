@@ -13,7 +13,7 @@
 //! | [`DOUBT_M`] of way in doubt, or [`DEAF_AFTER`] silences | it must be tested |
 //! | [`LASTING`] silences, and nothing to test it by | doubt until the next echo |
 
-use super::echoes::{Beam, direction};
+use super::beam::{Beam, direction};
 use super::place::{Place, fractions};
 use crate::math::{abs, atan2, wrap_angle};
 use crate::types::{Pose, TICK_S, Transform};

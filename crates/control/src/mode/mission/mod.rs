@@ -11,6 +11,7 @@
 //! angles, scans while it drives, goes straight past stored points, leaves early, and detects when to give up.
 //! Derivation, proof of termination and figures: docs/theory/mission.md.
 
+mod beam;
 mod detour;
 mod echoes;
 mod gaze;
@@ -40,7 +41,8 @@ use crate::rig::{Rig, Rigs};
 use crate::types::{
     Drive, Fault, Look, Pose, Range, ServoAngle, Side, SonarId, SonarReading, TICK_S,
 };
-use echoes::{Beam, Echoes};
+use beam::Beam;
+use echoes::Echoes;
 use gaze::Gaze;
 use goal::CAREFUL_M;
 use moving::Movement;

@@ -148,7 +148,7 @@ fn seen_from(pose: &Pose, place: Place) -> (f32, f32) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::echoes::Beam;
+    use super::super::beam::Beam;
     use super::*;
     use crate::types::{Range, SonarId, SonarReading, SonarView, Transform};
 

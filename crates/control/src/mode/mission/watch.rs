@@ -7,7 +7,7 @@
 //! an echo or a silence: [`Landmarks`] judge the silences of the front sonar.
 
 use super::SWEEP_RAD;
-use super::echoes::Beam;
+use super::beam::Beam;
 use super::landmarks::Landmarks;
 use super::moving::{Approach, Since, Track};
 use super::place::Place;
