@@ -103,7 +103,7 @@ pub(crate) fn of_the_sketch(experiment: &Experiment) -> Result<Times, FileError>
     let setup = sketch_setup(experiment)?;
     let mut sim = setup.sim(1)?;
     sim.advance(START_US);
-    for line in [experiment.line, "ON"] {
+    for line in [experiment.line.as_str(), "ON"] {
         sim.send(line.as_bytes());
         sim.send(b"\n");
     }
