@@ -115,24 +115,20 @@ impl Observer {
                 Level::Info
             }
         };
-        let text = match kind.detail() {
-            Some(detail) => match kind {
-                EventKind::GaveUp { after_s } => {
-                    format!("gave up after {after_s} s: {detail}")
-                }
-                _ => format!("{}: {detail}", kind.title()),
-            },
-            None => kind.title().into(),
+        let text = match (kind, kind.detail()) {
+            (EventKind::GaveUp { after_s }, Some(detail)) => {
+                format!("gave up after {after_s} s: {detail}")
+            }
+            (_, Some(detail)) => format!("{}: {detail}", kind.title()),
+            (_, None) => kind.title().into(),
         };
         self.note(t_ms, level, text);
     }
 
     /// Reports a restart, at most once in `RESTARTS_MS`.
     fn restarted(&mut self, hello: Hello, now_ms: i64) {
-        if self
-            .restart_ms
-            .is_some_and(|at_ms| now_ms < at_ms + RESTARTS_MS)
-        {
+        let recently = |at_ms: i64| now_ms < at_ms + RESTARTS_MS;
+        if self.restart_ms.is_some_and(recently) {
             return;
         }
         self.restart_ms = Some(now_ms);
@@ -143,11 +139,8 @@ impl Observer {
 
     fn connected(&mut self, hello: Hello, table_matches: bool, now_ms: i64) {
         let why = hello.reset.explanation();
-        self.note(
-            now_ms,
-            Level::Good,
-            format!("connected; the robot's program started after: {why}"),
-        );
+        let text = format!("connected; the robot's program started after: {why}");
+        self.note(now_ms, Level::Good, text);
         if !table_matches {
             let text =
                 "the robot has another parameter table: parameters are neither shown nor written";
