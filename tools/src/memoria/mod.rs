@@ -39,7 +39,7 @@ fn print(seeds: u64, names: &[String]) -> Result<(), FileError> {
         "|---".repeat(TIMES.len() + 1) + "|"
     );
     for experiment in experiments()? {
-        if names.is_empty() || names.iter().any(|name| *name == experiment.scenario) {
+        if names.is_empty() || names.contains(&experiment.scenario) {
             eprintln!("{} ...", experiment.scenario);
             rows(&experiment, seeds, [&mut whole, &mut times])?;
         }
