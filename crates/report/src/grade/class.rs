@@ -60,11 +60,7 @@ pub fn class(
 }
 
 fn anchor(link: &str, words: &str) -> String {
-    format!(
-        "<a href=\"{}#class\">{}</a>",
-        escape(link),
-        escape(words)
-    )
+    format!("<a href=\"{}#class\">{}</a>", escape(link), escape(words))
 }
 
 /// A hand-in in the table of the class.

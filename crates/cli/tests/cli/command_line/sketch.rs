@@ -116,7 +116,15 @@ fn a_new_sketch_for_an_uno_drives_the_robot_with_an_uno_and_no_other() {
     let run = rumbo(
         &bench,
         &[
-            "run", "mode1", "--robot", "uno", "--usb", "REF 50@5.5", "--sketch", "small", "--no-record",
+            "run",
+            "mode1",
+            "--robot",
+            "uno",
+            "--usb",
+            "REF 50@5.5",
+            "--sketch",
+            "small",
+            "--no-record",
         ],
     );
     assert_eq!(run.status.code(), Some(0), "{}", stdout(&run));
