@@ -97,9 +97,6 @@ pub struct Devices {
 impl Devices {
     /// Those of a chip after power-on.
     pub(crate) fn new(model: &'static Model) -> Devices {
-        let of_timers = model.timers.iter().flat_map(timer::Place::inputs);
-        let of_usarts = model.usarts.iter().flat_map(usart::Place::inputs);
-        let inputs = of_timers.chain(of_usarts);
         Devices {
             core: Core::new(model),
             external: External::new(model),
@@ -116,7 +113,7 @@ impl Devices {
             stopped_at: None,
             start: 0,
             inputs: VecDeque::new(),
-            sensed: inputs.fold(0, |all, pin| all | 1 << pin.number()),
+            sensed: model.sensed(),
             unmodelled: Vec::new(),
             strange: BTreeSet::new(),
         }
