@@ -125,6 +125,14 @@ impl Model {
         2 * self.flash_words as usize
     }
 
+    /// The inputs of timers and USARTs, by the pin's number.
+    pub(crate) fn sensed(&self) -> u128 {
+        let of_timers = self.timers.iter().flat_map(timer::Place::inputs);
+        let of_usarts = self.usarts.iter().flat_map(usart::Place::inputs);
+        let inputs = of_timers.chain(of_usarts);
+        inputs.fold(0, |all, pin| all | 1 << pin.number())
+    }
+
     /// Where the boot section starts with these fuses [words].
     pub const fn boot_start(&self, fuses: Fuses) -> u32 {
         self.flash_words - (self.boot_words >> (fuses.high >> 1 & 3))

@@ -213,7 +213,7 @@ impl<S: Deref<Target = Setup> + Clone> Member<S> {
     /// What became of it, not yet judged by limits.
     fn result(mut self, sim: &mut Sim, seed: u64) -> RunResult {
         self.trace.messages = self.operator.received;
-        self.trace.link.append(&mut sim.take_tapped());
+        self.trace.link.append(sim.take_tapped());
         let mut failures = self.operator.complaints;
         let mut notes = self.operator.notes;
         let mut ended = None;

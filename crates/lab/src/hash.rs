@@ -62,10 +62,10 @@ fn of(result: &RunResult) -> u64 {
         for sample in &trace.samples {
             values_of(trace, sample).for_each(|value| digest.update(&bits(value)));
         }
-        for burst in &trace.link {
+        for burst in trace.link.iter() {
             digest.update(&burst.t_us.to_le_bytes());
             digest.update(&[u8::from(burst.to_robot)]);
-            digest.update(&burst.bytes);
+            digest.update(burst.bytes);
         }
         for said in &trace.consoles {
             digest.update(&said.t_us.to_le_bytes());

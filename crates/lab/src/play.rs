@@ -55,12 +55,12 @@ impl Experiment {
             return sim.advance(self.given_us / SAMPLE_US * SAMPLE_US);
         };
         player.advance(sim, self.given_us);
-        for burst in player.take_link(sim) {
+        for burst in player.take_link(sim).iter() {
             match burst.to_robot {
                 true => self.sent.push(Burst {
                     t_us: burst.t_us,
                     to_robot: true,
-                    bytes: burst.bytes,
+                    bytes: burst.bytes.to_vec(),
                 }),
                 false => self.received.extend(burst.bytes),
             }

@@ -219,11 +219,11 @@ fn micros(t_s: f64) -> u64 {
 
 /// Bytes that crossed the link, as a log has them.
 #[must_use]
-pub fn burst(burst: &rumbo_sim::LinkBurst) -> Burst {
+pub fn burst(burst: rumbo_sim::LinkBurst<'_>) -> Burst {
     Burst {
         t_us: burst.t_us,
         to_robot: burst.to_robot,
-        bytes: burst.bytes.clone(),
+        bytes: burst.bytes.to_vec(),
     }
 }
 

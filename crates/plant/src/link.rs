@@ -128,8 +128,11 @@ impl Link {
 
     /// Appends to `into` every byte that has arrived by now.
     pub fn receive(&mut self, now_us: u64, into: &mut Vec<u8>) {
-        while let Some((_, byte)) = self.pop(now_us) {
-            into.push(byte);
+        let waiting = self.under_way.iter();
+        let arrived = waiting.take_while(|(at_us, _)| *at_us <= now_us).count();
+        if arrived > 0 {
+            into.extend(self.under_way.range(..arrived).map(|(_, byte)| *byte));
+            self.under_way.drain(..arrived);
         }
     }
 

@@ -55,8 +55,9 @@ impl Noise {
         unit(self.bits(source, step))
     }
 
-    /// True with the given probability (never for 0, always for 1).
+    /// True with the given probability (never for 0, always for 1). Inline: most probabilities are 0.
     #[must_use]
+    #[inline]
     pub fn chance(&self, source: u32, step: u64, probability: f64) -> bool {
         probability > 0.0 && self.uniform(source, step) < probability
     }

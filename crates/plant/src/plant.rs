@@ -384,19 +384,22 @@ impl Plant {
     ) {
         let (i, from_us) = (wheel.index(), state.now_us);
         self.encoders[i].turn(&mut state.encoders[i], from_rad, to_rad, |edge| {
-            // Within (from, until]: an edge at the very start belongs to the next microsecond.
-            let into_us = libm::ceil(edge.fraction * step_us).clamp(1.0, step_us);
+            // Within (from, until], rounded up: an edge at the very start belongs to the next microsecond.
+            let exact_us = edge.fraction * step_us;
+            let whole_us = exact_us as u32;
+            let into_us = whole_us + u32::from(f64::from(whole_us) < exact_us);
             let event = Event::Edge {
                 wheel,
                 channel: edge.channel,
-                at_us: from_us + into_us as u64,
+                at_us: from_us + u64::from(into_us.max(1)),
                 level: edge.level,
             };
             queue.put(event, events);
         });
     }
 
-    /// Reports the edges of the echo lines up to now.
+    /// Reports the edges of the echo lines up to now. Inline: most steps have none.
+    #[inline]
     pub(crate) fn pass_echoes(
         state: &mut State,
         queue: &mut Queue,

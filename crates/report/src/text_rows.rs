@@ -1,14 +1,14 @@
 //! Telemetry rows of the original text protocol, parsed from the raw bytes of the link.
 
 use crate::channel::Channel;
-use rumbo_sim::LinkBurst;
+use rumbo_sim::LinkTape;
 use rumbo_wire::text::{MissionRow, TextRow};
 
 /// The rows that the robot sent, each with its time of arrival [s].
-pub(crate) fn rows(link: &[LinkBurst]) -> Vec<(f64, TextRow)> {
+pub(crate) fn rows(link: &LinkTape) -> Vec<(f64, TextRow)> {
     let (mut rows, mut line) = (Vec::new(), Vec::new());
     for burst in link.iter().filter(|burst| !burst.to_robot) {
-        for byte in &burst.bytes {
+        for byte in burst.bytes {
             if *byte != b'\n' {
                 line.push(*byte);
                 continue;
@@ -78,19 +78,22 @@ pub(crate) fn mission(row: &TextRow) -> Option<&MissionRow> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rumbo_sim::LinkBurst;
 
     #[test]
     fn rows_are_found_in_bytes_that_come_in_pieces() {
-        let burst = |t_us, to_robot, text: &str| LinkBurst {
-            t_us,
-            to_robot,
-            bytes: text.as_bytes().to_vec(),
-        };
-        let link = [
-            burst(1_000_000, false, "hello\r\n60,10"),
-            burst(1_100_000, true, "ON\n"),
-            burst(1_200_000, false, "7.5,107.5,30,1,115,115\r\n"),
-        ];
+        let mut link = LinkTape::default();
+        for (t_us, to_robot, text) in [
+            (1_000_000, false, "hello\r\n60,10"),
+            (1_100_000, true, "ON\n"),
+            (1_200_000, false, "7.5,107.5,30,1,115,115\r\n"),
+        ] {
+            link.push(LinkBurst {
+                t_us,
+                to_robot,
+                bytes: text.as_bytes(),
+            });
+        }
         let rows = rows(&link);
         assert_eq!(rows.len(), 1);
         assert_eq!(

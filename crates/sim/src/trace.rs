@@ -2,7 +2,8 @@
 
 use crate::instruments::READING_US;
 use crate::mega::CONSOLES;
-use crate::sim::{LinkBurst, Sim};
+use crate::sim::Sim;
+use crate::tape::LinkTape;
 use rumbo_control::params::Params;
 use rumbo_plant::contact::Pose;
 use rumbo_plant::plant::Plant;
@@ -91,7 +92,7 @@ pub struct Trace {
     /// The samples, in order of time.
     pub samples: Vec<TruthSample>,
     /// What crossed the link, in order.
-    pub link: Vec<LinkBurst>,
+    pub link: LinkTape,
     /// What the USARTs of an emulated Mega have sent, in order.
     pub consoles: Vec<UsartOutput>,
     /// What instruments at an emulated Mega have shown, in order.

@@ -131,15 +131,15 @@ impl External {
 
     /// Tells which of the vectors are requested.
     pub(crate) fn request(&self, interrupts: &mut Interrupts, ports: &Ports) {
-        for (number, pin) in self.model.external.0.iter().enumerate() {
-            let mask = 1 << number;
-            let low = self.sense(number) == 0 && !ports.level(*pin);
-            let requested = self.enabled & mask != 0 && (self.flags & mask != 0 || low);
-            interrupts.set(INT0 + number as u8, requested);
+        let mut requested = self.enabled & self.flags;
+        if self.enabled != requested {
+            for (number, pin) in self.model.external.0.iter().enumerate() {
+                let low = self.sense(number) == 0 && !ports.level(*pin);
+                requested |= self.enabled & u8::from(low) << number;
+            }
         }
-        for group in 0..3 {
-            let requested = self.change_enabled & self.change_flags & (1 << group) != 0;
-            interrupts.set(self.model.numbers.pin_change + group, requested);
-        }
+        interrupts.set_all(INT0, self.lines(), requested);
+        let requested = self.change_enabled & self.change_flags;
+        interrupts.set_all(self.model.numbers.pin_change, 7, requested);
     }
 }

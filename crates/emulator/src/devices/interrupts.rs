@@ -44,6 +44,17 @@ impl Interrupts {
         }
     }
 
+    /// The same for vectors from `first` on, those in `mask`: the ones in `requested`, and no others.
+    pub(crate) fn set_all(&mut self, first: u8, mask: u8, requested: u8) {
+        let requested = u64::from(requested) << first;
+        let mut raised = requested & !self.requested;
+        while raised != 0 {
+            self.since[raised.trailing_zeros() as usize] = self.now;
+            raised &= raised - 1;
+        }
+        self.requested = self.requested & !(u64::from(mask) << first) | requested;
+    }
+
     /// Withdraws all requests.
     pub(crate) fn clear(&mut self) {
         self.requested = 0;

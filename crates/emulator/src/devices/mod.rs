@@ -87,6 +87,8 @@ pub struct Devices {
     /// Where the program starts after a reset [words].
     start: u32,
     inputs: VecDeque<(u64, Input)>,
+    /// The inputs of timers and USARTs, by the pin's number.
+    sensed: u128,
     unmodelled: Vec<Unmodelled>,
     /// Their addresses.
     strange: BTreeSet<u16>,
@@ -111,6 +113,7 @@ impl Devices {
             stopped_at: None,
             start: 0,
             inputs: VecDeque::new(),
+            sensed: model.sensed(),
             unmodelled: Vec::new(),
             strange: BTreeSet::new(),
         }
@@ -393,12 +396,9 @@ impl Devices {
     /// Propagates pin changes to the peripherals that watch pins, until nothing changes any more.
     fn settle(&mut self) {
         while let Some((change, cycle)) = self.core.changes.pop_front() {
-            for bit in 0..8 {
-                if change.driven >> bit & 1 != 0 {
-                    let pin = Pin::at(change.port, bit);
-                    let event = Event::Pin(pin, self.core.ports.drive(pin));
-                    self.core.emit(cycle, event);
-                }
+            for pin in change.pins(change.driven) {
+                let event = Event::Pin(pin, self.core.ports.drive(pin));
+                self.core.emit(cycle, event);
             }
             if change.driven != 0 {
                 self.analog.port_changed(&mut self.core, change.port, cycle);
@@ -428,24 +428,23 @@ impl Devices {
     }
 
     fn notify_pins(&mut self, change: &Change, cycle: u64) {
-        for bit in 0..8 {
-            if change.levels >> bit & 1 != 0 {
-                let pin = Pin::at(change.port, bit);
-                let level = self.core.ports.level(pin);
-                if let Some(levels) = &mut self.core.levels {
-                    let high = level;
-                    let cycle = self.core.clock.time(cycle);
-                    levels.push(Level { cycle, pin, high });
-                }
+        for pin in change.pins(change.levels) {
+            let level = self.core.ports.level(pin);
+            if let Some(levels) = &mut self.core.levels {
+                let high = level;
+                let cycle = self.core.clock.time(cycle);
+                levels.push(Level { cycle, pin, high });
+            }
+            if self.sensed >> pin.number() & 1 != 0 {
                 for timer in &mut self.timers {
                     timer.pin_changed(&mut self.core, pin, level, cycle);
                 }
                 for usart in &mut self.usarts {
                     usart.pin_changed(&mut self.core, pin, cycle);
                 }
-                self.spi.pin_changed(&mut self.core, pin, cycle);
-                self.twi.pin_changed(&mut self.core, pin, cycle);
             }
+            self.spi.pin_changed(&mut self.core, pin, cycle);
+            self.twi.pin_changed(&mut self.core, pin, cycle);
         }
     }
 }

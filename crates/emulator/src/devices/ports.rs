@@ -110,19 +110,14 @@ impl Port {
         self.output & !self.output_override | self.output_value & self.output_override
     }
 
-    /// What the chip does to bit `mask`.
-    fn drive(&self, mask: u8, pull_ups: bool) -> Drive {
-        if self.directions() & mask != 0 {
-            if self.outputs() & mask != 0 {
-                Drive::High
-            } else {
-                Drive::Low
-            }
-        } else if self.output & mask != 0 && pull_ups {
-            Drive::PullUp
-        } else {
-            Drive::Floating
-        }
+    /// What the chip does to its pins: which it drives, and which it drives or pulls high.
+    fn drives(&self, pull_ups: bool) -> [u8; 2] {
+        let directions = self.directions();
+        let pulled = if pull_ups { self.output } else { 0 };
+        [
+            directions,
+            self.outputs() & directions | pulled & !directions,
+        ]
     }
 }
 
@@ -145,6 +140,18 @@ pub(crate) struct Change {
     pub(crate) levels: u8,
     /// Pins to which the chip does something else than before.
     pub(crate) driven: u8,
+}
+
+impl Change {
+    /// The pins of some bits of the port, lowest first.
+    pub(crate) fn pins(&self, mut bits: u8) -> impl Iterator<Item = Pin> + use<> {
+        let port = self.port;
+        std::iter::from_fn(move || {
+            let bit = bits.trailing_zeros() as u8;
+            bits &= bits.wrapping_sub(1);
+            (bit < 8).then(|| Pin::at(port, bit))
+        })
+    }
 }
 
 /// All ports.
@@ -354,7 +361,14 @@ impl Ports {
 
     /// What the chip does to a pin.
     pub(crate) fn drive(&self, pin: Pin) -> Drive {
-        self.ports[pin.port() % PORTS].drive(pin.mask(), !self.pull_ups_disabled)
+        let port = &self.ports[pin.port() % PORTS];
+        let drives = port.drives(!self.pull_ups_disabled);
+        match drives.map(|pins| pins & pin.mask() != 0) {
+            [true, true] => Drive::High,
+            [true, false] => Drive::Low,
+            [false, true] => Drive::PullUp,
+            [false, false] => Drive::Floating,
+        }
     }
 
     fn change(
@@ -392,13 +406,9 @@ impl Ports {
             port.level = level;
             port.changed = cycle;
         }
-        let port = *port;
-        let driven = (0..8).fold(0, |driven, bit| {
-            let mask = 1 << bit;
-            let was = before.drive(mask, !pull_ups_disabled_before);
-            let is = port.drive(mask, pull_ups != 0);
-            driven | if was == is { 0 } else { mask }
-        });
+        let was = before.drives(!pull_ups_disabled_before);
+        let is = port.drives(pull_ups != 0);
+        let driven = was[0] ^ is[0] | was[1] ^ is[1];
         (levels | driven != 0).then_some(Change {
             port: index,
             levels,

@@ -210,7 +210,7 @@ impl Robot {
         if let Some(trace) = &mut self.trace {
             trace.sample(&self.sim);
             trace.listen(&mut self.sim);
-            trace.link.append(&mut self.sim.take_tapped());
+            trace.link.append(self.sim.take_tapped());
         }
         let (Some(probe), Some(mega)) = (&mut self.probe, self.sim.mega_mut()) else {
             return;

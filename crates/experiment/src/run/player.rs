@@ -3,7 +3,7 @@
 use super::{Member, RunResult, judged, prepare};
 use crate::files::{FileError, Setup};
 use rumbo_sim::trace::SAMPLE_US;
-use rumbo_sim::{LinkBurst, Sim};
+use rumbo_sim::{LinkTape, Sim};
 use std::borrow::Cow;
 use std::ops::Deref;
 use std::sync::Arc;
@@ -124,11 +124,11 @@ impl Player<Arc<Setup>> {
     }
 
     /// What has crossed the link since the last call.
-    pub fn take_link(&mut self, sim: &mut Sim) -> Vec<LinkBurst> {
-        let bursts = sim.take_tapped();
+    pub fn take_link(&mut self, sim: &mut Sim) -> LinkTape {
+        let tape = sim.take_tapped();
         let members = self.members.iter_mut();
-        members.for_each(|member| member.trace.link.extend(bursts.iter().cloned()));
-        bursts
+        members.for_each(|member| member.trace.link.append(tape.clone()));
+        tape
     }
 
     /// How it went.

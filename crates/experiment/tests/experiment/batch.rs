@@ -327,8 +327,8 @@ fn a_driven_robot_says_to_the_tap_what_it_knows_and_what_it_was_commanded() {
     let mut commands = Vec::new();
     let mut others = Vec::new();
     let mut decoder = [Decoder::<160>::default(), Decoder::default()];
-    for burst in &robot.trace().unwrap().link {
-        for byte in &burst.bytes {
+    for burst in robot.trace().unwrap().link.iter() {
+        for byte in burst.bytes {
             let decoder = &mut decoder[usize::from(burst.to_robot)];
             let Some(Received::Frame(body)) = decoder.push(*byte) else {
                 continue;

@@ -23,6 +23,7 @@ use crate::error::SimError;
 use crate::floor::DarkLine;
 use crate::mega::Mega;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
+use crate::tape::{LinkBurst, LinkTape};
 use crate::wire_fault::WireFaults;
 pub use native::Latched;
 use native::{Memory, Native};
@@ -47,17 +48,6 @@ enum Controller {
     Rumbo(Box<Native>),
     Baseline(Box<Baseline>),
     Mega(Box<Mega>),
-}
-
-/// Raw bytes that crossed the link together.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LinkBurst {
-    /// When they were sent to the robot, or had arrived from it [us].
-    pub t_us: u64,
-    /// To the robot, or from it.
-    pub to_robot: bool,
-    /// What.
-    pub bytes: Vec<u8>,
 }
 
 /// A simulated robot in its world.
@@ -87,7 +77,7 @@ pub struct Sim {
     /// The supply of an emulated program's motors is cut.
     motors_cut: bool,
     /// What crossed the link, while it is tapped.
-    tapped: Option<Vec<LinkBurst>>,
+    tapped: Option<LinkTape>,
     among_others: bool,
     /// What was put elsewhere, by number, and how far from where the world has it \[m\].
     shifted: BTreeMap<usize, [f64; 2]>,
@@ -280,11 +270,11 @@ impl Sim {
     /// that it receives, except the setpoints of its wheels.
     pub fn tap_link(&mut self) {
         self.greet_unlinked();
-        self.tapped = Some(Vec::new());
+        self.tapped = Some(LinkTape::default());
     }
 
     /// Drains what crossed the link since it was tapped.
-    pub fn take_tapped(&mut self) -> Vec<LinkBurst> {
+    pub fn take_tapped(&mut self) -> LinkTape {
         let tapped = self.tapped.as_mut();
         tapped.map(std::mem::take).unwrap_or_default()
     }
@@ -301,7 +291,7 @@ impl Sim {
             tapped.push(LinkBurst {
                 t_us,
                 to_robot,
-                bytes: bytes.to_vec(),
+                bytes,
             });
         }
     }

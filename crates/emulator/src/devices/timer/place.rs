@@ -74,6 +74,11 @@ impl Place {
         self
     }
 
+    /// The pins whose changes it acts upon.
+    pub(crate) fn inputs(&self) -> impl Iterator<Item = Pin> + use<> {
+        [self.clock, self.capture].into_iter().flatten()
+    }
+
     /// The register at an address.
     pub(crate) fn register(&self, address: u16) -> Option<Register> {
         if address == self.flags {

@@ -50,6 +50,11 @@ impl Place {
         }
     }
 
+    /// The pins whose changes it acts upon.
+    pub(crate) fn inputs(&self) -> [Pin; 2] {
+        [self.receive, self.clock]
+    }
+
     pub(crate) const fn register(&self, address: u16) -> Option<Register> {
         Some(match address.wrapping_sub(self.base) {
             0 => Register::StatusA,

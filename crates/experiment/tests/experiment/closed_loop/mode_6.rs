@@ -83,7 +83,7 @@ fn a_calibration_that_is_recorded_finds_the_same() {
         trace.samples.len(),
         ((last_s * 1e6).round() as usize).div_ceil(10_000)
     );
-    assert!(trace.link.last().unwrap().t_us as f64 * 1e-6 <= last_s);
+    assert!(trace.link.iter().last().unwrap().t_us as f64 * 1e-6 <= last_s);
 }
 
 #[test]
