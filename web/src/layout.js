@@ -43,11 +43,13 @@ export const LOOP_PLOTS = [
 
 /** In place of a mode's number: a program that does not say which mode it is in, as most people's own. */
 export const OWN_PROGRAM = -2;
+/** Sonars with usual names: those that a robot has not, have nothing to show. */
+const SONARS = ['left', 'right', 'front', 'rear', 'back', 'front_left', 'front_right', 'rear_left', 'rear_right', 'back_left', 'back_right'];
 /** What can be plotted of any program. */
 export const OWN_PLOTS = [
   plot('wheels', 4, ['true_left_rpm', 'true_right_rpm']),
   plot('PWM', 3, ['true_left_pwm', 'true_right_pwm']),
-  plot('sonars', 4, ['true_range_left_cm', 'true_range_right_cm', 'true_range_front_cm', 'pinged_left_cm', 'pinged_right_cm', 'pinged_front_cm']),
+  plot('sonars', 4, ['true_range', 'pinged'].flatMap((way) => SONARS.map((sonar) => `${way}_${sonar}_cm`))),
   plot('heading', 4, ['true_heading_deg']),
   plot('position', 4, ['true_x_m', 'true_y_m']),
 ];

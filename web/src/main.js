@@ -89,6 +89,7 @@ function setBody() {
   sonars = (simulated ?? own)?.sonars.map(({ id }) => id).sort() ?? [0, 1, 2];
   servo = (simulated ?? own)?.sonars.some(({ on_servo }) => on_servo) ?? true;
   stateLine.sonars = sonars;
+  stateLine.other_sonars = simulated?.other_sonars ?? [];
 }
 
 /** A program that sends no telemetry has other plots, until it sends some. */

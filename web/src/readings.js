@@ -33,7 +33,7 @@ const READ_S = 0.04;
  * @typedef {object} Truth
  * @property {number} t_s
  * @property {Pose} pose In the world.
- * @property {[Cell, Cell, Cell]} pinged_m What the sonars measured: left, right, front.
+ * @property {Cell[]} pinged_m What the sonars measured: left, right, front, and those with names of their own.
  * @property {number | null} servo_rad
  * @property {boolean} contact
  */
@@ -120,6 +120,7 @@ export class Readings {
       return [];
     }
     const signals = names.map(seen);
+    const others = names.filter((name) => /^pinged_(?!(left|right|front)_m$)\w+_m$/.test(name));
     this[source].offer(signals.map(([name]) => name));
     if (source === 'loops') {
       // A loop that is not at work is left out of a log: its curve ends.
@@ -138,7 +139,7 @@ export class Readings {
       const pose = { x_m, y_m, heading_rad };
       this.#heading_deg = near(heading_rad * DEG_PER_RAD, this.#heading_deg);
       this.truth.push(t_s, { ...values, true_heading_deg: this.#heading_deg });
-      return [{ t_s, pose, pinged_m: /** @type {[Cell, Cell, Cell]} */ (['left', 'right', 'front'].map((sonar) => cell(`pinged_${sonar}_m`))), servo_rad: number(cell('true_servo_rad')), contact: cell('contact') === 1 }];
+      return [{ t_s, pose, pinged_m: ['pinged_left_m', 'pinged_right_m', 'pinged_front_m', ...others].map(cell), servo_rad: number(cell('true_servo_rad')), contact: cell('contact') === 1 }];
     });
   }
 }

@@ -109,7 +109,9 @@ function ifComputed(name) {
 export function signal(name) {
   if (name.startsWith(MARK)) return ifComputed(name);
   const known = met.get(name) ?? null;
-  const [, pin = null, port = null, printed = null, felt = null, turn = null] = name.match(/^(?:pin_(\w+)|serial(\d+):(.+)|(\w+)_m_s2|(\w+_yaw)_deg_s)$/) ?? [];
+  const [, pin = null, port = null, printed = null, felt = null, turn = null, way = null, sonar = null] =
+    name.match(/^(?:pin_(\w+)|serial(\d+):(.+)|(\w+)_m_s2|(\w+_yaw)_deg_s|(true_range|pinged)_(\w+)_cm)$/) ?? [];
+  if (sonar !== null && known === null) return ranged(name, sonar.replaceAll('_', ' '), way === 'pinged');
   const inertial = felt ?? turn;
   const label = pin ? named(pin) : inertial?.replaceAll('_', ' ') ?? printed;
   if (known || label === null) return known;
@@ -118,6 +120,16 @@ export function signal(name) {
   const colour = COLOURS[(met.size - SIGNALS.length - LOOPS.length) % COLOURS.length] ?? 'left';
   /** @type {Signal} */
   const made = { name, label, about, unit, colour, kind: 'measured' };
+  met.set(name, made);
+  return made;
+}
+
+/** The range of a sonar with a name of its own. @param {string} name @param {string} sonar @param {boolean} pinged @returns {Signal} */
+function ranged(name, sonar, pinged) {
+  const about = pinged ? t('range by the last echo, sonar {}', sonar) : t('true range, sonar {}', sonar);
+  const colour = COLOURS[[...sonar].reduce((sum, each) => sum + each.charCodeAt(0), 0) % COLOURS.length] ?? 'goal';
+  /** @type {Signal} */
+  const made = { name, label: pinged ? sonar : t('true {}', sonar), about, unit: 'cm', colour, kind: pinged ? 'measured' : 'true' };
   met.set(name, made);
   return made;
 }

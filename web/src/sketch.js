@@ -13,7 +13,7 @@ import { formatShort } from './units.js';
 
 /** Outline of a robot of which nothing is known [m]. */
 const DEFAULT_FOOTPRINT = /** @type {[number, number][]} */ ([[0.1, 0.075], [-0.1, 0.075], [-0.1, -0.075], [0.1, -0.075]]);
-const SONAR_COLOURS = /** @type {ColourName[]} */ (['left', 'right', 'front']);
+const SONAR_COLOURS = /** @type {ColourName[]} */ (['left', 'right', 'front', 'goal', 'reference']);
 /** Radius of the heading's sector [m]. */
 const POINTER_M = 0.25;
 /** So many standard deviations to both sides are 95 %. */
@@ -343,7 +343,7 @@ export class Sketch {
 
   /**
    * @param {Pose} robot
-   * @param {[Cell, Cell, Cell]} ranges_m
+   * @param {Cell[]} ranges_m
    * @param {number} servo_rad
    * @param {number} px
    */
@@ -354,7 +354,7 @@ export class Sketch {
       const mount = compose(robot, sonar.at);
       const heading = mount.heading_rad + (sonar.on_servo ? servo_rad : 0);
       const half = sonar.half_angle_rad;
-      const colour = colours[SONAR_COLOURS[sonar.id] ?? 'front'];
+      const colour = colours[SONAR_COLOURS[sonar.id % SONAR_COLOURS.length] ?? 'front'];
       const reach_m = typeof reading === 'number' ? reading : reading === 'clear' ? sonar.reach_m : 0.15;
       context.beginPath();
       context.moveTo(mount.x_m, mount.y_m);

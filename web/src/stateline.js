@@ -33,6 +33,8 @@ export class StateLine {
   #carried = null;
   /** The sonars to show, by number. */
   sonars = [0, 1, 2];
+  /** The names of those from 3 on. @type {string[]} */
+  other_sonars = [];
   /** @type {State | null} */
   #slow = null;
 
@@ -143,7 +145,7 @@ export class StateLine {
     const at = latest?.estimated ? compose(latest.origin, latest.estimated) : latest?.truth;
     if (!latest || !at) return setText(this.#pose, '');
     const lines = [`x ${format(at.x_m, 3)} m   y ${format(at.y_m, 3)} m   ${t('heading')} ${degrees(at.heading_rad)}`];
-    const ranges = this.sonars.map((id) => `${t(SONARS[id] ?? '')} ${inReach(latest.ranges_m[id] ?? null)}`);
+    const ranges = this.sonars.map((id) => `${id < SONARS.length ? t(SONARS[id] ?? '') : this.other_sonars[id - SONARS.length]?.replaceAll('_', ' ')} ${inReach(latest.ranges_m[id] ?? null)}`);
     lines.push(`${robot.rig === null ? '' : `${named(robot.rig)}:  `}${ranges.join('   ')}`);
     if (latest.contact) lines.push(t('contact!'));
     return setText(this.#pose, lines.join('\n'));

@@ -83,7 +83,7 @@ const FARTHEST_DEG = 315;
  * @property {Pose | null} truth In the world.
  * @property {Pose | null} ghost In the world: a simulated robot that receives the same commands.
  * @property {number | null} heading_ref_rad Heading setpoint of the mode; null where it has none.
- * @property {[Cell, Cell, Cell]} ranges_m Left, right, front.
+ * @property {Cell[]} ranges_m Left, right, front, and those with names of their own.
  * @property {number | null} servo_rad
  * @property {boolean} contact
  */

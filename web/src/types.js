@@ -57,6 +57,7 @@
  * @property {number} base_m
  * @property {number} wheel_radius_m
  * @property {SonarMount[]} sonars
+ * @property {string[]} [other_sonars] The names of those from number 3 on.
  * @property {boolean} [of_ghost] The robot itself is not simulated.
  *
  * @typedef {object} Parameter

@@ -20,17 +20,17 @@ import { addable, added, byPin, isSource, pinOf, request, rowsOf } from './wirin
 const PAUSE_MS = 200;
 const MOST_FILES = 100;
 /** @type {Record<string, string>} */
-const PLACES = { left: 'left|wiring', right: 'right|wiring', front: 'front|wiring', link: 'Bluetooth' };
+const PLACES = { left: 'left|wiring', right: 'right|wiring', front: 'front|wiring', rear: 'rear|wiring', link: 'Bluetooth' };
 /** @type {Record<string, string>} */
 const PARTS = {
   enable: 'enable', forward: 'forward input', backward: 'backward input', encoder: 'encoder', encoder_b: 'encoder, output B', trigger: 'sonar, Trig', echo: 'sonar, Echo',
-  rx: 'the board receives', tx: 'the board sends', standby: 'standby', servo: 'servo', line: 'line sensor', obstacle: 'obstacle sensor', sharp: 'Sharp',
+  rx: 'the board receives', tx: 'the board sends', standby: 'standby', fault: 'fault, low', servo: 'servo', line: 'line sensor', obstacle: 'obstacle sensor', sharp: 'Sharp',
   button: 'button', switch: 'switch|part', potentiometer: 'potentiometer', led: 'LED', buzzer: 'buzzer', infrared: 'infrared receiver', mpu6050: 'MPU-6050', ssd1306: 'display SSD1306', hd44780: 'display HD44780',
 };
 
 /** What a signal, a part or another owner of a pin is, for people. @param {string} signal */
 function words(signal) {
-  const [, side = '', input = ''] = signal.match(/^(left|right|front|link)_(.+)$/) ?? [];
+  const [, side = '', input = ''] = signal.match(/^(left|right|front|rear|link)_(.+)$/) ?? [];
   if (side in PLACES && input in PARTS) return `${t(PLACES[side] ?? '')}, ${t(PARTS[input] ?? '')}`;
   const [, kind = signal, number = ''] = signal.match(/^(.+?)_(\d+)$/) ?? [];
   return kind in PARTS ? `${t(PARTS[kind] ?? '')} ${number}`.trim() : signal;

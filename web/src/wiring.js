@@ -9,7 +9,7 @@
 /** What the station says of a plan. @typedef {{problem?: string, toml?: string, remarks?: string[], alike?: {robot: string, same: number, of: number, others: [string, string][]} | null, on?: Record<string, string>}} Answer */
 
 /** Signals that a robot need not have. */
-export const OPTIONAL = ['left_encoder', 'left_encoder_b', 'right_encoder', 'right_encoder_b', 'servo', 'front_trigger', 'front_echo', 'left_trigger', 'left_echo', 'right_trigger', 'right_echo', 'link_rx', 'link_tx'];
+export const OPTIONAL = ['left_encoder', 'left_encoder_b', 'right_encoder', 'right_encoder_b', 'servo', 'front_trigger', 'front_echo', 'left_trigger', 'left_echo', 'right_trigger', 'right_echo', 'rear_trigger', 'rear_echo', 'left_fault', 'right_fault', 'link_rx', 'link_tx'];
 /** Sensors of which there may be several, from left to right. */
 export const SENSORS = ['line', 'obstacle', 'sharp'];
 /** Where a device on the two-wire bus usually is. @type {Record<string, string>} */
@@ -19,7 +19,7 @@ const ADDRESSES = { mpu6050: '0x68', ssd1306: '0x3c', hd44780: '0x27' };
 export function rowsOf(driver, before) {
   const pinOf = (/** @type {string} */ signal) => before.find((row) => row.signal === signal)?.pin ?? '';
   const own = [...driver.needed, ...(driver.standby ? ['standby'] : [])];
-  const isDrivers = (/** @type {string} */ signal) => signal === 'standby' || /^(left|right)_(?!encoder|trigger|echo)/.test(signal);
+  const isDrivers = (/** @type {string} */ signal) => signal === 'standby' || /^(left|right)_(?!encoder|fault)(?!.*(trigger|echo)$)/.test(signal);
   return [...own.map((signal) => ({ signal, pin: pinOf(signal) })), ...before.filter(({ signal, kind }) => kind || !isDrivers(signal))];
 }
 

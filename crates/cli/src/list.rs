@@ -179,8 +179,7 @@ fn entries(library: &Library, topic: Topic) -> Result<Vec<Value>, Failure> {
             let rigs = files(library, Kind::Robot, |robot| {
                 let file = library.robot(robot)?;
                 let rigs = file.rigs.iter();
-                let entry =
-                    |(name, rig)| json!({ "name": name, "robot": robot, "sonars": sonars(rig) });
+                let entry = |(name, rig)| json!({ "name": name, "robot": robot, "sonars": sonars(rig, &file.other_sonars) });
                 Ok(rigs.map(entry).collect::<Vec<_>>())
             })?;
             rigs.concat()
@@ -257,14 +256,11 @@ fn mode_entry(mode: ModeId) -> Value {
 }
 
 /// Direction of each sonar of a rig.
-fn sonars(rig: &Mounts) -> Map<String, Value> {
-    let mounts = [
-        ("left", rig.left),
-        ("right", rig.right),
-        ("front", rig.front),
-    ];
-    let carried = mounts
-        .into_iter()
+fn sonars(rig: &Mounts, others: &[String]) -> Map<String, Value> {
+    let names = ["left", "right", "front"].into_iter();
+    let names = names.chain(others.iter().map(String::as_str));
+    let carried = names
+        .zip(rig.mounts())
         .filter_map(|(name, mount)| Some((name, mount?)));
     carried
         .map(|(name, mount)| {

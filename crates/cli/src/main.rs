@@ -5,6 +5,7 @@
 
 mod args;
 mod browser;
+mod by_option;
 mod calibrate;
 mod capture;
 mod check;

@@ -1,16 +1,17 @@
 //! `rumbo new robot`: a robot file from a board, a driver and pins, asked for at a terminal.
 
 use crate::args::{NewArgs, driver_named, driver_names};
+use crate::by_option::said_of_options;
 use crate::failure::Failure;
 use crate::output;
 use crate::place;
 use rumbo_experiment::files::new_robot::{
-    JUMPERS, Measured, NewRobot, counted, looks_like, meaning, needed, remarks,
+    JUMPERS, LINE, Measured, NewRobot, OBSTACLE, SHARP, counted, looks_like, meaning, needed,
+    remarks,
 };
 use rumbo_experiment::files::{Kind, Library};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Driver};
-use rumbo_sim::wiring::SIGNALS;
 use std::collections::HashSet;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
@@ -48,7 +49,9 @@ pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
     let text = match &args.like {
         Some(like) => library.text(Kind::Robot, like)?,
         None => {
-            let (text, robot) = made_of(args, name)?.checked()?;
+            let made = made_of(args, name)?;
+            let checked = made.checked();
+            let (text, robot) = checked.map_err(|error| said_of_options(&made, error))?;
             let Some(wiring) = robot.wirings.values().next() else {
                 return Err(Failure::input("a robot needs pins"));
             };
@@ -215,9 +218,10 @@ fn sensors(args: &NewArgs, pins: &[(String, String)]) -> Result<Vec<(String, [f6
     match args.sensors.iter().find(|(sensor, _)| !is_wired(sensor)) {
         None => Ok(args.sensors.clone()),
         Some((sensor, _)) => {
-            let pins = match SIGNALS.contains(&&trigger(sensor)[..]) {
-                true => format!("{sensor}_trigger=4,{sensor}_echo=A0"),
-                false => format!("{sensor}=4"),
+            let mut others = [LINE, OBSTACLE, SHARP].iter();
+            let pins = match others.any(|begin| sensor.starts_with(begin)) {
+                true => format!("{sensor}=4"),
+                false => format!("{sensor}_trigger=4,{sensor}_echo=A0"),
             };
             Err(Failure::Input(format!(
                 "--sensors {sensor}: that sensor has no pins; say --pins {pins} or the like"

@@ -145,6 +145,7 @@ fn robots(world: &World) -> Vec<(Plant, State, Eyes)> {
         left: mount(0.785),
         right: mount(-0.785),
         front: mount(0.0),
+        ..Mounts::default()
     };
     (0..ROBOTS as u64)
         .map(|seed| {

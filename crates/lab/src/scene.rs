@@ -1,6 +1,5 @@
 //! The dashboard's scene of a simulated robot: world, footprint, sonars, and the alternatives to choose from.
 
-use rumbo_control::SonarId;
 use rumbo_experiment::files::TimedCommand;
 use rumbo_experiment::files::{FileError, Kind, Library, ScenarioFile, Setup, goal_seen_from};
 use rumbo_log::{
@@ -55,6 +54,7 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
         base_m: plant.body.base_m,
         wheel_radius_m: (plant.wheels.left.radius_m + plant.wheels.right.radius_m) / 2.0,
         sonars: sonars(setup),
+        other_sonars: robot.other_sonars.clone(),
         of_ghost: false,
         choice,
     })
@@ -80,12 +80,7 @@ pub fn others(fleet: &[Setup], number: usize) -> Vec<Other> {
 
 fn sonars(setup: &Setup) -> Vec<SonarMount> {
     let (rig, sonar) = (&setup.rig, &setup.robot.plant.sonar);
-    let mounts = [
-        (SonarId::Left, rig.left),
-        (SonarId::Right, rig.right),
-        (SonarId::Front, rig.front),
-    ];
-    let mount = |(id, mount): (SonarId, Option<Mount>)| {
+    let mount = |(id, mount): (usize, Option<Mount>)| {
         let mount = mount?;
         Some(SonarMount {
             id: id as u8,
@@ -99,7 +94,11 @@ fn sonars(setup: &Setup) -> Vec<SonarMount> {
             on_servo: mount.on_servo,
         })
     };
-    mounts.into_iter().filter_map(mount).collect()
+    rig.mounts()
+        .into_iter()
+        .enumerate()
+        .filter_map(mount)
+        .collect()
 }
 
 fn obstacle(corners: impl Iterator<Item = [f64; 2]>) -> SceneObstacle {

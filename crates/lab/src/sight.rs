@@ -31,6 +31,7 @@ pub(crate) fn abilities(sim: &Sim, mode: ModeId) -> Abilities {
 pub(crate) fn truth(sim: &Sim) -> Truth {
     let truth = sim.truth();
     let [left, right] = truth.wheel_rad_s;
+    let [left_m, right_m, front_m, ..] = truth.range_m;
     Truth {
         pose: MapPose {
             x_m: truth.pose.x_m,
@@ -38,7 +39,7 @@ pub(crate) fn truth(sim: &Sim) -> Truth {
             heading_rad: truth.pose.heading_rad,
         },
         wheel_rad_s: Wheels { left, right },
-        range_m: truth.range_m,
+        range_m: [left_m, right_m, front_m],
         servo_rad: truth.servo_rad,
         contact: truth.touching,
         battery_v: truth.battery_v,

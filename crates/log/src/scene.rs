@@ -89,6 +89,9 @@ pub struct Scene {
     pub wheel_radius_m: f64,
     /// The rig's sonars.
     pub sonars: Vec<SonarMount>,
+    /// The names of those from number 3 on, after left, right and front.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub other_sonars: Vec<String>,
     /// It is the ghost's: the robot itself is not simulated.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub of_ghost: bool,

@@ -27,6 +27,7 @@ fn main() -> Result<(), ShapeError> {
         left: mount(0.05, 0.07, 1.57),
         right: mount(0.05, -0.07, -1.57),
         front: mount(0.11, 0.0, 0.0),
+        ..Mounts::default()
     };
     let walls = [[5.0, 5.0], [-5.0, 5.0], [-5.0, -5.0], [5.0, -5.0]];
     let walls: Vec<Wall> = (0..4)

@@ -56,7 +56,7 @@ pub struct Plant {
     pub(crate) footprint: Footprint,
     pub(crate) servo: params::Servo,
     sonar: Sonar,
-    mounts: [Option<Mount>; 3],
+    mounts: [Option<Mount>; SonarId::ALL.len()],
     pub(crate) world: Arc<World>,
     /// Pings of other robots, and when they were last received: those that may still be in the air then count.
     air: Vec<InAir>,
@@ -75,7 +75,7 @@ pub struct State {
     pub(crate) encoders: [encoder::State; 2],
     pub(crate) contact: contact::State,
     pub(crate) servo: servo::State,
-    pub(crate) sonars: [sonar::State; 3],
+    pub(crate) sonars: sonar::States,
 }
 
 /// Ground truth.
@@ -95,7 +95,7 @@ pub struct GroundTruth {
     pub yaw_rad_s: f64,
     /// Noise-free range of each sonar by [`SonarId::index`]; infinite where nothing is within
     /// reach, `None` where there is no such sonar.
-    pub range_m: [Option<f64>; 3],
+    pub range_m: [Option<f64>; SonarId::ALL.len()],
     /// Terminal voltage of the battery.
     pub battery_v: f64,
     /// Current drawn from it.
@@ -157,7 +157,7 @@ impl Plant {
             encoders: [encoder(0), encoder(1)],
             contact: contact::State::default(),
             servo: servo::State::default(),
-            sonars: [sonar::State::default(); 3],
+            sonars: sonar::States::default(),
         }
     }
 

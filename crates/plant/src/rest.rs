@@ -86,6 +86,7 @@ mod tests {
                     left: mount(1.57, false),
                     right: mount(-1.57, false),
                     front: mount(0.0, true),
+                    ..Mounts::default()
                 },
                 world: World::new(&[wall], &[]).unwrap(),
                 wheels_in_air,

@@ -1,5 +1,7 @@
 //! Where the sonars sit on the robot.
 
+use crate::sonar::SonarId;
+
 /// Where a sonar sits on the robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mount {
@@ -22,11 +24,18 @@ pub struct Mounts {
     pub right: Option<Mount>,
     /// Front.
     pub front: Option<Mount>,
+    /// Those with names of their own.
+    pub others: [Option<Mount>; SonarId::OTHERS],
 }
 
 impl Mounts {
-    /// By [`SonarId::index`](crate::sonar::SonarId::index).
-    pub(crate) fn mounts(&self) -> [Option<Mount>; 3] {
-        [self.left, self.right, self.front]
+    /// By [`SonarId::index`].
+    #[must_use]
+    pub fn mounts(&self) -> [Option<Mount>; SonarId::ALL.len()] {
+        let mut all = [None; SonarId::ALL.len()];
+        let (own, others) = all.split_at_mut(3);
+        own.copy_from_slice(&[self.left, self.right, self.front]);
+        others.copy_from_slice(&self.others);
+        all
     }
 }

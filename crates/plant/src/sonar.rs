@@ -45,11 +45,25 @@ pub enum SonarId {
     Right,
     /// In front.
     Front,
+    /// One of those with names of their own, by its number.
+    Other(u8),
 }
 
 impl SonarId {
+    /// Most sonars with names of their own.
+    pub const OTHERS: usize = 5;
+
     /// All of them, in the order of [`SonarId::index`].
-    pub const ALL: [Self; 3] = [Self::Left, Self::Right, Self::Front];
+    pub const ALL: [Self; 3 + Self::OTHERS] = [
+        Self::Left,
+        Self::Right,
+        Self::Front,
+        Self::Other(0),
+        Self::Other(1),
+        Self::Other(2),
+        Self::Other(3),
+        Self::Other(4),
+    ];
 
     /// Index of this sonar in arrays.
     #[must_use]
@@ -58,9 +72,13 @@ impl SonarId {
             Self::Left => 0,
             Self::Right => 1,
             Self::Front => 2,
+            Self::Other(number) => 3 + number as usize,
         }
     }
 }
+
+/// The echo lines of all sonars, by [`SonarId::index`].
+pub(crate) type States = [State; SonarId::ALL.len()];
 
 /// The echo line and the burst in the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -177,7 +195,7 @@ impl Sonar {
     /// Triggers sonar `id` now. False if its line is not low: the trigger is then ignored.
     pub fn trigger(
         &self,
-        states: &mut [State; 3],
+        states: &mut [State],
         id: SonarId,
         now_us: u64,
         world: &World,
@@ -208,7 +226,7 @@ impl Sonar {
             fall_us: rise_us + high_us,
         };
         state.burst = self.burst(own, ping, rise_us, heard_m, view);
-        for other in (0..3).filter(|&other| other != own) {
+        for other in (0..states.len()).filter(|&other| other != own) {
             self.overhear(states, own, other);
             self.overhear(states, other, own);
         }
@@ -266,7 +284,7 @@ impl Sonar {
     }
 
     /// Factor of the weakness for bursts of other sonars, looking the same way, whose second echo is still to come.
-    fn disturbance(&self, states: &[State; 3], own: usize, rise_us: u64, axis_rad: f64) -> f64 {
+    fn disturbance(&self, states: &[State], own: usize, rise_us: u64, axis_rad: f64) -> f64 {
         let share = |other: usize| {
             let burst = &states[other].burst;
             let pending = other != own && burst.echo_us[1] > rise_us;
@@ -276,7 +294,7 @@ impl Sonar {
                 0.0
             }
         };
-        let most = share(0).max(share(1)).max(share(2));
+        let most = (0..states.len()).map(share).fold(0.0, f64::max);
         1.0 + (self.params.disturbed_weakness - 1.0) * most
     }
 
@@ -322,7 +340,7 @@ impl Sonar {
     }
 
     /// Lets an echo of `speaker` end the pulse of `listener` if it comes first.
-    fn overhear(&self, states: &mut [State; 3], listener: usize, speaker: usize) {
+    fn overhear(&self, states: &mut [State], listener: usize, speaker: usize) {
         let burst = states[speaker].burst;
         let aside_rad = burst.axis_rad - states[listener].burst.axis_rad;
         // One draw per pair of pings, whichever of them came first.
@@ -338,7 +356,7 @@ impl Sonar {
             let received = || {
                 let alike = cos(aside_rad).max(0.0);
                 self.draw(listener, 7 + index as u32)
-                    .chance(key ^ ((speaker as u64) << 62), chance * alike)
+                    .chance(key ^ (speaker as u64).rotate_right(2), chance * alike)
             };
             if at_us > rise_us && at_us < earliest_us && received() {
                 earliest_us = at_us;

@@ -165,7 +165,7 @@ static DRV8833: Driver = Driver {
 };
 
 /// The drivers that there are.
-pub static DRIVERS: [&Driver; 11] = [
+pub static DRIVERS: [&Driver; 12] = [
     &L298N,
     &L293D,
     &Driver {
@@ -218,6 +218,19 @@ pub static DRIVERS: [&Driver; 11] = [
         has_standby: false,
         does: L298N.does,
         drop_ohm: 0.016,
+        diode_v: 0.9,
+        ..DRV8833
+    },
+    &Driver {
+        name: "vnh5019",
+        title: "VNH5019",
+        // 18 mohm above and below together, diodes 0.9 V. PWM low switches the lower transistors off: the current flows on
+        // through the upper ones, as far as a direction is given.
+        source: Some("its data sheet (ST, 15701 Rev 7)"),
+        has_enable: true,
+        has_standby: false,
+        does: [[Coast, Brake, Brake, Brake], L298N.does[1]],
+        drop_ohm: 0.018,
         diode_v: 0.9,
         ..DRV8833
     },

@@ -10,7 +10,7 @@ mod approach;
 use crate::sim::Sim;
 use approach::Approaches;
 use rumbo_plant::moving::{Body, Course};
-use rumbo_plant::sonar::Ping;
+use rumbo_plant::sonar::{Ping, SonarId};
 use rumbo_plant::world::{Obstacle, ShapeError};
 use std::borrow::BorrowMut;
 use thiserror::Error;
@@ -29,7 +29,7 @@ pub struct Fleet {
     /// Bodies of the world that are no robots.
     movers: usize,
     /// Pings so far of each sonar of each robot.
-    pings: Vec<[u64; 3]>,
+    pings: Vec<[u64; SonarId::ALL.len()]>,
     approaches: Approaches,
 }
 
@@ -107,7 +107,7 @@ impl Fleet {
         }
         Ok(Self {
             approaches: Approaches::new(&bodies, robots.iter().map(|robot| robot.pose())),
-            pings: vec![[0; 3]; robots.len()],
+            pings: vec![[0; SonarId::ALL.len()]; robots.len()],
             changed: Vec::with_capacity(robots.len()),
             bodies,
             movers,

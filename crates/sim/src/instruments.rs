@@ -24,7 +24,8 @@ impl Sim {
             return Vec::new();
         };
         let [left_rad_s, right_rad_s] = truth.wheel_rad_s;
-        let [left_m, right_m, front_m] = truth.range_m.map(|m| m.unwrap_or(f64::NAN));
+        let ranges_m = truth.range_m.map(|m| m.unwrap_or(f64::NAN));
+        let [left_m, right_m, front_m, ..] = ranges_m;
         let signals = [
             ("true_x_m", truth.pose.x_m),
             ("true_y_m", truth.pose.y_m),
@@ -40,12 +41,16 @@ impl Sim {
             ("contact", f64::from(u8::from(truth.touching))),
         ];
         let named = signals.map(|(name, value)| (name.to_owned(), value));
+        let others = mega.firmware().other_sonars().iter().zip(&ranges_m[3..]);
+        let others: Vec<_> = others
+            .map(|(name, range_m)| (format!("true_range_{name}_m"), *range_m))
+            .collect();
         // Without power there is nothing to measure.
         let pins = match is_off {
             true => Vec::new(),
             false => mega.read_meters(),
         };
-        named.into_iter().chain(pins).collect()
+        named.into_iter().chain(others).chain(pins).collect()
     }
 }
 

@@ -33,7 +33,7 @@ pub struct TruthSample {
     /// PWM at the bridges, left and right, -255..=255.
     pub duty: [i16; 2],
     /// What [`Trace::range_m`] is, where the sample itself must say it: among other robots.
-    pub seen_m: Option<[f64; 3]>,
+    pub seen_m: Option<[f64; SonarId::ALL.len()]>,
     /// Where the servo points [rad].
     pub servo_rad: f64,
     /// Battery at its terminals [V].
@@ -101,6 +101,8 @@ pub struct Trace {
     pub loops: Vec<(u64, Loops)>,
     /// From where sonars look, and at what.
     pub sights: Sights,
+    /// The names of the sonars from 3 on.
+    pub other_sonars: Vec<String>,
 }
 
 /// Sonars and the world around them, each from its time [us] on: ranges are measured when somebody asks for them.
@@ -198,11 +200,14 @@ impl Trace {
             true => sample.seen_m = Some(SonarId::ALL.map(|sonar| seen_m(plant, &sample, sonar))),
             false => self.sights.note(now_us, plant),
         }
+        if let Some(mega) = sim.mega().filter(|_| self.samples.is_empty()) {
+            self.other_sonars = mega.firmware().other_sonars().to_vec();
+        }
         self.samples.push(sample);
     }
 
-    /// True range of the left, right or front sonar, 0 to 2, at a sample [m]; infinite when nothing is within reach, not a
-    /// number where there is no such sonar. Costs an exact cone query.
+    /// True range of a sonar at a sample, by its number: left, right, front, then the others \[m\]; infinite when nothing is
+    /// within reach, not a number where there is no such sonar. Costs an exact cone query.
     pub fn range_m(&self, sample: &TruthSample, sonar: usize) -> f64 {
         match (
             sample.seen_m,
@@ -288,8 +293,12 @@ impl Trace {
     /// The samples as CSV, units in the names of the columns.
     pub fn csv(&self) -> String {
         let mut text = String::from(
-            "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,range_left_m,range_right_m,range_front_m,servo_rad,battery_v\n",
+            "t_s,x_m,y_m,heading_rad,left_rad_s,right_rad_s,left_duty,right_duty,range_left_m,range_right_m,range_front_m,servo_rad,battery_v",
         );
+        for name in &self.other_sonars {
+            let _ = write!(text, ",range_{name}_m");
+        }
+        text.push('\n');
         for sample in &self.samples {
             let TruthSample {
                 t_s,
@@ -304,20 +313,25 @@ impl Trace {
                 battery_v,
                 touching: _,
             } = sample;
-            let [left_m, right_m, front_m] = [0, 1, 2].map(|sonar| {
+            let range = |sonar| {
                 let range_m = self.range_m(sample, sonar);
                 match range_m.is_nan() {
                     true => String::new(),
                     // `inf` where nothing is within reach.
                     false => format!("{range_m:.5}"),
                 }
-            });
+            };
+            let [left_m, right_m, front_m] = [0, 1, 2].map(range);
             // Writing to a string cannot fail.
-            let _ = writeln!(
+            let _ = write!(
                 text,
                 "{t_s:.3},{x_m:.5},{y_m:.5},{heading_rad:.5},{:.4},{:.4},{},{},{left_m},{right_m},{front_m},{servo_rad:.4},{battery_v:.3}",
                 wheel_rad_s[0], wheel_rad_s[1], duty[0], duty[1],
             );
+            for sonar in 3..3 + self.other_sonars.len() {
+                let _ = write!(text, ",{}", range(sonar));
+            }
+            text.push('\n');
         }
         text
     }

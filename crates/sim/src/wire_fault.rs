@@ -32,15 +32,17 @@ impl Wire {
 
     /// The wire that an event of the plant is an edge on, and its level from then on.
     pub(crate) fn of(event: &Event) -> Option<(Wire, bool)> {
-        let echo = |sonar: rumbo_plant::sonar::SonarId| Wire::Echo(SonarId::ALL[sonar.index()]);
+        let echo = |sonar: rumbo_plant::sonar::SonarId| {
+            SonarId::ALL.get(sonar.index()).copied().map(Wire::Echo)
+        };
         match *event {
             Event::Edge {
                 channel: Channel::B,
                 ..
             } => None,
             Event::Edge { wheel, level, .. } => Some((Wire::Encoder(wheel), level)),
-            Event::EchoRise { sonar, .. } => Some((echo(sonar), true)),
-            Event::EchoFall { sonar, .. } => Some((echo(sonar), false)),
+            Event::EchoRise { sonar, .. } => Some((echo(sonar)?, true)),
+            Event::EchoFall { sonar, .. } => Some((echo(sonar)?, false)),
             Event::Contact { .. } => None,
         }
     }

@@ -8,18 +8,21 @@ use crate::obstacle::ObstacleSensor;
 use crate::remote::Key;
 use std::collections::BTreeMap;
 
-/// The signals that a wiring may place: enable and direction inputs of the bridge, encoders, servo, sonars and UARTs.
-pub const SIGNALS: [&str; 22] = [
+/// The signals that a wiring may place: enable and direction inputs of the bridge, its outputs that are low where something
+/// is wrong with a motor, encoders, servo, sonars and UARTs.
+pub const SIGNALS: [&str; 24] = [
     "left_enable",
     "left_forward",
     "left_backward",
     "left_encoder",
     "left_encoder_b",
+    "left_fault",
     "right_enable",
     "right_forward",
     "right_backward",
     "right_encoder",
     "right_encoder_b",
+    "right_fault",
     "standby",
     "servo",
     "left_trigger",
@@ -57,6 +60,10 @@ pub struct Wiring {
     pub bus: Vec<BusDevice>,
     /// Rate of the Bluetooth module, where it is not the usual one \[baud\].
     pub link_baud: Option<u32>,
+    /// The servo is mounted the other way round: longer pulses turn it to the right.
+    pub servo_reversed: bool,
+    /// Names of the sonars other than left, right and front, each with the signals `NAME_trigger` and `NAME_echo`.
+    pub other_sonars: Vec<String>,
     /// The divider that brings the battery's voltage to an analogue input, where there is one.
     pub battery: Option<Divider>,
 }

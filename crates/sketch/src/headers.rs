@@ -110,18 +110,20 @@ impl<'a> Search<'a> {
         }
         let beside = beside(by, header);
         let (place, real) = if let Some(own) = self.own_spelling(&beside) {
-            (beside, own)
+            // From there up to the sketch's folder: a project of PlatformIO does not look for headers in that.
+            let up = "../".repeat(beside.matches('/').count());
+            (beside, format!("\"{up}{own}\""))
         } else if let Some(real) = self.other_spelling(header) {
             if self.found.insert(SPELLED.into()) {
                 build.look_in(SPELLED.to_owned());
             }
-            (format!("{SPELLED}/{header}"), real)
+            (format!("{SPELLED}/{header}"), format!("<{real}>"))
         } else {
             return Ok(false);
         };
         let is_new = self.found.insert(PathBuf::from(&place));
         if is_new {
-            let text = format!("#include <{real}>\n");
+            let text = format!("#include {real}\n");
             build.put(SKETCH, &place, text.as_bytes())?;
         }
         Ok(is_new)

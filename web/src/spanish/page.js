@@ -234,6 +234,7 @@ export const PAGE = {
   'give y min and y max, min below max, or leave both empty': 'da y mín. e y máx., el mínimo por debajo del máximo, o deja ambos vacíos', 'time [s]': 'tiempo [s]', 'Close': 'Cerrar',
   'true l.': 'real izq.', 'true r.': 'real der.', 'true front': 'real frontal', 'set l.': 'ref. izq.', 'set r.': 'ref. der.', 'true': 'real',
   'true x': 'x real', 'true y': 'y real', 'goal y': 'destino y', 'left − right': 'izq. − der.', 'error l.': 'error izq.', 'error r.': 'error der.', 'error': 'error', 'servo': 'servo',
+  'range by the last echo, sonar {}': 'distancia según el último eco, sonar {}', 'true range, sonar {}': 'distancia real, sonar {}', 'true {}': 'real {}',
   'range by the last echo, left sonar': 'distancia según el último eco, sonar izq.', 'range by the last echo, right sonar': 'distancia según el último eco, sonar der.', 'range by the last echo, front sonar': 'distancia según el último eco, sonar frontal',
   'PWM at the motor, left wheel': 'PWM en el motor, rueda izq.', 'PWM at the motor, right wheel': 'PWM en el motor, rueda der.', 'true servo': 'servo real', 'true angle of the servo': 'ángulo real del servo', 'last pulse to the servo': 'último pulso al servo',
   'edges of the encoder so far, left wheel': 'flancos del encoder hasta ahora, rueda izq.', 'edges of the encoder so far, right wheel': 'flancos del encoder hasta ahora, rueda der.',

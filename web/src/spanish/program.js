@@ -52,7 +52,7 @@ export const PROGRAM = {
   'sensors for obstacles: by what their sellers and Sharp\'s data sheet say, not identified': 'sensores de obstáculos: según sus vendedores y la hoja de datos de Sharp, sin identificar',
   'continuous-rotation servos': 'servos de rotación continua', 'the data sheet of Parallax\'s 900-00008, 2.0': 'la hoja de datos del 900-00008 de Parallax, 2.0',
   '{} had no pulse that turns it, shorter or longer than 1.5 ms': '{} no tuvo ningún pulso que lo haga girar, más corto o más largo que 1,5 ms',
-  'two BTS7960 a motor (IBT-2)': 'dos BTS7960 por motor (IBT-2)', 'its data sheet (Infineon, 2004-12-07)': 'su hoja de datos (Infineon, 2004-12-07)',
+  'two BTS7960 a motor (IBT-2)': 'dos BTS7960 por motor (IBT-2)', 'its data sheet (ST, 15701 Rev 7)': 'su hoja de datos (ST, 15701 Rev 7)', 'its data sheet (Infineon, 2004-12-07)': 'su hoja de datos (Infineon, 2004-12-07)',
   'its data sheet (ASIC L9110)': 'su hoja de datos (ASIC L9110)', 'the data sheet of the TC1508S': 'la hoja de datos del TC1508S',
   // The debugger.
   'the program stands at {}, and time with it': 'el programa está parado en {}, y el tiempo con él', 'the program goes on': 'el programa sigue', 'a debugger has come': 'ha entrado un depurador',

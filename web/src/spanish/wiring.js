@@ -15,7 +15,7 @@ export const WIRING = {
   'no sketch there: a folder with an .ino': 'ahí no hay ningún sketch: una carpeta con un .ino',
   '{} files: a sketch has at most {}; choose its own folder': '{} archivos: un sketch tiene como mucho {}; elige su propia carpeta',
   'left|wiring': 'izquierda', 'right|wiring': 'derecha', 'front|wiring': 'delante', Bluetooth: 'Bluetooth',
-  enable: 'habilitación', 'forward input': 'entrada de avance', 'backward input': 'entrada de retroceso', encoder: 'encoder', 'encoder, output B': 'encoder, salida B',
+  'rear|wiring': 'detrás', 'fault, low': 'fallo, nivel bajo', enable: 'habilitación', 'forward input': 'entrada de avance', 'backward input': 'entrada de retroceso', encoder: 'encoder', 'encoder, output B': 'encoder, salida B',
   'sonar, Trig': 'sónar, Trig', 'sonar, Echo': 'sónar, Echo', 'the board receives': 'la placa recibe', 'the board sends': 'la placa envía',
   standby: 'standby', 'line sensor': 'sensor de línea', 'obstacle sensor': 'sensor de obstáculos', Sharp: 'Sharp',
   button: 'pulsador', 'switch|part': 'interruptor', potentiometer: 'potenciómetro', LED: 'LED', buzzer: 'zumbador', 'infrared receiver': 'receptor de infrarrojos',

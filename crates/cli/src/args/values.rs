@@ -2,7 +2,9 @@
 
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
-use rumbo_experiment::files::new_robot::{JUMPERS, LINE, LINK_BAUD, OBSTACLE, SHARP, SONARS};
+use rumbo_experiment::files::new_robot::{
+    JUMPERS, LINE, LINK_BAUD, OBSTACLE, SERVO_AHEAD, SERVO_REVERSED, SHARP, is_of_sonar,
+};
 use rumbo_experiment::files::{TimedText, TypedPort, check_line, parameters, placed, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Driver};
@@ -56,10 +58,21 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
     };
     let named = [LINE, OBSTACLE, SHARP];
     let is_named = named.iter().any(|begin| signal.starts_with(begin));
-    if !SIGNALS.contains(&signal) && !is_named && signal != LINK_BAUD {
+    let is_said = [LINK_BAUD, SERVO_AHEAD, SERVO_REVERSED].contains(&signal);
+    if !SIGNALS.contains(&signal) && !is_named && !is_said && !is_of_sonar(signal) {
         return Err(format!(
-            "no signal `{signal}`; there are {}, {LINK_BAUD}, and with a name of yours {LINE}NAME, {OBSTACLE}NAME, {SHARP}NAME",
+            "no signal `{signal}`; there are {}, {LINK_BAUD}, {SERVO_AHEAD}, {SERVO_REVERSED}, and with a name of yours {LINE}NAME, \
+             {OBSTACLE}NAME, {SHARP}NAME, NAME_trigger and NAME_echo of a sonar",
             SIGNALS.join(", ")
+        ));
+    }
+    if signal == SERVO_AHEAD
+        && !pin
+            .parse()
+            .is_ok_and(|deg: f64| (0.0..=180.0).contains(&deg))
+    {
+        return Err(format!(
+            "{SERVO_AHEAD} = {pin}: must be an angle of servo.write(), 0 to 180"
         ));
     }
     Ok((signal.to_owned(), pin.to_owned()))
@@ -95,15 +108,9 @@ pub(super) fn sensor(text: &str) -> Result<(String, [f64; 3]), &'static str> {
         };
         Some((name.trim().to_owned(), place))
     });
-    let is_sonar = |name: &str| SONARS.iter().any(|(sonar, _)| name == *sonar);
-    let is_named = |name: &str| {
-        [LINE, OBSTACLE, SHARP]
-            .iter()
-            .any(|begin| name.starts_with(begin))
-    };
-    read.filter(|(name, _)| is_sonar(name) || is_named(name)).ok_or(
-        "write it as left=0.05:0.07:90 or line_rear=-0.05:0, x and y in m and the direction in degrees; of the sonars front, left \
-         and right, and of line_NAME, obstacle_NAME, sharp_NAME",
+    read.ok_or(
+        "write it as left=0.05:0.07:90 or line_rear=-0.05:0, x and y in m and the direction in degrees; of a sonar by its name, and \
+         of line_NAME, obstacle_NAME, sharp_NAME",
     )
 }
 

@@ -275,7 +275,7 @@ impl Pilot {
     /// 0, the goal not a number where there is none.
     pub(super) fn true_values(&self, sim: &Sim) -> [f64; TRUE.len()] {
         let truth = sim.truth();
-        let [left, right, front] = truth.range_m.map(|range_m| range_m.unwrap_or(f64::NAN));
+        let [left, right, front, ..] = truth.range_m.map(|range_m| range_m.unwrap_or(f64::NAN));
         let [goal_x_m, goal_y_m] = self.goal.map_or([f64::NAN; 2], |goal| goal.at_m);
         let armed = sim.mode_state().is_some();
         let fault = sim.fault().map_or(0, |fault| fault as u8);

@@ -31,6 +31,7 @@ mod robot;
 mod route;
 mod scenario;
 mod setup;
+mod sonars;
 mod start;
 mod typed;
 mod value;

@@ -2,14 +2,16 @@
 
 use super::error::FileError;
 use super::new_plant::{encoder, plant};
-use super::new_sensors::{line_sensors, obstacle_sensors, place_of, quoted};
+use super::new_sensors::{
+    line_sensors, obstacle_sensors, place_of, quoted, signals, sonars, usual_place,
+};
 use super::{Kind, Library, RobotFile};
 use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::{Direction, Driver};
-use rumbo_sim::wiring::{SIGNALS, Wiring, is_driver_input};
+use rumbo_sim::wiring::{Wiring, is_driver_input};
 
 pub use super::new_plant::{Measured, counted};
-pub use super::new_sensors::{LINE, OBSTACLE, SHARP};
+pub use super::new_sensors::{LINE, OBSTACLE, SHARP, is_of_sonar};
 
 /// A driver that is chosen with its enables held by jumpers.
 pub const JUMPERS: &str = "-jumpers";
@@ -18,14 +20,12 @@ const ALIKE: f64 = 0.5;
 /// Name of the wiring and the rig.
 const OWN: &str = "own";
 
-/// The sonars, and where each usually sits and looks: x and y \[m\], and the direction \[deg\].
-pub const SONARS: [(&str, [f64; 3]); 3] = [
-    ("front", [0.11, 0.0, 0.0]),
-    ("left", [0.05, 0.07, 90.0]),
-    ("right", [0.05, -0.07, -90.0]),
-];
 /// Rate of the Bluetooth module in place of a pin \[baud\].
 pub const LINK_BAUD: &str = "link_baud";
+/// In place of a pin, the angle of `servo.write()` at which the servo looks ahead, where that is not 90 \[deg\].
+pub const SERVO_AHEAD: &str = "servo_ahead";
+/// In place of a pin, `true` where a servo is mounted the other way round and looks to the left at 0.
+pub const SERVO_REVERSED: &str = "servo_reversed";
 
 /// What a robot is made of.
 #[derive(Clone, Debug)]
@@ -74,7 +74,11 @@ pub fn needed(driver: &Driver, jumpers: bool) -> Vec<String> {
 /// What a signal is connected to, for people.
 #[must_use]
 pub fn meaning(signal: &str, driver: &Driver) -> String {
-    let (side, input) = signal.split_once('_').unwrap_or(("", signal));
+    let (side, input) = match is_of_sonar(signal) {
+        true => signal.rsplit_once('_'),
+        false => signal.split_once('_'),
+    }
+    .unwrap_or(("", signal));
     match input {
         "enable" => format!("PWM of the {side} motor"),
         "forward" if driver.direction == Direction::Motor => {
@@ -95,6 +99,7 @@ pub fn meaning(signal: &str, driver: &Driver) -> String {
         "forward" => format!("input of the {side} motor whose high drives forward"),
         "backward" => "input of the same whose high drives backward".into(),
         "encoder" => format!("output A of the {side} encoder, or its only one"),
+        "fault" => format!("low where something is wrong with the {side} motor"),
         "encoder_b" => "output B of the same, which tells the direction".into(),
         "trigger" => format!("sonar {side}: Trig"),
         "echo" => format!("sonar {side}: Echo"),
@@ -146,22 +151,25 @@ impl NewRobot {
             text.push_str(&line);
             text.push('\n');
         };
-        for (sonar, usual) in SONARS {
-            if given(&format!("{sonar}_trigger")) {
-                let [x_m, y_m, angle_deg] = place_of(&self.sensors, sonar).unwrap_or(usual);
-                put(format!(
-                    "\n# Where that sonar sits: measure it.\n[rig.{OWN}.{sonar}]\nx_m = {x_m}"
-                ));
-                if [y_m, angle_deg] != [0.0; 2] {
-                    put(format!("y_m = {y_m}\nangle_deg = {angle_deg}"));
-                }
-                if sonar == "front" && given("servo") {
-                    put("on_servo = true".into());
-                }
+        for sonar in sonars(&self.pins) {
+            let [x_m, y_m, mut angle_deg] = self.place_of(sonar).unwrap_or_default();
+            let on_servo = sonar == "front" && given("servo");
+            if on_servo {
+                angle_deg += self.servo_askew_deg();
+            }
+            put(format!(
+                "\n# Where that sonar sits: measure it.\n[rig.{OWN}.{sonar}]\nx_m = {x_m}"
+            ));
+            if [y_m, angle_deg] != [0.0; 2] {
+                put(format!("y_m = {y_m}\nangle_deg = {angle_deg}"));
+            }
+            if on_servo {
+                put("on_servo = true".into());
             }
         }
         put(format!("\n[wiring.{OWN}]"));
-        for signal in SIGNALS {
+        for signal in signals(&self.pins) {
+            let signal = signal.as_str();
             let held = self.jumpers && signal.ends_with("_enable");
             let pin = self
                 .pins
@@ -177,13 +185,16 @@ impl NewRobot {
                 true => "its jumper is on".to_owned(),
                 false => meaning(signal, driver),
             };
-            put(format!("{:24}# {about}", format!("{signal} = {value}")));
+            put(format!("{:23} # {about}", format!("{signal} = {value}")));
         }
-        if let Some((_, baud)) = self.pins.iter().find(|(signal, _)| signal == LINK_BAUD) {
-            put(format!(
-                "{:24}# rate of the Bluetooth module",
-                format!("link_baud = {baud}")
-            ));
+        let said = [
+            (LINK_BAUD, "rate of the Bluetooth module"),
+            (SERVO_REVERSED, "it looks to the left at 0"),
+        ];
+        for (key, about) in said {
+            if let Some(value) = self.said(key) {
+                put(format!("{:23} # {about}", format!("{key} = {value}")));
+            }
         }
         for [name, kind, place] in &self.parts {
             let (place, more) = place.split_once(':').unwrap_or((place, ""));
@@ -214,11 +225,40 @@ impl NewRobot {
         text
     }
 
+    /// Where a sonar is, as somebody or its name says.
+    fn place_of(&self, sonar: &str) -> Option<[f64; 3]> {
+        place_of(&self.sensors, sonar).or_else(|| usual_place(sonar))
+    }
+
+    /// What stands in place of the pin of a signal.
+    fn said(&self, key: &str) -> Option<&str> {
+        let mut pins = self.pins.iter();
+        pins.find(|(signal, _)| signal == key)
+            .map(|(_, value)| value.as_str())
+    }
+
+    /// Where what is on the servo looks at 90, as it looks ahead at another angle.
+    fn servo_askew_deg(&self) -> f64 {
+        let ahead_deg = self.said(SERVO_AHEAD).and_then(|deg| deg.parse().ok());
+        let askew_deg = 90.0 - ahead_deg.unwrap_or(90.0);
+        match self.said(SERVO_REVERSED) {
+            Some("true") => -askew_deg,
+            _ => askew_deg,
+        }
+    }
+
     /// The file, checked.
     ///
     /// # Errors
     /// What is wrong with its pins.
     pub fn checked(&self) -> Result<(String, RobotFile), FileError> {
+        let sonars = sonars(&self.pins);
+        if let Some(sonar) = sonars.iter().find(|sonar| self.place_of(sonar).is_none()) {
+            return Err(FileError::Setting(format!(
+                "{sonar}_trigger: its name does not say where that sonar is, as rear or front_left do; say it, --sensors \
+                 {sonar}=0.1:0.03:20, x and y in m, and where it looks in degrees, positive to the left"
+            )));
+        }
         let text = self.text();
         let file = RobotFile::parse(&self.name, &format!("{}.toml", self.name), &text)?;
         Ok((text, file))

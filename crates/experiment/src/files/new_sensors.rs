@@ -1,6 +1,7 @@
-//! The sensors of a robot file to start from that look down or for obstacles: in a row from left to right, as they were
-//! given, or where somebody says that they are.
+//! The sensors of a robot file to start from: sonars at the place that their names say; what looks down or for obstacles in
+//! a row from left to right, as it was given; or where somebody says that they are.
 
+use rumbo_sim::wiring::SIGNALS;
 use std::fmt::Write;
 
 /// How the name of a line sensor begins among the pins, before a name of its own.
@@ -38,6 +39,59 @@ type Places = [(String, [f64; 3])];
 pub(super) fn place_of(places: &Places, signal: &str) -> Option<[f64; 3]> {
     let own = places.iter().find(|(name, _)| name == signal);
     own.map(|(_, place)| *place)
+}
+
+/// Whether a signal is of a sonar, whatever that is called.
+#[must_use]
+pub fn is_of_sonar(signal: &str) -> bool {
+    let sonar = signal
+        .strip_suffix("_trigger")
+        .or(signal.strip_suffix("_echo"));
+    let is_plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    sonar.is_some_and(|sonar| !sonar.is_empty() && sonar.chars().all(is_plain))
+}
+
+/// The sonars among pins: left, right and front, then those of other names as they were given.
+pub(super) fn sonars(pins: &Pins) -> Vec<&str> {
+    let names = pins.iter().filter(|(signal, _)| is_of_sonar(signal));
+    let mut names: Vec<&str> = names
+        .filter_map(|(signal, _)| signal.strip_suffix("_trigger"))
+        .collect();
+    let usual = ["front", "left", "right"];
+    names.sort_by_key(|name| {
+        usual
+            .iter()
+            .position(|own| own == name)
+            .unwrap_or(usual.len())
+    });
+    names
+}
+
+/// The signals of a wiring with these pins, in the order in which a file has them.
+pub(super) fn signals(pins: &Pins) -> Vec<String> {
+    let own = SIGNALS.map(str::to_owned);
+    let others = sonars(pins).into_iter();
+    let others = others.flat_map(|sonar| ["trigger", "echo"].map(|end| format!("{sonar}_{end}")));
+    let others: Vec<String> = others.filter(|signal| !own.contains(signal)).collect();
+    own.into_iter().chain(others).collect()
+}
+
+/// Where a sonar usually sits and looks, by its name, `rear` or `front_left`: x and y \[m\], and the direction \[deg\].
+pub(super) fn usual_place(sonar: &str) -> Option<[f64; 3]> {
+    let says = |words: &[&str]| sonar.split('_').any(|own| words.contains(&own));
+    let side = f64::from(i8::from(says(&["left"])) - i8::from(says(&["right"])));
+    let (ahead, behind) = (
+        says(&["front", "middle", "center", "centre"]),
+        says(&["rear", "back"]),
+    );
+    match (ahead, behind, side != 0.0) {
+        (true, false, false) => Some([0.11, 0.0, 0.0]),
+        (true, false, true) => Some([0.1, 0.05 * side, 45.0 * side]),
+        (false, false, true) => Some([0.05, 0.07 * side, 90.0 * side]),
+        (false, true, true) => Some([-0.06, 0.06 * side, 135.0 * side]),
+        (false, true, false) => Some([-0.08, 0.0, 180.0]),
+        _ => None,
+    }
 }
 
 /// The table of the line sensors, empty without any.

@@ -24,17 +24,15 @@ use super::parameters::read_parameters;
 use super::parts::read_parts;
 use super::pin::{Wired, read_wired};
 use super::read::{Allowed, Source, Table};
-use super::value::ANGLE;
+use super::sonars::{read_other_sonars, read_rig, report_unplaced, report_unwired, signals};
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
-use rumbo_plant::plant::{Mount, Mounts};
+use rumbo_plant::plant::Mounts;
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Direction, Driver};
-use rumbo_sim::wiring::{Divider, Motor, SIGNALS, Wiring, is_driver_input};
+use rumbo_sim::wiring::{Divider, Motor, Wiring, is_driver_input};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Position of a sonar on the body.
-const MOUNT: Allowed = Allowed::new(-1.0, 1.0, "m");
 /// Ratio of a divider.
 const RATIO: Allowed = Allowed::new(1.0, 20.0, "1");
 /// Rates of a Bluetooth module.
@@ -60,6 +58,8 @@ pub struct RobotFile {
     pub plant: Params,
     /// Where the sonars sit, by the name of the rig; none on a robot without sonars. In a pair on one side, `left` is the one in front.
     pub rigs: BTreeMap<String, Mounts>,
+    /// The names of its other sonars, as [`Mounts::others`].
+    pub other_sonars: Vec<String>,
     /// Which signal is on which pin, by the name of the wiring.
     pub wirings: BTreeMap<String, Wiring>,
     /// Control parameters that differ from their defaults, from `[parameters]`; sent to the robot before arming.
@@ -109,10 +109,13 @@ impl RobotFile {
                 root.complain_here(&error.to_string());
             }
         }
-        let rigs = named(&root.table("rig"), read_rig);
+        let rig = root.table("rig");
+        let other_sonars = read_other_sonars(&rig);
+        let rigs = named(&rig, |table| read_rig(table, &other_sonars));
         let wirings = named(&root.table("wiring"), |table| {
-            read_wiring(table, board, driver)
+            read_wiring(table, board, driver, &other_sonars)
         });
+        report_unwired(&rig, &other_sonars, wirings.values());
         let parameters = read_parameters(&root.table("parameters"));
         let firmware = read_caps(&root.table("firmware"));
         root.finish();
@@ -125,6 +128,7 @@ impl RobotFile {
             text: text.into(),
             plant,
             rigs,
+            other_sonars,
             wirings,
             parameters,
             firmware,
@@ -172,27 +176,6 @@ pub(crate) fn read_plant(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String
     values
 }
 
-fn read_rig(table: &Table<'_, '_>) -> Mounts {
-    let mount = |sonar| {
-        let mount = table.table(sonar);
-        let place = Mount {
-            x_m: mount.required_number("x_m", MOUNT),
-            y_m: mount.number("y_m", MOUNT).unwrap_or(0.0),
-            angle_rad: mount.number("angle_deg", ANGLE).unwrap_or(0.0).to_radians(),
-            on_servo: mount.flag("on_servo").is_some_and(|flag| flag.value),
-        };
-        mount.finish();
-        table.has(sonar).then_some(place)
-    };
-    let rig = Mounts {
-        left: mount("left"),
-        right: mount("right"),
-        front: mount("front"),
-    };
-    table.finish();
-    rig
-}
-
 /// One of a list by its name; the first one where the key is left out.
 fn read_named<T, const N: usize>(
     root: &Table<'_, '_>,
@@ -212,16 +195,24 @@ fn read_named<T, const N: usize>(
     })
 }
 
-fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Driver) -> Wiring {
+fn read_wiring(
+    table: &Table<'_, '_>,
+    board: &'static Board,
+    driver: &'static Driver,
+    other_sonars: &[String],
+) -> Wiring {
     let mut wiring = Wiring {
         board,
         driver,
         battery: read_divider(&table.table("battery"), table.has("battery"), board),
+        servo_reversed: table.flag("servo_reversed").is_some_and(|flag| flag.value),
+        other_sonars: other_sonars.to_vec(),
         ..Wiring::default()
     };
     let baud = table.number("link_baud", BAUD);
     wiring.link_baud = baud.map(|baud| baud as u32);
-    for signal in SIGNALS {
+    for signal in signals(other_sonars) {
+        let signal = signal.as_str();
         if read_motor(table, signal, &mut wiring) {
             continue;
         }
@@ -248,6 +239,7 @@ fn read_wiring(table: &Table<'_, '_>, board: &'static Board, driver: &'static Dr
         }
         wiring.pins.insert(signal.to_owned(), number);
     }
+    report_unplaced(table, other_sonars);
     read_parts(&table.table("parts"), &mut wiring);
     read_line_sensors(&table.table("line"), &mut wiring);
     read_obstacle_sensors(&table.table("obstacle"), &mut wiring);

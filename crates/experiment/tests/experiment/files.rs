@@ -134,6 +134,41 @@ fn a_wiring_may_have_a_divider_for_the_battery() {
 }
 
 #[test]
+fn a_sonar_of_another_name_needs_a_place_and_pins() {
+    let parsed = |rig: &str, wiring: &str| {
+        let text =
+            format!("title = \"t\"\n[rig.a]\nfront.x_m = 0.1\n{rig}\n[wiring.a]\n{wiring}\n");
+        RobotFile::parse("x", "x.toml", &text)
+    };
+    let rear = "rear_trigger = 4\nrear_echo = 5";
+    let robot = parsed("rear = { x_m = -0.08, angle_deg = 180 }", rear).unwrap();
+    assert_eq!(robot.other_sonars, ["rear"]);
+    assert!(robot.rigs["a"].others[0].is_some() && robot.rigs["a"].front.is_some());
+    let many: String = "bcdefg"
+        .chars()
+        .map(|c| format!("{c}.x_m = 0.1\n"))
+        .collect();
+    for (rig, wiring, expected) in [
+        ("", rear, "give it a table, [rig.NAME.rear] with x_m"),
+        ("", "frnt_echo = 5", "did you mean `front`"),
+        (
+            "frnt.x_m = 0.1",
+            "",
+            "frnt: no wiring has frnt_trigger; did you mean `front`",
+        ),
+        (&many, "", "at most 5 other sonars"),
+        (
+            "\"a,b\".x_m = 0.1",
+            "",
+            "\"a,b\": a sonar's name has small letters",
+        ),
+    ] {
+        let error = parsed(rig, wiring).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
 fn a_line_sensor_gives_a_level_a_voltage_or_a_time() {
     use rumbo_sim::floor::FloorReading;
     let parsed = |sensor: &str| {

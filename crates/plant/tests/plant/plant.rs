@@ -35,6 +35,7 @@ fn final_rig() -> Mounts {
         left: Some(LEFT),
         right: Some(RIGHT),
         front: Some(FRONT),
+        ..Mounts::default()
     }
 }
 

@@ -4,9 +4,9 @@
 use super::Faults;
 use rumbo_plant::sonar::SonarId;
 
-/// The same sonar as the control core's type.
-fn named(sonar: SonarId) -> rumbo_control::SonarId {
-    rumbo_control::SonarId::ALL[sonar.index()]
+/// The same sonar as the control core's type, which has no other ones: to those nothing happens.
+pub(super) fn of_core(sonar: SonarId) -> Option<rumbo_control::SonarId> {
+    rumbo_control::SonarId::ALL.get(sonar.index()).copied()
 }
 
 /// One line.
@@ -21,10 +21,10 @@ struct Line {
     ignored: bool,
 }
 
-/// The three lines.
+/// The lines of all sonars.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Echoes {
-    lines: [Line; 3],
+    lines: [Line; SonarId::ALL.len()],
 }
 
 impl Echoes {
@@ -50,7 +50,8 @@ impl Echoes {
                 return false;
             }
             line.rise_us = at_us;
-            let width_us = faults.sonars.width_us(faults.noise, named(sonar), at_us);
+            let width_us =
+                of_core(sonar).and_then(|sonar| faults.sonars.width_us(faults.noise, sonar, at_us));
             line.ignored = width_us.is_some();
             line.forced_us = width_us.map(|width_us| at_us + width_us.max(1));
             return true;
@@ -59,7 +60,9 @@ impl Echoes {
             return false;
         }
         let width_us = at_us - line.rise_us;
-        faults.sonars.sounded(named(sonar), width_us, at_us);
+        if let Some(sonar) = of_core(sonar) {
+            faults.sonars.sounded(sonar, width_us, at_us);
+        }
         true
     }
 

@@ -178,6 +178,12 @@ impl Firmware {
         self.pins.get(signal).copied()
     }
 
+    /// All signals with the board's numbers of their pins.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = (&str, u8)> {
+        let pins = self.pins.iter();
+        pins.map(|(signal, number)| (signal.as_str(), *number))
+    }
+
     /// The same as the board calls it.
     pub(super) fn pin_of(&self, signal: &str) -> Option<String> {
         Some(self.board.shown(self.number_of(signal)?))
@@ -199,6 +205,11 @@ impl Firmware {
     /// Rate of the Bluetooth module \[baud\].
     pub fn link_baud(&self) -> u32 {
         self.link_baud
+    }
+
+    /// The names of the sonars after left, right and front.
+    pub fn other_sonars(&self) -> &[String] {
+        &self.wires.other_sonars
     }
 
     pub(super) fn wires(&self) -> &Wires {

@@ -4,6 +4,7 @@
 //! its cycle. When the chip acts in between, the plant follows for good, in a different step than in its look-ahead:
 //! [`Mega::correct`] matches each edge found then with the announced one and corrects the differences.
 
+use super::echo::of_core;
 use super::{Faults, Mega};
 use crate::wire_fault::Wire;
 use rumbo_emulator::devices::Input;
@@ -107,10 +108,11 @@ impl Mega {
                 if !self.echoes.edge(sonar, level, at_us, faults) {
                     return;
                 }
-                (
-                    Wire::Echo(rumbo_control::SonarId::ALL[sonar.index()]),
-                    level,
-                )
+                let Some(own) = of_core(sonar) else {
+                    let pin = self.wires().echoes[sonar.index()];
+                    return self.put(self.cycle_of(at_us), pin, level);
+                };
+                (Wire::Echo(own), level)
             }
         };
         if faults.wires.passes(faults.noise, wire, at_us) {

@@ -137,7 +137,7 @@ pub struct Mega {
     register: Register,
     driven: [(Bridge, Modulation); 2],
     servo: ServoInput,
-    triggers: [Option<u64>; 3],
+    triggers: [Option<u64>; SonarId::ALL.len()],
     /// Levels of the encoders, as [`Wires::encoders`].
     encoders: [bool; 4],
     echoes: Echoes,
@@ -196,7 +196,7 @@ impl Mega {
             bridges: bridges.map(|inputs| HalfBridge::new(driver, inputs)),
             driven: [(Bridge::Released, Modulation::default()); 2],
             servo: ServoInput::default(),
-            triggers: [None; 3],
+            triggers: Default::default(),
             encoders: [false; 4],
             echoes: Echoes::default(),
             announced: Announced::default(),
@@ -221,7 +221,7 @@ impl Mega {
             halt: None,
             firmware,
         };
-        let idle = mega.wires().receivers.into_iter().flatten();
+        let idle = mega.wires().held_high.into_iter().flatten();
         let idle = idle.chain(mega.firmware.board().pulled_up());
         for pin in idle.collect::<Vec<_>>() {
             mega.chip.input(0, Input::Pin(pin, Some(true)));

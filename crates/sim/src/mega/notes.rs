@@ -6,7 +6,7 @@ use super::pins::LinkOn;
 use super::{CYCLES_PER_US, Mega, PARTS, TRIGGER_CYCLES};
 use crate::bus::DeviceKind;
 use crate::floor::FloorReading;
-use crate::wiring::{PartKind, SIGNALS};
+use crate::wiring::PartKind;
 use rumbo_emulator::cpu::Standstill;
 use rumbo_emulator::devices::ports::Drive;
 use rumbo_emulator::devices::{Cause, Unmodelled};
@@ -209,9 +209,9 @@ impl Mega {
 
     /// A sensor at a pin that the program drives itself; of a sonar with one line for both it does so by turns.
     fn overdriven(&self) -> impl Iterator<Item = String> {
-        let is_read = |signal: &&str| signal.contains("_encoder") || signal.ends_with("_echo");
-        SIGNALS.into_iter().filter(is_read).filter_map(move |signal| {
-            let number = self.firmware.number_of(signal)?;
+        let is_read =
+            |(signal, _): &(&str, u8)| signal.contains("_encoder") || signal.ends_with("_echo");
+        self.firmware.numbers().filter(is_read).filter_map(move |(signal, number)| {
             let trigger = signal.strip_suffix("_echo");
             let trigger = trigger.map(|sonar| format!("{sonar}_trigger"));
             let by_turns = trigger.is_some_and(|trigger| self.firmware.number_of(&trigger) == Some(number));

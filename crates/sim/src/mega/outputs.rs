@@ -58,8 +58,14 @@ impl Mega {
             self.hear(cycle, Some(high));
         }
         if self.wires().servo == Some(pin) {
+            let sign = if self.wires().servo_reversed {
+                -1.0
+            } else {
+                1.0
+            };
             let angle_rad = self.servo.set(cycle, high);
-            self.actions.extend(angle_rad.map(Action::Servo));
+            self.actions
+                .extend(angle_rad.map(|rad| Action::Servo(sign * rad)));
         }
         let triggers = self.wires().triggers;
         for sonar in SonarId::ALL {

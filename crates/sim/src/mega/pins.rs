@@ -5,9 +5,13 @@ use crate::error::SimError;
 use crate::floor::FloorReading;
 use crate::wiring::{Divider, Motor, Wiring};
 use rumbo_emulator::devices::ports::Pin;
+use rumbo_plant::sonar::SonarId;
 
 /// The inputs of one half of the driver.
 pub(super) const INPUTS: [&str; 4] = ["enable", "forward", "backward", "standby"];
+
+/// The sonars that the control core knows, as the plant counts them.
+const SONARS: [&str; 3] = ["left", "right", "front"];
 
 /// An input of the driver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,7 +52,7 @@ pub(super) enum LinkOn {
     },
 }
 
-/// A wiring in terms of the chip. Pairs are left and right, triples are left, right and front, as the plant counts.
+/// A wiring in terms of the chip. Pairs are left and right, sonars are as the plant counts them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Wires {
     pub(super) driver: &'static Driver,
@@ -59,14 +63,17 @@ pub(super) struct Wires {
     /// Outputs A of both, then outputs B.
     pub(super) encoders: [Option<Pin>; 4],
     pub(super) servo: Option<Pin>,
-    pub(super) triggers: [Option<Pin>; 3],
-    pub(super) echoes: [Option<Pin>; 3],
+    pub(super) servo_reversed: bool,
+    pub(super) triggers: [Option<Pin>; SonarId::ALL.len()],
+    pub(super) echoes: [Option<Pin>; SonarId::ALL.len()],
+    /// Names of the sonars after left, right and front.
+    pub(super) other_sonars: Vec<String>,
     /// What the Bluetooth module is on.
     pub(super) link: Option<LinkOn>,
     /// The battery's divider.
     pub(super) battery: Option<Divider>,
-    /// Lines that idle high because something sends on them.
-    pub(super) receivers: [Option<Pin>; 2],
+    /// Lines that something holds high: serial ones that idle, and faults of a driver that has none.
+    pub(super) held_high: [Option<Pin>; 4],
     /// Lines that the program charges.
     pub(super) charged: Vec<Pin>,
 }
@@ -83,7 +90,8 @@ impl Wires {
             named.push((format!("{side}_encoder_b"), self.encoders[index + 2]));
         }
         named.push(("standby".to_owned(), self.bridges[0][3].pin()));
-        for (index, sonar) in ["left", "right", "front"].into_iter().enumerate() {
+        let others = self.other_sonars.iter().map(String::as_str);
+        for (index, sonar) in SONARS.into_iter().chain(others).enumerate() {
             named.push((format!("{sonar}_trigger"), self.triggers[index]));
             named.push((format!("{sonar}_echo"), self.echoes[index]));
         }
@@ -136,7 +144,14 @@ impl Wires {
             let standby = input("standby", DriverInput::High);
             [enable, forward, backward, standby]
         };
-        let sonars = ["left", "right", "front"];
+        let lines = |end: &str| {
+            let others = wiring.other_sonars.iter().map(String::as_str);
+            let mut pins = [None; SonarId::ALL.len()];
+            for (own, sonar) in pins.iter_mut().zip(SONARS.into_iter().chain(others)) {
+                *own = pin(&format!("{sonar}_{end}"));
+            }
+            pins
+        };
         Ok(Self {
             driver,
             register: driver.shield.and_then(|shield| {
@@ -155,11 +170,13 @@ impl Wires {
             ]
             .map(pin),
             servo: pin("servo"),
-            triggers: sonars.map(|sonar| pin(&format!("{sonar}_trigger"))),
-            echoes: sonars.map(|sonar| pin(&format!("{sonar}_echo"))),
+            servo_reversed: wiring.servo_reversed,
+            triggers: lines("trigger"),
+            echoes: lines("echo"),
+            other_sonars: wiring.other_sonars.clone(),
             link: link_on(name, wiring)?,
             battery: wiring.battery,
-            receivers: [pin("link_rx"), pin("debug_rx")],
+            held_high: ["link_rx", "debug_rx", "left_fault", "right_fault"].map(pin),
             charged: {
                 let sensors = wiring.line_sensors.iter();
                 let charged = sensors.filter(|sensor| sensor.reading == FloorReading::Discharge);

@@ -3,7 +3,7 @@
 use super::Sim;
 use rumbo_plant::contact::Pose;
 use rumbo_plant::moving::{Body, BodyMotion, Course};
-use rumbo_plant::sonar::Ping;
+use rumbo_plant::sonar::{Ping, SonarId};
 use rumbo_plant::world::{ShapeError, World};
 use std::sync::{Arc, OnceLock};
 
@@ -42,15 +42,20 @@ impl Sim {
     pub(crate) fn pings_since(
         &self,
         robot: usize,
-        counts: &mut [u64; 3],
+        counts: &mut [u64; SonarId::ALL.len()],
         pings: &mut Vec<(usize, Ping)>,
     ) {
-        for sonar in rumbo_plant::sonar::SonarId::ALL {
+        for sonar in SonarId::ALL {
             let state = self.plant.sonar(&self.state, sonar);
             let count = &mut counts[sonar.index()];
             if *count != state.pings() {
                 *count = state.pings();
-                let speaker = (3 * robot + sonar.index()) as u32;
+                let speaker = match sonar {
+                    SonarId::Other(number) => {
+                        u32::MAX - (SonarId::OTHERS * robot) as u32 - u32::from(number)
+                    }
+                    _ => (3 * robot + sonar.index()) as u32,
+                };
                 pings.push((robot, state.last_ping(speaker)));
             }
         }

@@ -144,7 +144,10 @@ impl Sim {
                 self.driven(duty);
             }
             Action::Servo(angle_rad) => self.plant.set_servo(&mut self.state, angle_rad),
-            Action::Trigger(sonar) => self.trigger(SonarId::ALL[sonar.index()]),
+            Action::Trigger(sonar) => match SonarId::ALL.get(sonar.index()) {
+                Some(own) => self.trigger(*own),
+                None => drop(self.plant.trigger(&mut self.state, sonar)),
+            },
         }
     }
 }

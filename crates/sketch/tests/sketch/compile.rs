@@ -366,6 +366,12 @@ fn libraries_are_taken_by_their_headers_from_beside_the_sketch_and_from_folders(
     let files = [
         ("src/main.cpp", platformio.as_str()),
         ("include/pins.h", "#define LED 13\n"),
+        ("src/car/Wheels.h", "#include \"../axle.h\"\n"),
+        ("src/Axle.h", "#define AXLES 2\n"),
+        (
+            "src/car/wheels.cpp",
+            "#include \"wheels.h\"\nint wheels() { return AXLES; }\n",
+        ),
         ("lib/Lamp/Lamp.hpp", "int lamp();\n"),
         (
             "lib/Lamp/lamp.cpp",

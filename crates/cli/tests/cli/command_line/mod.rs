@@ -11,4 +11,5 @@ mod observe;
 mod obstacles;
 mod run;
 mod sketch;
+mod sonars;
 mod wrong_input;

@@ -1,0 +1,88 @@
+//! What is wrong with the file of a new robot, said of the options that were to make it: that file was never written.
+
+use rumbo_experiment::files::new_robot::{LINE, NewRobot, OBSTACLE, SHARP};
+use rumbo_experiment::files::{FileError, FileProblem};
+
+/// The problems by option and entry; those that come from no option alone as they are.
+pub(crate) fn said_of_options(robot: &NewRobot, error: FileError) -> FileError {
+    let FileError::Invalid(problems) = error else {
+        return error;
+    };
+    let text = robot.text();
+    let said = problems.into_iter().map(|problem| {
+        let (path, remedy) = match problem.text.strip_prefix('[') {
+            Some(table) => table.split_once("] ").unwrap_or((table, "")),
+            None => problem.text.split_once(' ').unwrap_or_default(),
+        };
+        let (path, remedy) = match problem.text.starts_with("not valid") {
+            true => (path_at(&text, problem.line), problem.text.as_str()),
+            false => (path.to_owned(), remedy),
+        };
+        let remedy = match remedy.strip_prefix("= ") {
+            Some(value) => value.split_once(": ").map_or(value, |(_, remedy)| remedy),
+            None => remedy,
+        };
+        let remedy = remedy.to_owned();
+        match entry(robot, &path.split('.').collect::<Vec<_>>()) {
+            Some(file) => FileProblem {
+                file,
+                line: 0,
+                text: remedy,
+            },
+            None => problem,
+        }
+    });
+    FileError::Invalid(said.collect())
+}
+
+/// The key in a line of a file, with its table.
+fn path_at(text: &str, line: usize) -> String {
+    let before: Vec<&str> = text.lines().take(line).collect();
+    let table = before.iter().rev().find_map(|line| {
+        let table = line.strip_prefix('[')?;
+        table.strip_suffix(']')
+    });
+    let key = before.last().and_then(|line| line.split_once(" = "));
+    format!(
+        "{}.{}",
+        table.unwrap_or_default(),
+        key.map_or("", |(key, _)| key)
+    )
+}
+
+/// The option and the entry that a key of the file is from.
+fn entry(robot: &NewRobot, path: &[&str]) -> Option<String> {
+    let pin = |signal: &str| {
+        let (_, pin) = robot.pins.iter().find(|(own, _)| own == signal)?;
+        Some(format!("--pins {signal}={pin}"))
+    };
+    let place = |sensor: &str| {
+        let (_, [x_m, y_m, deg]) = robot.sensors.iter().find(|(own, _)| own == sensor)?;
+        Some(format!("--sensors {sensor}={x_m}:{y_m}:{deg}"))
+    };
+    match path {
+        ["rig", _, sonar, ..] => place(sonar).or_else(|| pin(&format!("{sonar}_trigger"))),
+        ["wiring", _, "parts", name, ..] => {
+            let [name, kind, place] = robot.parts.iter().find(|[own, ..]| own == name)?;
+            Some(format!("--parts {name}={kind}:{place}"))
+        }
+        ["wiring", _, kind @ ("line" | "obstacle"), name, key @ ..] => {
+            let begins: &[&str] = if *kind == "line" {
+                &[LINE]
+            } else {
+                &[OBSTACLE, SHARP]
+            };
+            let mut sensors = begins.iter().map(|begin| format!("{begin}{name}"));
+            let sensor = sensors.find(|sensor| pin(sensor).is_some())?;
+            match key {
+                ["x_m" | "y_m" | "angle_deg"] => place(&sensor),
+                [said] => pin(&format!("{kind}_{said}")),
+                _ => None,
+            }
+            .or_else(|| pin(&sensor))
+        }
+        ["wiring", _, signal] => pin(signal),
+        ["wiring", _] => Some("--pins".to_owned()),
+        _ => None,
+    }
+}
