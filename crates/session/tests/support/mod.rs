@@ -364,6 +364,7 @@ impl Target for Toy {
                 reach_m: 2.5,
                 on_servo: true,
             }],
+            other_sonars: Vec::new(),
             of_ghost: false,
         })
     }
