@@ -121,7 +121,7 @@ mod tests {
                 wrapped_rad: 0.0,
                 wheel_rad_s: [0.0; 2],
                 duty: [0; 2],
-                seen_m: Some([f64::INFINITY; 3]),
+                seen_m: Some([f64::INFINITY; _]),
                 servo_rad: 0.0,
                 battery_v: 7.4,
                 touching: false,
