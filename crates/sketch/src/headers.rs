@@ -146,11 +146,11 @@ impl<'a> Search<'a> {
 
 /// Where a header is, in the sketch, that a file of the sketch includes from its own folder.
 fn beside(by: &str, header: &str) -> String {
-    let mut parts: Vec<&str> = by.split('/').collect();
-    parts.pop();
-    for part in header.split('/') {
+    let folder = by.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let mut parts: Vec<&str> = Vec::new();
+    for part in folder.split('/').chain(header.split('/')) {
         match part {
-            "." => {}
+            "" | "." => {}
             ".." => drop(parts.pop()),
             _ => parts.push(part),
         }
