@@ -158,7 +158,7 @@ export class Plots {
   /** New data is drawn once it is half a pixel further, which in ten minutes of it is twice a second; its numbers are at once. */
   update() {
     const { slow, readings, steps, stretches, limits, experiment_end_s, playhead_s } = this.store;
-    const half_px_s = (this.range_s[1] - this.range_s[0]) / (2 * Math.max(1, this.#band.plot.bbox.width));
+    const half_px_s = Number((this.range_s[1] - this.range_s[0]).toFixed(3)) / (2 * Math.max(1, this.#band.plot.bbox.width));
     const end_s = this.#following ? Infinity : this.range_s[1];
     const now = [...[slow.t.at(-1) ?? 0, readings.newest_s].map((t_s) => Math.floor(Math.min(t_s, end_s) / half_px_s)), slow.t[0], half_px_s, ...(this.#following ? [] : this.range_s),
       this.mark_s, playhead_s, steps.length, stretches.length, limits?.length, experiment_end_s, this.#whole_s];

@@ -112,8 +112,8 @@ export class Recordings {
     const others = this.#chosen.filter((each) => each !== name);
     const compare = clickable({ textContent: t('Compare'), disabled: box.disabled, title: t(others.length > 0 ? 'Compare it with those that are chosen' : 'Compare it with the run of this page') }, () => this.#try(() => this.#open([...others, name].slice(-MOST))));
     return create('tr', { title: name },
-      create('td', {}, box), create('td', { className: 'wrap' }, this.#title(recording), create('span', { className: 'hint', textContent: when(recording) })),
-      create('td', {}, show, compare, ...(open ? [create('span', { className: 'chip', textContent: t('being recorded') })] : readable ? [this.#deleteButton(name)] : [])),
+      create('td', {}, box, compare), create('td', { className: 'wrap' }, this.#title(recording), create('span', { className: 'hint', textContent: when(recording) })),
+      create('td', {}, show, ...(open ? [create('span', { className: 'chip', textContent: t('being recorded') })] : readable ? [this.#deleteButton(name)] : [])),
       create('td', { textContent: readable ? `${format(duration_s)} s` : '' }), create('td', { textContent: `${format(bytes / 1e6)} MB` }), create('td', { textContent: seed === null ? '' : String(seed) }));
   }
 

@@ -174,6 +174,7 @@ export class Table extends Lines {
     if (last_s <= to_s) return true;
     const column = this.columns.get(name) ?? [];
     let line = this.indexAt(to_s);
+    if (this.t[line] !== to_s) line -= 1;
     while (line >= 0 && typeof column[line] !== 'number') line -= 1;
     return (this.t[line] ?? -Infinity) >= from_s;
   }

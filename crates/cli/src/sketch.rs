@@ -187,11 +187,9 @@ pub(crate) fn begin(
     if let Some(command) = command {
         return output::line(&format!("{file}: edit it, then `{command}`"));
     }
-    // Without a Bluetooth module nothing but a line at the USB port is the second setpoint.
-    let (robot, usb) = match robot {
-        Some(robot) => (format!(" --robot {robot}"), " --usb 'REF 50@5.5'"),
-        None => (String::new(), ""),
-    };
+    // Without a Bluetooth module a line at the USB port is the second setpoint.
+    let usb = robot.as_ref().map_or("", |_| " --usb 'REF 50@5.5'");
+    let robot = robot.map_or(String::new(), |robot| format!(" --robot {robot}"));
     output::line(&format!(
         "{file}: `rumbo lab --scenario mode1{robot} --sketch {folder}` shows it drive, also while it is edited; \
          `rumbo run mode1{robot}{usb} --sketch {folder}` judges it"

@@ -40,13 +40,10 @@ impl AlikeHandIns<'_> {
 pub fn pair(assignment: &Assignment, alike: &AlikeHandIns<'_>, language: Language) -> String {
     let share = alike.percent(language);
     let said = PROVES_NOTHING.with(language, &[("share", &share)]);
-    let mut body = back(language);
-    put(
-        &mut body,
-        format_args!(
-            "<p class=\"note\">{}</p>\n<div class=\"side\">\n",
-            escape(&said)
-        ),
+    let mut body = format!(
+        "{}<p class=\"note\">{}</p>\n<div class=\"side\">\n",
+        back(language),
+        escape(&said)
     );
     for (name, text, common) in alike.of {
         let lines = text.lines().enumerate().map(|(number, line)| {

@@ -118,14 +118,20 @@ pub(super) fn report_unwired<'a>(
 ) {
     for sonar in others {
         let trigger = format!("{sonar}{}", ENDS[0]);
-        if !wirings
-            .clone()
-            .any(|wiring| wiring.pins.contains_key(&trigger))
-        {
-            rigs.complain_here(&format!(
-                "{sonar}: no wiring has {trigger}; {}",
-                did_you_mean(&near_or_all(sonar, OWN))
-            ));
+        let mut wirings = wirings.clone();
+        if wirings.any(|wiring| wiring.pins.contains_key(&trigger)) {
+            continue;
+        }
+        let remedy = format!(
+            "no wiring has {trigger}; {}",
+            did_you_mean(&near_or_all(sonar, OWN))
+        );
+        for rig in rigs.keys() {
+            let rig = rigs.table(rig.value);
+            let placed = rig.keys().into_iter().find(|key| key.value == sonar);
+            if let Some(key) = placed {
+                rig.complain(sonar, key.line, "{...}", &remedy);
+            }
         }
     }
 }

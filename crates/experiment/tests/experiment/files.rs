@@ -154,7 +154,7 @@ fn a_sonar_of_another_name_needs_a_place_and_pins() {
         (
             "frnt.x_m = 0.1",
             "",
-            "frnt: no wiring has frnt_trigger; did you mean `front`",
+            "frnt = {...}: no wiring has frnt_trigger; did you mean `front`",
         ),
         (&many, "", "at most 5 other sonars"),
         (

@@ -60,7 +60,8 @@ pub fn class(
 }
 
 fn anchor(link: &str, words: &str) -> String {
-    format!("<a href=\"{}#class\">{}</a>", escape(link), escape(words))
+    let (link, words) = (escape(link), escape(words));
+    format!("<a href=\"{link}#class\">{words}</a>")
 }
 
 /// A hand-in in the table of the class.

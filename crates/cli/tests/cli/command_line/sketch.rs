@@ -113,20 +113,9 @@ fn a_new_sketch_for_an_uno_drives_the_robot_with_an_uno_and_no_other() {
     let extension: serde_json::Value = serde_json::from_slice(&extension).unwrap();
     let debugger = &extension["contributes"]["debuggers"][0];
     assert_eq!(debugger["type"], launch["configurations"][0]["type"]);
-    let run = rumbo(
-        &bench,
-        &[
-            "run",
-            "mode1",
-            "--robot",
-            "uno",
-            "--usb",
-            "REF 50@5.5",
-            "--sketch",
-            "small",
-            "--no-record",
-        ],
-    );
+    let arguments = "run mode1 --robot uno --sketch small --no-record --usb";
+    let arguments: Vec<&str> = arguments.split(' ').chain(["REF 50@5.5"]).collect();
+    let run = rumbo(&bench, &arguments);
     assert_eq!(run.status.code(), Some(0), "{}", stdout(&run));
 
     // A Mega's image is for another chip.
