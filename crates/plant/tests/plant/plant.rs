@@ -154,7 +154,7 @@ fn events_come_in_the_order_of_time_and_echo_lines_alternate() {
             .iter()
             .any(|event| matches!(event, Event::Edge { .. }))
     );
-    for id in SonarId::ALL {
+    for id in SonarId::ALL.into_iter().take(3) {
         let levels: Vec<bool> = events
             .iter()
             .filter_map(|event| match *event {
