@@ -187,11 +187,12 @@ pub(crate) fn begin(
     if let Some(command) = command {
         return output::line(&format!("{file}: edit it, then `{command}`"));
     }
-    let robot = robot.map(|robot| format!(" --robot {robot}"));
-    let robot = robot.unwrap_or_default();
+    // Without a Bluetooth module a line at the USB port is the second setpoint.
+    let usb = robot.as_ref().map_or("", |_| " --usb 'REF 50@5.5'");
+    let robot = robot.map_or(String::new(), |robot| format!(" --robot {robot}"));
     output::line(&format!(
         "{file}: `rumbo lab --scenario mode1{robot} --sketch {folder}` shows it drive, also while it is edited; \
-         `rumbo run mode1{robot} --sketch {folder}` judges it, and the template does not take the second setpoint"
+         `rumbo run mode1{robot}{usb} --sketch {folder}` judges it"
     ))
 }
 

@@ -1,9 +1,10 @@
-// Drives to a wall and stops 30 cm before it, with an Uno: rumbo run mode1 --robot uno --sketch example:wall_uno
+// Drives to a wall and stops before it, with an Uno: rumbo run mode1 --robot uno --usb 'REF 50@5.5' --sketch example:wall_uno
 // Bridge: right wheel enable 5 (PWM), forward 4, backward 10; left wheel enable 6 (PWM), forward 7, backward 8.
 // Sonar in front: trigger 12, echo 13. Encoders: right 2, left 3. Servo 9. Serial is the USB cable.
 const int ENABLE[] = {5, 6}, FORWARD[] = {4, 7}, BACKWARD[] = {10, 8};
 const int TRIGGER = 12, ECHO = 13;
-const float WALL_CM = 30, GAIN = 6;
+const float GAIN = 7, LEAD = 4;
+float goalCm = 30, beforeCm = 0;
 
 void drive(int pwm) {  // -255 to 255, both wheels
   for (int wheel = 0; wheel < 2; wheel++) {
@@ -24,13 +25,21 @@ void setup() {
   const int OUTPUTS[] = {5, 6, 4, 7, 10, 8, TRIGGER};
   for (int pin : OUTPUTS) pinMode(pin, OUTPUT);
   Serial.begin(115200);
+  beforeCm = distanceCm();
 }
 
 void loop() {
-  float cm = distanceCm(), error = cm - WALL_CM;
-  // Below a PWM of 65 the wheels do not turn.
-  int pwm = cm == 0 || abs(error) < 1 ? 0 : constrain(GAIN * error + (error > 0 ? 65 : -65), -150, 150);
+  if (Serial.available()) {
+    String line = Serial.readStringUntil('\n');
+    if (line.startsWith("REF ")) goalCm = line.substring(4).toFloat();
+  }
+  float cm = distanceCm();
+  // It rolls on: what counts is where it will be in four rounds of this loop.
+  float error = cm + LEAD * (cm - beforeCm) - goalCm;
+  beforeCm = cm;
+  // Below a PWM of about 60 the wheels do not turn.
+  int pwm = cm == 0 || abs(error) < 0.5 ? 0 : constrain(GAIN * error + (error > 0 ? 55 : -55), -170, 170);
   drive(pwm);
   Serial.println(cm);
-  delay(50);
+  delay(40);
 }
