@@ -1,6 +1,6 @@
 //! The page of two hand-ins that are alike.
 
-use crate::grade::of;
+use crate::grade::{back, of};
 use crate::summary::shell;
 use crate::text::{Language, Text, escape, put, word};
 use rumbo_experiment::grade::Assignment;
@@ -41,7 +41,8 @@ pub fn pair(assignment: &Assignment, alike: &AlikeHandIns<'_>, language: Languag
     let share = alike.percent(language);
     let said = PROVES_NOTHING.with(language, &[("share", &share)]);
     let mut body = format!(
-        "<p class=\"note\">{}</p>\n<div class=\"side\">\n",
+        "{}<p class=\"note\">{}</p>\n<div class=\"side\">\n",
+        back(language),
         escape(&said)
     );
     for (name, text, common) in alike.of {

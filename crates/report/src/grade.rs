@@ -112,10 +112,16 @@ fn full(language: Language, assignment: &Assignment, line: &RubricLine) -> Strin
     )
 }
 
+/// The way back to the class, shown to who came from there: a student has no such page.
+pub(crate) fn back(language: Language) -> String {
+    let class = escape(class::CLASS.of(language));
+    format!("<p id=\"class\"><a href=\"../index.html\">← {class}</a></p>\n")
+}
+
 /// The page of one hand-in.
 #[must_use]
 pub fn student(assignment: &Assignment, mark: &Mark, notes: &[Note], language: Language) -> String {
-    let mut body = verdict(mark, language);
+    let mut body = back(language) + &verdict(mark, language);
     let seeds = escape(&seeds_in_words(assignment, language));
     put(&mut body, format_args!("<p>{seeds}</p>\n"));
     let notes = [notes, &mark.notes].concat();

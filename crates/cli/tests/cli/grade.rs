@@ -417,8 +417,16 @@ fn every_hand_in_has_files_of_its_own_and_what_is_none_is_named() {
     let results = results(&bench.join("out"));
     assert_eq!(results.len(), 4, "{:?}", results.keys());
     for file in results.keys() {
-        assert!(class.contains(&format!("students/{file}.html")), "{file}");
-        assert!(bench.join(format!("out/students/{file}.html")).is_file());
+        // From the class a page leads back there.
+        assert!(
+            class.contains(&format!("students/{file}.html#class")),
+            "{file}"
+        );
+        let page = fs::read_to_string(bench.join(format!("out/students/{file}.html")));
+        assert!(
+            page.unwrap()
+                .contains("<p id=\"class\"><a href=\"../index.html\">")
+        );
     }
 }
 

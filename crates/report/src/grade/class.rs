@@ -8,7 +8,7 @@ use rumbo_experiment::grade::{Assignment, Mark};
 use rumbo_experiment::note::Note;
 use rumbo_plot::{Curve, Ink, Panel, Plot, Points};
 
-const CLASS: Text = word("class");
+pub(super) const CLASS: Text = word("class");
 const MARKS: Text = word("marks");
 const DISTRIBUTION: Text = word("distribution");
 const HAND_INS: Text = word("hand-ins");
@@ -60,7 +60,8 @@ pub fn class(
 }
 
 fn anchor(link: &str, words: &str) -> String {
-    format!("<a href=\"{}\">{}</a>", escape(link), escape(words))
+    let (link, words) = (escape(link), escape(words));
+    format!("<a href=\"{link}#class\">{words}</a>")
 }
 
 /// A hand-in in the table of the class.
