@@ -156,7 +156,7 @@ function drawMap() {
 /** All that moves. */
 function draw() {
   drawMap();
-  plots.draw();
+  plots.update();
   stateLine.draw();
   timeline.draw();
   stepFigures.show(panel.mode);

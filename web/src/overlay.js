@@ -18,7 +18,7 @@ export class Overlay {
   kept = [];
   /** The same run with many seeds. @type {Store[]} */
   seeds = [];
-  /** The ranges of the seeds, by signal. @type {Map<string, Range>} */
+  /** The ranges of the seeds, by signal. @type {Map<string, {range: Range, every: number, outline: Path2D}>} */
   #ranges = new Map();
 
   /** @param {Store[]} seeds */
@@ -32,13 +32,16 @@ export class Overlay {
     return on_s(store) ?? (this.seeds[0] ? on_s(this.seeds[0]) ?? 0 : 0);
   }
 
-  /** @param {string} name */
-  #range(name) {
-    const known = this.#ranges.get(name);
-    if (known) return known;
-    const made = rangeOf(this.seeds.map((store) => sinceOn(store, name)), STEP_S);
-    this.#ranges.set(name, made);
-    return made;
+  /** Outline of the range of a signal, in seconds from ON and its unit, with every so many points. @param {string} name @param {number} every */
+  #range(name, every) {
+    const known = this.#ranges.get(name) ?? { range: rangeOf(this.seeds.map((store) => sinceOn(store, name)), STEP_S), every: 0, outline: new Path2D() };
+    this.#ranges.set(name, known);
+    if (known.every === every) return known.outline;
+    const { t, low, high } = known.range;
+    Object.assign(known, { every, outline: new Path2D() });
+    for (let index = 0; index < t.length; index += every) known.outline.lineTo(t[index] ?? 0, low[index] ?? 0);
+    for (let index = t.length - 1; index >= 0; index -= every) known.outline.lineTo(t[index] ?? 0, high[index] ?? 0);
+    return known.outline;
   }
 
   /** @param {uPlot} plot @param {Curve[]} curves @param {Store} store the run that is shown @param {[number, number]} range_s */
@@ -54,16 +57,15 @@ export class Overlay {
     const measured = curves.filter(({ kind }) => kind !== 'reference');
     // No two points in one pixel.
     const every = Math.max(1, Math.floor((to_s - from_s) / (STEP_S * bbox.width)));
+    const shift_s = this.shift_s(store);
+    ctx.globalAlpha = 0.18;
     for (const curve of this.seeds.length > 0 ? measured : []) {
-      const { t, low, high } = this.#range(curve.name);
-      const shift_s = this.shift_s(store);
-      const line = (/** @type {number} */ index, /** @type {number[]} */ values) => ctx.lineTo(x(shift_s + (t[index] ?? 0)), y(curve, values[index] ?? 0));
-      ctx.beginPath();
-      for (let index = 0; index < t.length; index += every) line(index, low);
-      for (let index = t.length - 1; index >= 0; index -= every) line(index, high);
+      const [left, zero, right, one] = [x(shift_s), y(curve, 0), x(shift_s + 1), y(curve, 1)];
+      ctx.save();
+      ctx.transform(right - left, 0, 0, one - zero, left, zero);
       ctx.fillStyle = colours[curve.colour];
-      ctx.globalAlpha = 0.18;
-      ctx.fill();
+      ctx.fill(this.#range(curve.name, every));
+      ctx.restore();
     }
     ctx.strokeStyle = colours.dim;
     ctx.globalAlpha = 0.75;

@@ -23,6 +23,8 @@ const EDGE_PX = 22;
 const MOST_TRANSITIONS = 60;
 /** A drag that goes further than this along both axes is a box [px]. */
 const BOX_PX = 25;
+/** A curve without a value for so long, and with none in sight, has no name in the title [s]. */
+const LATELY_S = 40;
 
 export class PlotPanel {
   #view;
@@ -128,21 +130,19 @@ export class PlotPanel {
 
   /** The numbers beside the names: at the pointer, else at the playhead or the newest; and how far from those at the mark. */
   label() {
-    const data = this.plot.data;
     const { mark_s } = this.#view;
     const at_s = this.#view.pointed_s ?? this.#store.playhead_s;
-    this.#chips.forEach(({ chip, value, name, unit }, index) => {
+    for (const { chip, value, name, unit } of this.#chips) {
       const { decimals } = UNITS[unit];
-      const column = /** @type {(number | null | undefined)[]} */ (data[index + 1] ?? []);
       const table = this.#store.tableOf(name);
-      const unused = !table.knows(name) || (!plottedIn(column) && !plottedIn(column, data[0], this.#view.range_s));
+      const unused = !table.knowsIn(name, (table.t.at(-1) ?? 0) - LATELY_S) && !table.knowsIn(name, ...this.#view.range_s);
       if (chip.hidden !== unused) chip.hidden = unused;
       // What is drawn may be thinned.
       const now = table.at(name, at_s);
       const then = mark_s === null ? null : table.at(name, mark_s);
       const difference = typeof now === 'number' && typeof then === 'number' ? ` Δ ${format(now - then, decimals)}` : '';
       setText(value, `${format(now, decimals)}${difference}`);
-    });
+    }
   }
 
   /** @param {Curve} each @param {number} series */
@@ -180,7 +180,7 @@ export class PlotPanel {
         draw: [(/** @type {uPlot} */ each) => {
           drawLine(each, this.#view.mark_s, colours.goal);
           drawLine(each, this.#store.playhead_s, colours.text);
-          const isPlotted = (/** @type {Curve} */ { name }, /** @type {number} */ index) => each.series[index + 1]?.show && this.#store.tableOf(name).knows(name) && plottedIn(each.data[index + 1] ?? [], each.data[0], this.#view.range_s);
+          const isPlotted = (/** @type {Curve} */ { name }, /** @type {number} */ index) => each.series[index + 1]?.show && this.#store.tableOf(name).knowsIn(name, ...this.#view.range_s);
           if (!this.curves.some(isPlotted)) drawNothing(each);
         }],
       },
@@ -286,21 +286,6 @@ export function drawLine(plot, at_s, colour) {
   ctx.lineTo(x, bbox.top + bbox.height);
   ctx.stroke();
   ctx.restore();
-}
-
-/**
- * Whether a curve has anything to show in this time; without one, lately: the last lines may lack it.
- * @param {ArrayLike<number | null | undefined>} column
- * @param {ArrayLike<number>} [times]
- * @param {[number, number]} [range_s]
- */
-function plottedIn(column, times, range_s) {
-  for (let index = column.length - 1; index >= (times ? 0 : Math.max(0, column.length - 1_000)); index--) {
-    const t_s = times?.[index] ?? 0;
-    if (range_s && t_s < range_s[0]) return false;
-    if (typeof column[index] === 'number' && (!range_s || t_s <= range_s[1])) return true;
-  }
-  return false;
 }
 
 /** @param {Curve} each @returns {uPlot.Series} */

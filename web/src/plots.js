@@ -55,6 +55,8 @@ export class Plots {
   #heads = new ResizeObserver(() => this.#fit());
   /** Each plot that is drawn says that its cursor moves: then the numbers wait for the last of them. */
   #draws = false;
+  /** What the curves were drawn of. @type {unknown[]} */
+  #drawn = [];
   /** Opens the dialog of a plot. @type {(panel: PlotPanel | null) => void} */
   edit = () => {};
 
@@ -118,6 +120,7 @@ export class Plots {
     this.#following = following;
     if (following) for (const panel of this.#panels) panel.resetAxis();
     this.#onFollow(following);
+    this.#drawn = [];
     this.#redraw();
   }
 
@@ -150,6 +153,18 @@ export class Plots {
     const near_s = (this.range_s[1] - this.range_s[0]) / 100;
     this.mark_s = t_s === null || (this.mark_s !== null && Math.abs(t_s - this.mark_s) < near_s) ? null : t_s;
     this.#redraw();
+  }
+
+  /** New data is drawn once it is half a pixel further, which in ten minutes of it is twice a second; its numbers are at once. */
+  update() {
+    const { slow, readings, steps, stretches, limits, experiment_end_s, playhead_s } = this.store;
+    const half_px_s = Number((this.range_s[1] - this.range_s[0]).toFixed(3)) / (2 * Math.max(1, this.#band.plot.bbox.width));
+    const end_s = this.#following ? Infinity : this.range_s[1];
+    const now = [...[slow.t.at(-1) ?? 0, readings.newest_s].map((t_s) => Math.floor(Math.min(t_s, end_s) / half_px_s)), slow.t[0], half_px_s, ...(this.#following ? [] : this.range_s),
+      this.mark_s, playhead_s, steps.length, stretches.length, limits?.length, experiment_end_s, this.#whole_s];
+    if (now.length === this.#drawn.length && now.every((each, index) => each === this.#drawn[index])) return this.label();
+    this.draw();
+    this.#drawn = now;
   }
 
   draw() {

@@ -86,8 +86,8 @@ export class Table extends Lines {
   #bucket;
   #inBucket = 0;
   #bucketFrom_s = 0;
-  /** Columns that have had a number: the others are asked in each frame, and are not searched. @type {Set<string>} */
-  #known = new Set();
+  /** When each column had its last number [s]: that is asked in each frame, and not searched. @type {Map<string, number>} */
+  #known = new Map();
 
   /** @param {string[]} names @param {number} kept_s how long lines are kept [s] */
   constructor(names, kept_s) {
@@ -119,7 +119,7 @@ export class Table extends Lines {
     for (const [name, column] of this.columns) {
       column.push(values[name]);
       this.#bucket.get(name)?.add(values[name]);
-      if (typeof values[name] === 'number') this.#known.add(name);
+      if (typeof values[name] === 'number') this.#known.set(name, t_s);
     }
     this.#inBucket += 1;
     if (this.#inBucket === BUCKET) this.#close(t_s);
@@ -152,7 +152,10 @@ export class Table extends Lines {
       into.t = [...from.t];
       into.columns = new Map([...from.columns].map(([name, column]) => [name, [...column]]));
     }
-    for (const [name, column] of made.columns) if (column.some((value) => typeof value === 'number')) made.#known.add(name);
+    for (const [name, column] of made.columns) {
+      const last_s = made.t[column.findLastIndex((value) => typeof value === 'number')];
+      if (last_s !== undefined) made.#known.set(name, last_s);
+    }
     return made;
   }
 
@@ -164,9 +167,16 @@ export class Table extends Lines {
     this.#inBucket = 0;
   }
 
-  /** Whether a signal has had a value. @param {string} name */
-  knows(name) {
-    return this.#known.has(name);
+  /** Whether a signal has had a value since then, or between two times. @param {string} name @param {number} from_s @param {number} [to_s] */
+  knowsIn(name, from_s, to_s = Infinity) {
+    const last_s = this.#known.get(name);
+    if (last_s === undefined || last_s < from_s) return false;
+    if (last_s <= to_s) return true;
+    const column = this.columns.get(name) ?? [];
+    let line = this.indexAt(to_s);
+    if (this.t[line] !== to_s) line -= 1;
+    while (line >= 0 && typeof column[line] !== 'number') line -= 1;
+    return (this.t[line] ?? -Infinity) >= from_s;
   }
 
   /** A signal's value at a time, or the last before it; lines without it and two gaps are passed over. @param {string} name @param {number} t_s */

@@ -15,8 +15,9 @@ test('a legend shows the last value up to the time, however the curve is thinned
 test('a signal is known once it has had a value, also to a copy, until all is cleared', () => {
   const table = new Table(['a', 'b'], 600);
   for (let line = 0; line < 3; line++) table.push(line, { a: line === 1 ? 5 : null, b: null });
-  const known = (/** @type {Table} */ of) => ['a', 'b', 'c'].map((name) => of.knows(name));
+  const known = (/** @type {Table} */ of) => ['a', 'b', 'c'].map((name) => of.knowsIn(name, -Infinity));
   const copy = table.copy();
   table.clear();
   assert.deepEqual([known(copy), known(table)], [[true, false, false], [false, false, false]]);
+  assert.deepEqual([[0, 0], [0, 2], [0.2, 0.5], [1, 1], [1.5, 2], [2, 9]].map(([from = 0, to]) => copy.knowsIn('a', from, to)), [false, true, false, true, false, false]);
 });

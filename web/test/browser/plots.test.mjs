@@ -248,7 +248,7 @@ rare('a file that is no layout is refused with the reason, and nothing changes',
   await page.keyboard.press('Escape');
 });
 
-test('the pointer on the map draws the map alone', async () => {
+test('the pointer on the map draws the map alone, and curves without new data are not drawn again', async () => {
   await page.locator('#speed').selectOption('0');
   await page.locator('#connection', { hasText: 'paused' }).waitFor();
   const drawn = await page.evaluate(async () => {
@@ -265,6 +265,7 @@ test('the pointer on the map draws the map alone', async () => {
       await new Promise(requestAnimationFrame);
     }
     await new Promise((drawn) => setTimeout(drawn, 300));
+    for (let again = 0; again < 10; again += 1) /** @type {any} */ (window).rumbo.draw();
     CanvasRenderingContext2D.prototype.clearRect = clearRect;
     return { maps, others, pointer: document.querySelector('#pointer')?.textContent };
   });
