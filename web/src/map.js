@@ -45,8 +45,10 @@ const [NAME_M, NAME_PX] = [0.16, 14];
 const ALONG_M = 0.5;
 /** The view grows in steps of this size [m], so that it does not creep. */
 const GROWTH_M = 0.5;
-/** The robot is at least so large: else the view follows it. Where places are picked, what is around it counts more [px]. */
-const [LARGE_PX, PICKING_PX] = [40, 18];
+/** The robot is at least so large: else the view follows it, or what is around it and its goal, or it has a ring of that size [px]. */
+const LARGE_PX = 40;
+/** What is around the robot, with room to pick places, or around its way [m]. */
+const [PICKING_M, WAY_M] = [0.8, 0.25];
 const ZOOM_STEP = 1.25;
 const KEY_PAN_PX = 40;
 /** A press that moves no further than this is a click [px]. */
@@ -84,9 +86,11 @@ export class WorldMap {
   #follow = null;
   #followButton = element('follow', HTMLButtonElement);
   #pose = element('pose', HTMLOutputElement);
+  /** @type {number | null} */
+  #above_px = null;
   /** The robot is also shown where it was then [s]. @type {number | null} */
   #hover_s = null;
-  /** The same run with other seeds. @type {Store[]} */
+  /** The same run with other seeds, each with when it was switched on [s]. @type {{store: Store, began_s: number}[]} */
   #seeds = [];
   /** Sends what a hand does in the simulated world; null: it can do nothing there. @type {((line: string) => void) | null} */
   hand = null;
@@ -110,7 +114,12 @@ export class WorldMap {
     this.#sketch = new Sketch(canvas, context);
     this.#store = store;
     this.#redraw = redraw;
-    new ResizeObserver(redraw).observe(canvas);
+    const sizes = new ResizeObserver(() => {
+      this.#sketch.resized();
+      this.#above_px = null;
+      redraw();
+    });
+    for (const each of [canvas, this.#pose]) sizes.observe(each);
     onThemeChange(redraw);
     this.#makeNavigable();
     this.#makePickable();
@@ -175,7 +184,7 @@ export class WorldMap {
 
   /** Shows the robots of other seeds, faint. @param {Store[]} seeds */
   setSeeds(seeds) {
-    this.#seeds = seeds;
+    this.#seeds = seeds.map((store) => ({ store, began_s: on_s(store) ?? 0 }));
     this.#redraw();
   }
 
@@ -197,10 +206,8 @@ export class WorldMap {
 
   /** A place of the world on the canvas [px]. @param {Point} at @param {View} [view] @returns {Point} */
   worldToCanvas([x_m, y_m], view = this.#view ?? this.#fitted()) {
-    return [
-      this.#canvas.clientWidth / 2 + (x_m - view.x_m) * view.px_per_m,
-      this.#canvas.clientHeight / 2 - (y_m - view.y_m) * view.px_per_m,
-    ];
+    const [middle_x, middle_y] = this.#middle();
+    return [middle_x + (x_m - view.x_m) * view.px_per_m, middle_y - (y_m - view.y_m) * view.px_per_m];
   }
 
   /** The place under the pointer, or that Enter picks, in the world and, where it would be picked, from the robot's origin. @returns {{world: Point, own: Point | null} | null} */
@@ -219,8 +226,7 @@ export class WorldMap {
     const canvas = this.#canvas;
     const sketch = this.#sketch;
     const ratio = devicePixelRatio;
-    const width = Math.round(canvas.clientWidth * ratio);
-    const height = Math.round(canvas.clientHeight * ratio);
+    const [width = 0, height = 0] = sketch.size.map((each) => Math.round(each * ratio));
     if (canvas.width !== width || canvas.height !== height) {
       canvas.width = width;
       canvas.height = height;
@@ -255,12 +261,9 @@ export class WorldMap {
     this.#drawTask(px);
     const latest = this.#store.latest;
     const then = this.#hover_s === null ? null : this.#store.poseAt(this.#hover_s);
-    const began_s = on_s(this.#store);
-    for (const seed of this.#seeds) {
-      // From ON on, as this one.
-      const at = seed.poseAt((latest?.t_s ?? 0) - (began_s === null ? 0 : began_s - (on_s(seed) ?? 0)));
-      if (at) sketch.drawOutline(at, px);
-    }
+    // From ON on, as this one.
+    const on = this.#seeds.length > 0 ? on_s(this.#store) : null;
+    sketch.drawSeeds(this.#seeds.flatMap(({ store, began_s }) => store.poseAt((latest?.t_s ?? 0) - (on === null ? 0 : on - began_s)) ?? []), px);
     if (then) sketch.drawRobot(then, px, 'estimated', false);
     if (!latest) return;
     const estimated = latest.estimated && compose(latest.origin, latest.estimated);
@@ -269,6 +272,7 @@ export class WorldMap {
     if (latest.ghost) sketch.drawRobot(latest.ghost, px, 'ghost', false);
     if (estimated) sketch.drawRobot(estimated, px, latest.truth ? 'estimated' : 'real', false);
     if (latest.truth) sketch.drawRobot(latest.truth, px, 'real', latest.contact);
+    if (seen && view.px_per_m < 0.75 * this.#least) sketch.drawRing(seen, LARGE_PX / 2 * px, px);
     if (estimated && latest.spread) sketch.drawSpread(estimated, latest.origin, latest.spread, px);
     this.#hand?.held.draw(sketch, px);
     if (this.#pick && this.#canvas.matches(':focus-visible')) sketch.drawAim();
@@ -290,7 +294,7 @@ export class WorldMap {
 
   /** Where the readout ends, which may have two rows, and a robot's name below it has room [px]. */
   #above() {
-    return this.#pose.offsetTop + this.#pose.offsetHeight + NAME_PX;
+    return this.#above_px ??= this.#pose.offsetTop + this.#pose.offsetHeight + NAME_PX;
   }
 
   /** @param {number} px */
@@ -358,16 +362,14 @@ export class WorldMap {
   /** @param {Point} pixel @returns {Point} */
   #toWorld([x_px, y_px]) {
     const view = this.#view ?? this.#fitted();
-    return [
-      view.x_m + (x_px - this.#canvas.clientWidth / 2) / view.px_per_m,
-      view.y_m - (y_px - this.#canvas.clientHeight / 2) / view.px_per_m,
-    ];
+    const [middle_x, middle_y] = this.#middle();
+    return [view.x_m + (x_px - middle_x) / view.px_per_m, view.y_m - (y_px - middle_y) / view.px_per_m];
   }
 
   /** Scale at which the robot has its least size [px/m]. */
   get #least() {
     const xs = this.#sketch.scene?.footprint_m.map(([x]) => x) ?? [0, 0.25];
-    return (this.#pick ? PICKING_PX : LARGE_PX) / (Math.max(...xs) - Math.min(...xs));
+    return LARGE_PX / (Math.max(...xs) - Math.min(...xs));
   }
 
   /** @param {View} whole */
@@ -375,38 +377,51 @@ export class WorldMap {
     return !this.#tool && (this.#follow ?? whole.px_per_m < this.#least);
   }
 
-  /** Everything, or what is around the robot. @returns {View} */
+  /** Everything, or the robot, with where it goes if places are picked. @returns {View} */
   #fitted(whole = this.#whole()) {
     if (!this.#follows(whole)) return whole;
     const { x_m, y_m } = this.#robot();
-    return { x_m, y_m, px_per_m: Math.max(whole.px_per_m, this.#least) };
+    if (!this.#pick || this.#follow) return { x_m, y_m, px_per_m: Math.max(whole.px_per_m, this.#least) };
+    const way = this.#way();
+    const from = this.#task?.from ? compose(this.#origin(), { x_m: this.#task.from[0], y_m: this.#task.from[1], heading_rad: 0 }) : this.#start();
+    const around_m = way.length > 0 ? WAY_M : PICKING_M;
+    return this.#showing([[x_m, y_m], ...(way.length > 0 ? [/** @type {Point} */ ([from.x_m, from.y_m])] : []), ...way]
+      .flatMap(([x = 0, y = 0]) => [[x - around_m, y - around_m], [x + around_m, y + around_m]]), whole.px_per_m, this.#least);
+  }
+
+  /** Goal and places of the route in the world, without the robot's error. @returns {Point[]} */
+  #way() {
+    const { goal = null, route = null } = this.#task ?? {};
+    return [...(goal ? [goal] : []), ...(route?.waypoints.map(({ x_m, y_m }) => /** @type {Point} */ ([x_m, y_m])) ?? [])].map((at) => place(this.#origin(), at));
   }
 
   /** What is around the robot in sight, with room to pick places where that is what a click does. @returns {View} */
   #whole() {
-    const frame = this.#origin();
     const start = this.#start();
     const robot = this.#robot();
     const around_m = this.#pick ? 1.3 : 0.35;
-    const { goal = null, route = null } = this.#task ?? {};
-    const others = this.others();
-    const all = this.#tool?.bounds ?? [
+    const coarse = (/** @type {Point} */ point) => point.map((each) => Math.round(each / GROWTH_M) * GROWTH_M);
+    return this.#showing(this.#tool?.bounds ?? [
       ...(this.#sketch.scene?.obstacles.flatMap(({ corners_m, closed }) => corners_m.flatMap((corner, index) => {
         const next = corners_m[index + 1] ?? (closed ? corners_m[0] : undefined);
         return next ? nextTo(corner, next, [start.x_m, start.y_m], ALONG_M) : [];
       })) ?? []),
-      ...(this.#sketch.scene?.movers?.flatMap(({ waypoints }) => waypoints.map(({ at }) => /** @type {Point} */ ([at.x_m, at.y_m]))) ?? []),
-      ...others.map(({ at }) => /** @type {Point} */ ([at.x_m, at.y_m].map((each) => Math.round(each / GROWTH_M) * GROWTH_M))),
+      ...(this.#sketch.scene?.movers?.flatMap(({ waypoints }) => waypoints.map(({ at }) => [at.x_m, at.y_m])) ?? []),
       [start.x_m - around_m, start.y_m - around_m], [start.x_m + around_m, start.y_m + around_m],
-      ...[[robot.x_m, robot.y_m], ...this.#trailCorners(), ...(goal ? [place(frame, goal)] : []), ...(route?.waypoints.map(({ x_m, y_m }) => place(frame, [x_m, y_m])) ?? [])]
-        .map((point) => point.map((each) => Math.round(each / GROWTH_M) * GROWTH_M)),
-    ];
-    const xs = all.map(([x]) => x ?? 0);
-    const ys = all.map(([, y]) => y ?? 0);
+      ...[...this.others().map(({ at }) => at), robot].map(({ x_m, y_m }) => coarse([x_m, y_m])), ...[...this.#trailCorners(), ...this.#way()].map(coarse),
+    ]);
+  }
+
+  /** The view of all these points, its scale in a range [px/m]. @param {number[][]} points @param {number} [least] @param {number} [most] @returns {View} */
+  #showing(points, least = 0, most = Infinity) {
+    const xs = points.map(([x]) => x ?? 0);
+    const ys = points.map(([, y]) => y ?? 0);
     const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    const above_px = others.length > 0 ? this.#above() : ABOVE_PX;
-    const height_px = Math.max(this.#canvas.clientHeight - above_px - BELOW_PX, 50);
-    const px_per_m = Math.min(this.#canvas.clientWidth / (right - left + 2 * MARGIN_M), height_px / (high - low + 2 * MARGIN_M));
+    const above_px = this.#sketch.scene?.others?.length ? this.#above() : ABOVE_PX;
+    const [width_px, whole_px] = this.#sketch.size;
+    const height_px = Math.max(whole_px - above_px - BELOW_PX, 50);
+    const fits = Math.min(width_px / (right - left + 2 * MARGIN_M), height_px / (high - low + 2 * MARGIN_M));
+    const px_per_m = Math.max(least, Math.min(most, fits));
     return { x_m: (left + right) / 2, y_m: (low + high) / 2 + (above_px - BELOW_PX) / 2 / px_per_m, px_per_m };
   }
 
@@ -474,7 +489,8 @@ export class WorldMap {
 
   /** The canvas's middle, where Enter picks a place [px]. @returns {Point} */
   #middle() {
-    return [this.#canvas.clientWidth / 2, this.#canvas.clientHeight / 2];
+    const [width, height] = this.#sketch.size;
+    return [width / 2, height / 2];
   }
 
   /** What a press there would hold. @param {Point} pixel @param {number} reach_px @returns {Held | null} */

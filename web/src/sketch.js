@@ -27,6 +27,8 @@ export class Sketch {
   scene = null;
   /** The body by the robot's parameters; a simulated body takes precedence. @type {import('./mounts.js').Body | null} */
   body = null;
+  /** Each trail as a path. @type {WeakMap<Point[], {first: Point, points: number, path: Path2D}>} */
+  #trails = new WeakMap();
 
   /**
    * @param {HTMLCanvasElement} canvas
@@ -35,6 +37,17 @@ export class Sketch {
   constructor(canvas, context) {
     this.canvas = canvas;
     this.context = context;
+  }
+
+  /** Width and height of the canvas [px]: asked for in each frame they would be a layout for each. @type {Point | null} */
+  #size = null;
+
+  get size() {
+    return this.#size ??= [this.canvas.clientWidth, this.canvas.clientHeight];
+  }
+
+  resized() {
+    this.#size = null;
   }
 
   /** The scene, unless it is of a ghost. */
@@ -48,8 +61,7 @@ export class Sketch {
    */
   drawGrid(view, px) {
     const step_m = squareOf(view);
-    const half_x = this.canvas.clientWidth / 2 / view.px_per_m;
-    const half_y = this.canvas.clientHeight / 2 / view.px_per_m;
+    const [half_x, half_y] = /** @type {Point} */ (this.size.map((each) => each / 2 / view.px_per_m));
     const context = this.context;
     context.beginPath();
     for (let x = Math.ceil((view.x_m - half_x) / step_m) * step_m; x < view.x_m + half_x; x += step_m) {
@@ -100,8 +112,7 @@ export class Sketch {
     const ratio = devicePixelRatio;
     context.save();
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    const bottom = this.canvas.clientHeight - 10;
-    const right = this.canvas.clientWidth - 12;
+    const [right, bottom] = [this.size[0] - 12, this.size[1] - 10];
     context.globalAlpha = 0.95;
     context.fillStyle = colours.panel;
     context.fillRect(right - length_m * px_per_m - 4, bottom - 22, length_m * px_per_m + 8, 26);
@@ -181,13 +192,18 @@ export class Sketch {
    * @param {number} width_m
    */
   drawTrail(trail, colour, width_m) {
-    if (trail.length < 2) return;
+    const [first] = trail;
+    if (!first) return;
     const context = this.context;
-    tracePath(context, trail, false);
+    // It grows at its end, until its beginning goes.
+    let known = this.#trails.get(trail);
+    if (!known || known.first !== first) this.#trails.set(trail, known = { first, points: 0, path: new Path2D() });
+    for (const [x, y] of trail.slice(known.points)) known.path.lineTo(x, y);
+    known.points = trail.length;
     context.strokeStyle = colour;
     context.lineWidth = width_m;
     context.globalAlpha = 0.7;
-    context.stroke();
+    context.stroke(known.path);
     context.globalAlpha = 1;
   }
 
@@ -239,6 +255,19 @@ export class Sketch {
     context.restore();
   }
 
+  /** Where a small robot is, and its heading. @param {Pose} at @param {number} radius_m @param {number} px */
+  drawRing({ x_m, y_m, heading_rad }, radius_m, px) {
+    const context = this.context;
+    const [cos, sin] = [Math.cos(heading_rad), Math.sin(heading_rad)];
+    context.beginPath();
+    context.moveTo(x_m + 1.3 * radius_m * cos, y_m + 1.3 * radius_m * sin);
+    context.arc(x_m, y_m, radius_m, heading_rad + 0.3, heading_rad - 0.3 + 2 * Math.PI);
+    context.closePath();
+    context.strokeStyle = colours.robot;
+    context.lineWidth = 1.5 * px;
+    context.stroke();
+  }
+
   /**
    * Another robot, with its name, in a colour of its own.
    * @param {{name: string, footprint_m: Point[]}} other
@@ -268,18 +297,19 @@ export class Sketch {
     context.stroke();
   }
 
-  /** A robot of another seed: its outline, faint. @param {Pose} at @param {number} px */
-  drawOutline(at, px) {
+  /** The robots of other seeds: their outlines, faint. @param {Pose[]} poses @param {number} px */
+  drawSeeds(poses, px) {
     const { context, scene } = this;
-    context.save();
-    context.translate(at.x_m, at.y_m);
-    context.rotate(at.heading_rad);
-    tracePath(context, scene?.footprint_m ?? DEFAULT_FOOTPRINT, true);
+    context.beginPath();
+    for (const at of poses) {
+      (scene?.footprint_m ?? DEFAULT_FOOTPRINT).forEach((corner, index) => (index === 0 ? context.moveTo(...place(at, corner)) : context.lineTo(...place(at, corner))));
+      context.closePath();
+    }
     context.lineWidth = px;
     context.globalAlpha = 0.4;
     context.strokeStyle = colours.robot;
     context.stroke();
-    context.restore();
+    context.globalAlpha = 1;
   }
 
   /**
@@ -385,7 +415,7 @@ export class Sketch {
     const context = this.context;
     const ratio = devicePixelRatio;
     context.save();
-    context.setTransform(ratio, 0, 0, ratio, this.canvas.clientWidth / 2 * ratio, this.canvas.clientHeight / 2 * ratio);
+    context.setTransform(ratio, 0, 0, ratio, this.size[0] / 2 * ratio, this.size[1] / 2 * ratio);
     context.strokeStyle = colours.text;
     context.lineWidth = 1;
     context.beginPath();

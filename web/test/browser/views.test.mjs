@@ -135,6 +135,28 @@ test('another robot has the same colour on every page, and its name is not behin
   assert.ok(seen.fitted > seen.low + 6 && seen.zoomed > 0, JSON.stringify(seen));
 });
 
+test('where places are picked the robot is large, and so near that its goal is in sight', async () => {
+  const seen = await page.evaluate(async ([map, store]) => {
+    const { WorldMap } = await import(/** @type {string} */ (map));
+    const { Store } = await import(/** @type {string} */ (store));
+    const canvas = document.createElement('canvas');
+    document.body.append(canvas);
+    Object.assign(canvas.style, { position: 'absolute', inset: '0', width: '600px', height: '400px' });
+    const view = new WorldMap(canvas, new Store(), () => {});
+    view.setScene({ obstacles: [{ corners_m: [[-4, -4], [6, 4]], closed: false }], footprint_m: [[-0.1, -0.1], [0.1, 0.1]], start: { x_m: 0, y_m: 0, heading_rad: 0 } });
+    view.setPick(() => {});
+    const places = [1.5, 5].map((goal) => {
+      view.setTask({ goal: [goal, 0] });
+      return [[-0.1, 0], [0.1, 0], [goal, 0]].map((at) => view.worldToCanvas(at)[0]);
+    });
+    canvas.remove();
+    return places;
+  }, ['/src/map.js', '/src/store.js']);
+  for (const [left = 0, right = 0, goal = 0] of seen) assert.ok(left > 0 && goal < 600 && right > left, JSON.stringify(seen));
+  const [[left, right] = [], far = []] = seen;
+  assert.ok(right - left > 39.9 && far[1] - far[0] < 39, JSON.stringify(seen));
+});
+
 test('the scale of the map is drawn over its walls, and a state too short for its name has the beginning of it', async () => {
   const { last, names } = await page.evaluate(async ([map, store, band]) => {
     const { WorldMap } = await import(/** @type {string} */ (map));
