@@ -13,7 +13,6 @@ import { isSite } from './worker_link.js';
 export class Recordings {
   #dialog = dialog('recordings-dialog', t('Recordings'));
   #find = create('input', { type: 'search', id: 'recordings-find', placeholder: t('scenario, robot, date') });
-  #compare = create('button', { type: 'button', textContent: t('Compare') });
   #rows = create('tbody');
   #none = create('p', { className: 'hint' });
   #complaint = complaint();
@@ -51,11 +50,10 @@ export class Recordings {
     const head = create('thead', {}, create('tr', {}, ...[t('compare'), t('recording'), t('actions'), t('duration'), t('size'), t('seed')].map((textContent) => create('th', { textContent, scope: 'col' }))));
     const find = create('label', {}, `${t('find')} `, this.#find);
     this.#dialog.body.append(
-      create('div', { className: 'row' }, find, create('span', { className: 'spacer' }), this.#compare),
+      create('div', { className: 'row' }, find),
       this.#complaint, create('div', { className: 'scroll recordings', tabIndex: 0 }, create('table', {}, head, this.#rows)), this.#none,
     );
     this.#find.addEventListener('input', () => this.#show());
-    this.#compare.addEventListener('click', () => this.#try(() => this.#compareChosen()));
   }
 
   open() {
@@ -86,8 +84,6 @@ export class Recordings {
     const found = this.#list.filter((each) => this.#words(each).toLowerCase().includes(wanted));
     this.#rows.replaceChildren(...found.map((each) => this.#row(each)));
     setText(this.#none, found.length > 0 ? t('recordings: {} of {}', found.length, this.#list.length) : t('no recordings'));
-    this.#compare.disabled = this.#chosen.length < 2;
-    this.#compare.title = t('Choose two to eight recordings to compare');
   }
 
   /** What a recording is found by. @param {Recording} recording */
@@ -106,13 +102,16 @@ export class Recordings {
     const { name, seed, duration_s, bytes, open, readable } = recording;
     const box = create('input', { type: 'checkbox', checked: this.#chosen.includes(name), disabled: !readable || open });
     box.setAttribute('aria-label', t('Compare {}', name));
+    box.title = t('Choose up to eight recordings, then Compare in any line');
     box.addEventListener('change', () => {
       this.#chosen = [...this.#chosen.filter((each) => each !== name), ...(box.checked ? [name] : [])].slice(-MOST);
       this.#show();
     });
     const show = clickable({ textContent: t('Open|replay'), disabled: !readable, title: t('Show it as a replay, in a page of its own') }, () => this.#replay(name));
+    const others = this.#chosen.filter((each) => each !== name);
+    const compare = clickable({ textContent: t('Compare'), disabled: box.disabled, title: t(others.length > 0 ? 'Compare it with those that are chosen' : 'Compare it with the run of this page') }, () => this.#try(() => this.#open([...others, name].slice(-MOST))));
     return create('tr', { title: name },
-      create('td', {}, box), create('td', { className: 'wrap' }, this.#title(recording), create('span', { className: 'hint', textContent: when(recording) })),
+      create('td', {}, box, compare), create('td', { className: 'wrap' }, this.#title(recording), create('span', { className: 'hint', textContent: when(recording) })),
       create('td', {}, show, ...(open ? [create('span', { className: 'chip', textContent: t('being recorded') })] : readable ? [this.#deleteButton(name)] : [])),
       create('td', { textContent: readable ? `${format(duration_s)} s` : '' }), create('td', { textContent: `${format(bytes / 1e6)} MB` }), create('td', { textContent: seed === null ? '' : String(seed) }));
   }
@@ -153,8 +152,9 @@ export class Recordings {
     });
   }
 
-  async #compareChosen() {
-    const contents = await Promise.all(this.#chosen.map(async (name) => {
+  /** Shows these side by side. @param {string[]} names */
+  async #open(names) {
+    const contents = await Promise.all(names.map(async (name) => {
       const content = JSON.parse(await ask(`/recordings/${encodeURIComponent(name)}`));
       const recording = this.#list.find((each) => each.name === name);
       if (!recording) return { ...content, about: {} };

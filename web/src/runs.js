@@ -97,9 +97,9 @@ export class Runs {
     this.#show();
   }
 
-  /** Compares recordings, or runs of the station. @param {((Content | Seeded) & Omit<Run, 'store'>)[]} contents with what people call them */
+  /** Compares recordings, or runs of the station; one with the run of this page. @param {((Content | Seeded) & Omit<Run, 'store'>)[]} contents with what people call them */
   compare(contents) {
-    this.#recorded = true;
+    this.#recorded = contents.length > 1;
     this.#kept = [];
     this.#take(contents.map((content) => ({ ...content, store: storeOf(content, this.#modes()) })));
     this.open();
