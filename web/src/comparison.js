@@ -38,6 +38,7 @@ export class Comparison {
   /** @param {Run[]} runs */
   show(runs) {
     this.body.hidden = runs.length === 0;
+    if (runs.length === 0) return;
     this.#runs = runs;
     const chosen = this.#signal.value;
     const all = SIGNALS.filter(({ name }) => runs.every(({ store }) => has(store, name)));
@@ -45,7 +46,7 @@ export class Comparison {
     const first = [chosen, 'range_front_cm', 'left_rpm'].find((wanted) => all.some(({ name }) => name === wanted));
     if (first) this.#signal.value = first;
     this.#legend.replaceChildren(...runs.map(({ name }, index) => create('span', {}, create('span', { className: `swatch ${ink(index)}${index >= INKS.length ? ' dashed' : ''}` }), ` ${index + 1}: ${name}`)));
-    const steps = runs.length === 0 ? 0 : Math.min(...runs.map(({ store }) => stepsOf(store).length));
+    const steps = Math.min(...runs.map(({ store }) => stepsOf(store).length));
     const armed = runs.every(({ store }) => on_s(store) !== null);
     this.#align.replaceChildren(create('option', { value: '', textContent: t('power-on') }), ...(armed ? [create('option', { value: 'on', textContent: 'ON', selected: true })] : []),
       ...Array.from({ length: steps }, (_, index) => create('option', { value: String(index), textContent: t('step {}', index + 1) })));

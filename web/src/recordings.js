@@ -59,6 +59,7 @@ export class Recordings {
   open() {
     this.#dialog.open();
     if (isSite) return Promise.resolve();
+    setText(this.#none, t('loading…'));
     return this.#try(() => this.#load());
   }
 

@@ -260,8 +260,8 @@ export class Sketch {
     const context = this.context;
     const [cos, sin] = [Math.cos(heading_rad), Math.sin(heading_rad)];
     context.beginPath();
-    context.moveTo(x_m + 1.3 * radius_m * cos, y_m + 1.3 * radius_m * sin);
-    context.arc(x_m, y_m, radius_m, heading_rad + 0.3, heading_rad - 0.3 + 2 * Math.PI);
+    context.moveTo(x_m + 1.5 * radius_m * cos, y_m + 1.5 * radius_m * sin);
+    context.arc(x_m, y_m, radius_m, heading_rad + 0.4, heading_rad - 0.4 + 2 * Math.PI);
     context.closePath();
     context.strokeStyle = colours.robot;
     context.lineWidth = 1.5 * px;

@@ -146,6 +146,7 @@ export class TuneDialog {
     if (isSite) return setText(this.#command, `rumbo tune ${loaded} --over ${this.#first(loaded).join(',')}`);
     if (this.#search) return undefined;
     setText(this.#complaint, '');
+    if (this.#offers.length === 0) setText(this.#limits, t('loading…'));
     try {
       const { least_runs, most_runs, scenarios } = JSON.parse(await ask('/tune'));
       this.#offers = scenarios;

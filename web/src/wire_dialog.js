@@ -234,6 +234,8 @@ export class WireDialog {
     this.#answer = answer;
     const { problem, remarks = [], alike, toml } = answer;
     setText(this.#problem, local ?? said(problem ?? ''));
+    // Nothing is wrong yet.
+    this.#problem.classList.toggle('complaint', open.length === 0);
     const like = alike && [t('{} of {} pins are those of {}', alike.same, alike.of, alike.robot), ...alike.others.map(([signal, pin]) => t('{} is {} there', words(signal), pin))].join('; ');
     this.#remarks.replaceChildren(...[...remarks.map(said), ...(like && about.like === null ? [like] : [])].map((textContent) => create('li', { textContent })));
     this.#text.textContent = toml ?? '';

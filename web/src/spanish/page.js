@@ -6,7 +6,7 @@ export const PAGE = {
   // The top line.
   'scenario': 'escenario', 'world': 'mundo', 'sensor layout': 'montaje', 'seed': 'semilla', 'speed': 'ritmo', 'Reset': 'Reiniciar',
   'Start the simulation again with this scenario, world, sensor layout (rig) and seed': 'Empieza la simulación de nuevo con este escenario, mundo, montaje de sensores y semilla',
-  'scenario default': 'el del escenario', 'paused': 'en pausa',
+  'scenario default': 'del escenario', 'loading…': 'cargando…', 'paused': 'en pausa',
   'round trip': 'retardo', 'errors': 'errores', 'link': 'enlace', 'battery': 'batería',
   'From a command to its acknowledgement': 'Desde una orden hasta su confirmación',
   'Frames that failed the check (CRC), from and to the robot': 'Tramas que no pasaron la comprobación (CRC), desde y hacia el robot',
