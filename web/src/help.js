@@ -23,7 +23,7 @@ const KEYS = () => [
 const LEGEND = () => [
   [t('blue'), t('left wheel, left sonar')], [t('orange'), t('right wheel, right sonar')], [t('green'), t('front sonar, heading; something good')],
   [t('thick line'), t('measured or estimated by the robot')], [t('dotted line'), t('ground truth, in the simulation')], [t('dashed line'), t('a setpoint')],
-  [t('dotted upright lines'), t('the state of the mode changed')], [t('filled robot'), t('true pose')], [t('dashed robot'), t('estimated pose')], [t('dotted robot'), t('the ghost: a simulated robot that gets the same commands')],
+  [t('dotted upright lines'), t('the state of the mode changed')], [t('filled robot'), t('true pose')], [t('ring'), t('where the robot is, while it is small')], [t('dashed robot'), t('estimated pose')], [t('dotted robot'), t('the ghost: a simulated robot that gets the same commands')],
   [t('pink'), t('goal, route, mark')], [t('red cone'), t('a sonar without a reading')], [t('grey page'), t('what is shown is old: the link or the station is silent')],
 ];
 

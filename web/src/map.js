@@ -374,7 +374,8 @@ export class WorldMap {
 
   /** @param {View} whole */
   #follows(whole) {
-    return !this.#tool && (this.#follow ?? whole.px_per_m < this.#least);
+    // A route that is being made may go anywhere.
+    return !this.#tool && (this.#follow ?? (whole.px_per_m < this.#least && !this.#draft));
   }
 
   /** Everything, or the robot, with where it goes if places are picked. @returns {View} */

@@ -131,7 +131,7 @@ export const PAGE = {
   'blue': 'azul', 'left wheel, left sonar': 'rueda y sonar izquierdos', 'orange': 'naranja', 'right wheel, right sonar': 'rueda y sonar derechos',
   'green': 'verde', 'front sonar, heading; something good': 'sonar frontal, rumbo; algo bueno', 'thick line': 'línea gruesa', 'measured or estimated by the robot': 'medido o estimado por el robot',
   'dotted line': 'línea de puntos', 'ground truth, in the simulation': 'valor real, en la simulación', 'dashed line': 'línea de trazos', 'a setpoint': 'una referencia',
-  'dotted upright lines': 'verticales de puntos', 'the state of the mode changed': 'el estado del modo cambió', 'filled robot': 'robot lleno', 'dashed robot': 'robot a trazos', 'dotted robot': 'robot a puntos',
+  'dotted upright lines': 'verticales de puntos', 'the state of the mode changed': 'el estado del modo cambió', 'filled robot': 'robot lleno', 'ring': 'anillo', 'where the robot is, while it is small': 'dónde está el robot, mientras se ve pequeño', 'dashed robot': 'robot a trazos', 'dotted robot': 'robot a puntos',
   'the ghost: a simulated robot that gets the same commands': 'el fantasma: un robot simulado que recibe las mismas órdenes',
   'pink': 'rosa', 'goal, route, mark': 'destino, ruta, marca', 'red cone': 'cono rojo', 'a sonar without a reading': 'un sonar sin lectura',
   'grey page': 'página gris', 'what is shown is old: the link or the station is silent': 'lo que se ve es viejo: el enlace o la estación callan',

@@ -297,7 +297,7 @@ fn hostile_hand_ins_gain_nothing_and_change_no_other_mark() {
     );
     assert!(pair.contains("<mark>void loop() {") && !pair.contains("<mark>// the same program"));
     let class = fs::read_to_string(bench.join("out/index.html")).unwrap();
-    assert!(class.contains("<a href=\"similar/pair1.html\">ana and dora: 100 %</a>"));
+    assert!(class.contains("<a href=\"similar/pair1.html#class\">ana and dora: 100 %</a>"));
     for (name, result) in &results {
         if name != "ana" && name != "dora" {
             assert_eq!(result["score"], 0.0, "{name}: {result}");
