@@ -190,6 +190,7 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
         four_wheels: args.wheels == 4,
         sensors,
         measured: Measured {
+            motor: args.motor,
             battery_v: args.battery,
             base_m: args.base,
             wheel_m: args.wheel,

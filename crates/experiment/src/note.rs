@@ -15,6 +15,7 @@ rumbo_sim::notes! {
         Robot { name: String, note: Box<Note> } "{name}: {note}";
         TooManyEdges { most: f64 } "it switches the robot's pins more than {most} times a second, which no motor follows; the run was ended";
         NeverTurned { pwm: u16 } "it drove the motors, by a PWM of at most {pwm} of 255, and no wheel turned: that is too little for [plant.motor] at [plant.battery] of the robot's file";
+        StoodStill { from_s: f64, for_s: f64, pwm: u16 } "it drove the motors from {from_s:.1} s on for {for_s:.1} s, by a PWM of at most {pwm} of 255, and no wheel turned: that is too little for [plant.motor] at [plant.battery] of the robot's file";
         HandedInAsImage {} "handed in as an image: its compiler is not known";
         HandedInLate {} "handed in late, as its name says";
         OtherCompiler { what: &'static str, is: String, wanted: String } "compiled with {what} {is}; the assignment's marks are for {wanted}";

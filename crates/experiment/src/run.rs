@@ -7,6 +7,7 @@ mod batch;
 
 mod judge;
 mod player;
+mod still;
 
 use judge::{judged, together};
 pub use player::Player;
@@ -25,7 +26,7 @@ use rumbo_emulator::observe::waveform::Waveform;
 use rumbo_sim::Sim;
 use rumbo_sim::fleet::Fleet;
 use rumbo_sim::mega::Mega;
-use rumbo_sim::trace::{SAMPLE_US, Trace, TruthSample};
+use rumbo_sim::trace::{SAMPLE_US, Trace};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -226,7 +227,7 @@ impl<S: Deref<Target = Setup> + Clone> Member<S> {
             ended = mega.verdict().map(of_program);
             notes.extend(mega.notes().into_iter().map(of_program));
             notes.extend(mega.data_sheet().map(Note::from));
-            notes.extend(never_turned(&self.trace.samples));
+            notes.extend(still::in_vain(&self.trace.samples));
         }
         failures.extend(ended.clone());
         RunResult {
@@ -240,14 +241,6 @@ impl<S: Deref<Target = Setup> + Clone> Member<S> {
             ..RunResult::default()
         }
     }
-}
-
-/// That the motors were driven in vain, if so.
-fn never_turned(samples: &[TruthSample]) -> Option<Note> {
-    let pwm = samples.iter().flat_map(|sample| sample.duty);
-    let pwm = pwm.map(i16::unsigned_abs).max()?;
-    let stood = samples.iter().all(|sample| sample.wheel_rad_s == [0.0; 2]);
-    (pwm > 0 && stood).then_some(Note::NeverTurned { pwm })
 }
 
 /// The parameters of a robot before the first command, if it has a table of them.

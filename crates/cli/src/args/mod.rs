@@ -22,6 +22,7 @@ pub(crate) use values::{driver_named, driver_names, drivers, pin};
 use crate::failure::Failure;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use rumbo_experiment::files::new_robot::GearMotor;
 use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::Driver;
 use std::path::PathBuf;
@@ -127,8 +128,9 @@ pub(crate) struct ExportPolicyArgs {
 }
 
 /// What a robot that is like another one has from it.
-const OF_NEW_ROBOTS: [&str; 10] = [
-    "board", "driver", "pins", "parts", "wheels", "battery", "base", "wheel", "edges", "sensors",
+const OF_NEW_ROBOTS: [&str; 11] = [
+    "board", "driver", "pins", "parts", "wheels", "motor", "battery", "base", "wheel", "edges",
+    "sensors",
 ];
 
 /// Options of `rumbo new`.
@@ -161,12 +163,15 @@ pub(crate) struct NewArgs {
     /// as line_left=2,line_right=A1; of all of them line_dark=low, line_rc=true (QTR-RC), line_light_v=0.2, line_dark_v=4.8; so
     /// infrared ones for obstacles, obstacle_left=3, of all of them obstacle_seen=high, obstacle_reach_m=0.3; and sharp_front=A0;
     /// sonars have names of yours, rear_trigger=4,rear_echo=5; servo_ahead=35 and servo_reversed=true say how a servo is mounted,
-    /// link_baud=38400 is the rate of a Bluetooth module
+    /// link_baud=38400 is the rate of a Bluetooth module; battery=A0,battery_ratio=4 a divider for the battery's voltage
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,
     /// Wheels, 2, or 4, the two of a side driven alike; tracks are 4
     #[arg(long, value_name = "COUNT", default_value_t = 2, value_parser = values::wheels)]
     pub(crate) wheels: u8,
+    /// Its motors: tt, the yellow ones; with gears of metal and for encoders n20, 6 V, and 25d, 12 V [default: tt; of servos theirs]
+    #[arg(long, value_name = "MOTOR", value_parser = values::motor)]
+    pub(crate) motor: Option<&'static GearMotor>,
     /// Voltage of the battery, 5.6 to 12: 6 of four AA cells, 7.4 or 11.1 of Li-ion ones [default: 6; of four wheels 7.4]
     #[arg(long, value_name = "V", value_parser = values::battery)]
     pub(crate) battery: Option<f64>,

@@ -3,7 +3,8 @@
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
 use rumbo_experiment::files::new_robot::{
-    JUMPERS, LINE, LINK_BAUD, OBSTACLE, SERVO_AHEAD, SERVO_REVERSED, SHARP, is_of_sonar,
+    BATTERY, GearMotor, JUMPERS, LINE, LINK_BAUD, MOTORS, OBSTACLE, SERVO_AHEAD, SERVO_REVERSED,
+    SHARP, is_of_sonar,
 };
 use rumbo_experiment::files::{TimedText, TypedPort, check_line, parameters, placed, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
@@ -58,12 +59,19 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
     };
     let named = [LINE, OBSTACLE, SHARP];
     let is_named = named.iter().any(|begin| signal.starts_with(begin));
-    let is_said = [LINK_BAUD, SERVO_AHEAD, SERVO_REVERSED].contains(&signal);
-    if !SIGNALS.contains(&signal) && !is_named && !is_said && !is_of_sonar(signal) {
+    let said = [
+        LINK_BAUD,
+        SERVO_AHEAD,
+        SERVO_REVERSED,
+        BATTERY[0],
+        BATTERY[1],
+    ];
+    if !SIGNALS.contains(&signal) && !is_named && !said.contains(&signal) && !is_of_sonar(signal) {
         return Err(format!(
-            "no signal `{signal}`; there are {}, {LINK_BAUD}, {SERVO_AHEAD}, {SERVO_REVERSED}, and with a name of yours {LINE}NAME, \
-             {OBSTACLE}NAME, {SHARP}NAME, NAME_trigger and NAME_echo of a sonar",
-            SIGNALS.join(", ")
+            "no signal `{signal}`; there are {}, {}, and with a name of yours {LINE}NAME, {OBSTACLE}NAME, {SHARP}NAME, \
+             NAME_trigger and NAME_echo of a sonar",
+            SIGNALS.join(", "),
+            said.join(", ")
         ));
     }
     if signal == SERVO_AHEAD
@@ -76,6 +84,13 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
         ));
     }
     Ok((signal.to_owned(), pin.to_owned()))
+}
+
+/// The motors of a robot by their name.
+pub(super) fn motor(text: &str) -> Result<&'static GearMotor, String> {
+    let found = MOTORS.into_iter().find(|motor| motor.name == text);
+    let known = || MOTORS.map(|motor| motor.name).join(", ");
+    found.ok_or_else(|| format!("no such motor; there are {}", known()))
 }
 
 /// The voltage of a robot's battery.

@@ -15,7 +15,10 @@ const KG_CM: f64 = 0.0980665;
 const EFFICIENCY: f64 = 0.7;
 
 /// A gear motor by its figures.
-struct GearMotor {
+#[derive(Debug)]
+pub struct GearMotor {
+    /// As `new robot` names it.
+    pub name: &'static str,
     title: &'static str,
     figures: &'static str,
     /// Voltage, and without a load speed \[rpm\] and current \[A\]; the torque that stalls it \[N m\].
@@ -32,7 +35,8 @@ struct GearMotor {
 }
 
 /// The yellow motor of hobby cars. Inductance and inertia are those of the report's motors, identified.
-const TT: GearMotor = GearMotor {
+static TT: GearMotor = GearMotor {
+    name: "tt",
     title: "TT motors, 1:48",
     figures: "at 6 V 200 rpm and 150 mA without a load, 0.8 kg cm stalled, 90 rpm at 3 V",
     volts: 6.0,
@@ -45,8 +49,41 @@ const TT: GearMotor = GearMotor {
     gear_ratio: 48.0,
 };
 
+/// Small ones with gears of metal, on which people put encoders: Pololu's items 992 (6 V, low power, 100:1) and 4886 (12 V, 75:1),
+/// which those of other makers resemble. Their dry friction is a tenth of their torque or less.
+static N20: GearMotor = GearMotor {
+    name: "n20",
+    title: "N20 gear motors, 1:100",
+    figures: "at 6 V 130 rpm and 20 mA without a load, 0.74 kg cm stalled",
+    volts: 6.0,
+    rpm: 130.0,
+    amperes: 0.02,
+    stall_n_m: 0.74 * KG_CM,
+    slow: None,
+    inductance_h: 0.0003,
+    inertia_kg_m2: 0.0008,
+    gear_ratio: 100.0,
+};
+static MM25: GearMotor = GearMotor {
+    name: "25d",
+    title: "gear motors of 25 mm, 1:75",
+    figures: "at 12 V 75 rpm and 60 mA without a load, 7.1 kg cm stalled",
+    volts: 12.0,
+    rpm: 75.0,
+    amperes: 0.06,
+    stall_n_m: 7.1 * KG_CM,
+    slow: None,
+    inductance_h: 0.0003,
+    inertia_kg_m2: 0.002,
+    gear_ratio: 75.0,
+};
+
+/// The motors that a new robot may have.
+pub static MOTORS: [&GearMotor; 3] = [&TT, &N20, &MM25];
+
 /// The servo of the Boe-Bot and its kind.
-const SERVO: GearMotor = GearMotor {
+static SERVO: GearMotor = GearMotor {
+    name: "servo",
     title: "continuous-rotation servos",
     figures: "at 6 V 50 rpm and 140 mA without a load, 2.7 kg cm stalled",
     volts: 6.0,
@@ -84,6 +121,8 @@ impl GearMotor {
 /// What somebody measured or knows of a robot, in place of the usual.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
+    /// Its motors.
+    pub motor: Option<&'static GearMotor>,
     /// Voltage of its battery \[V\].
     pub battery_v: Option<f64>,
     /// Between the middles of its tyres, of four wheels those of an axle \[m\].
@@ -99,14 +138,21 @@ pub(super) fn plant(driver: &Driver, four_wheels: bool, measured: &Measured) -> 
     let radius_m = measured.wheel_m.map_or(RADIUS_M, |diameter| diameter / 2.0);
     let base_m = |usual: f64| measured.base_m.unwrap_or(usual);
     let servos = driver.direction == Direction::Pulse;
-    let body = match (four_wheels, servos) {
-        (true, servos) => self::four_wheels(&pair(servos), base_m(TRACK_M), radius_m),
-        (false, true) => two_wheels(&SERVO, base_m(0.105), radius_m),
-        (false, false) => two_wheels(&TT, base_m(TRACK_M), radius_m),
+    let usual = if servos { &SERVO } else { &TT };
+    let motor = measured.motor.unwrap_or(usual);
+    let is_tt = std::ptr::eq(motor, &TT);
+    let track_m = if servos && !four_wheels {
+        0.105
+    } else {
+        TRACK_M
+    };
+    let body = match four_wheels {
+        true => self::four_wheels(&pair(motor), base_m(track_m), radius_m),
+        false => two_wheels(motor, base_m(track_m), radius_m),
     };
     let battery_v = measured
         .battery_v
-        .or((servos || !four_wheels).then_some(6.0));
+        .or((!is_tt || !four_wheels).then_some(motor.volts));
     body + &battery_v.map(battery).unwrap_or_default()
 }
 
@@ -203,22 +249,22 @@ const RADIUS_M: f64 = 0.0325;
 const FRICTION: f64 = 0.6;
 
 /// The motors of a side as one: the lines of its table, and its wheel's friction.
-fn pair(servos: bool) -> [String; 2] {
-    if !servos {
+fn pair(motor: &GearMotor) -> [String; 2] {
+    if std::ptr::eq(motor, &TT) {
         return [
             "resistance_ohm = 2.0\ninductance_h = 0.00075\ninertia_kg_m2 = 0.0028".into(),
             "coulomb_forward_n_m = 0.016\ncoulomb_backward_n_m = 0.016\nviscous_n_m_s = 0.003"
                 .into(),
         ];
     }
-    let [ohm, back_emf, dry, viscous] = SERVO.derived();
+    let [ohm, back_emf, dry, viscous] = motor.derived();
     [
         format!(
             "resistance_ohm = {:.2}\ninductance_h = {}\nback_emf_v_s = {back_emf:.3}\ngear_ratio = {:.0}\ninertia_kg_m2 = {}",
             ohm / 2.0,
-            SERVO.inductance_h / 2.0,
-            SERVO.gear_ratio,
-            SERVO.inertia_kg_m2 * 2.0
+            motor.inductance_h / 2.0,
+            motor.gear_ratio,
+            motor.inertia_kg_m2 * 2.0
         ),
         format!(
             "coulomb_forward_n_m = {0:.4}\ncoulomb_backward_n_m = {0:.4}\nviscous_n_m_s = {1:.5}",

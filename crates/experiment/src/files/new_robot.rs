@@ -10,7 +10,7 @@ use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::{Direction, Driver};
 use rumbo_sim::wiring::{Wiring, is_driver_input};
 
-pub use super::new_plant::{Measured, counted};
+pub use super::new_plant::{GearMotor, MOTORS, Measured, counted};
 pub use super::new_sensors::{LINE, OBSTACLE, SHARP, is_of_sonar};
 
 /// A driver that is chosen with its enables held by jumpers.
@@ -26,6 +26,9 @@ pub const LINK_BAUD: &str = "link_baud";
 pub const SERVO_AHEAD: &str = "servo_ahead";
 /// In place of a pin, `true` where a servo is mounted the other way round and looks to the left at 0.
 pub const SERVO_REVERSED: &str = "servo_reversed";
+
+/// The analogue input with the battery's divider, and what the divider divides by, among the pins.
+pub const BATTERY: [&str; 2] = ["battery", "battery_ratio"];
 
 /// What a robot is made of.
 #[derive(Clone, Debug)]
@@ -171,11 +174,7 @@ impl NewRobot {
         for signal in signals(&self.pins) {
             let signal = signal.as_str();
             let held = self.jumpers && signal.ends_with("_enable");
-            let pin = self
-                .pins
-                .iter()
-                .find(|(own, _)| own == signal)
-                .map(|(_, pin)| pin);
+            let pin = self.said(signal);
             let value = match (pin, held) {
                 (_, true) => "\"high\"".to_owned(),
                 (Some(pin), _) => quoted(pin),
@@ -195,6 +194,13 @@ impl NewRobot {
             if let Some(value) = self.said(key) {
                 put(format!("{:23} # {about}", format!("{key} = {value}")));
             }
+        }
+        if let [Some(pin), ratio] = BATTERY.map(|signal| self.said(signal)) {
+            let ratio = ratio.unwrap_or("2");
+            put(format!(
+                "battery = {{ pin = {}, ratio = {ratio} }}  # the battery's voltage, divided by that",
+                quoted(pin)
+            ));
         }
         for [name, kind, place] in &self.parts {
             let (place, more) = place.split_once(':').unwrap_or((place, ""));

@@ -6,7 +6,8 @@
 //! parts.speed = { potentiometer = "A0" }
 //! parts.lamp = { led = 13 }               # or buzzer
 //! parts.remote = { infrared = 11 }        # a remote control with arrows; with keys = 21 that of a car radio,
-//!                                         # keys = "car" that with its arrows above the digits, "mini" Adafruit's,
+//!                                         # keys = "car" that with its arrows above the digits, "starter" of
+//!                                         # starter kits, "mini" Adafruit's,
 //!                                         # keys = { left = 0x20DF1BE4 } any other one, by IRremote's `value`s up to
 //!                                         # version 2; raw_keys, by its `decodedRawData` from 3 on
 //! parts.imu = { mpu6050 = 0x68 }          # with x_m and y_m where it is, interrupt = 2 for its INT, and where
@@ -19,7 +20,7 @@ use super::error::did_you_mean;
 use super::pin::read_pin;
 use super::read::{Allowed, Table};
 use rumbo_sim::bus::{BusDevice, DeviceKind};
-use rumbo_sim::remote::{self, ARROWS, CAR, Key, Known, MINI, RADIO};
+use rumbo_sim::remote::{self, ARROWS, CAR, Key, Known, MINI, RADIO, STARTER};
 use rumbo_sim::wiring::{Part, PartKind, Wiring};
 
 /// What is written as an address: one of 7 bits, or by mistake one of 8.
@@ -137,8 +138,8 @@ fn read_known(own: &Table<'_, '_>) -> &'static [Known] {
         .find(|keys| keys.len() == count.value as usize);
     found.unwrap_or_else(|| {
         let remedy = format!(
-            "there is one with arrows, {} keys, and that of a car radio, {}; \"car\", its arrows above the digits; \"mini\"; and \
-             any other one by its codes, {{ forward = 0xFF18E7 }}",
+            "there is one with arrows, {} keys, and that of a car radio, {}; \"car\", its arrows above the digits; \"starter\"; \
+             \"mini\"; and any other one by its codes, {{ forward = 0xFF18E7 }}",
             ARROWS.len(),
             RADIO.len()
         );
@@ -151,9 +152,9 @@ fn read_known(own: &Table<'_, '_>) -> &'static [Known] {
 fn read_named_keys(own: &Table<'_, '_>) -> &'static [Known] {
     match own.text("keys") {
         Some(name) if name.value == "mini" => &MINI,
+        Some(name) if name.value == "starter" => &STARTER,
         Some(name) if name.value != "car" => {
-            let remedy =
-                "must be 17, 21, \"car\", \"mini\" or the codes of keys, { forward = 0xFF18E7 }";
+            let remedy = "must be 17, 21, \"car\", \"starter\", \"mini\" or the codes of keys, { forward = 0xFF18E7 }";
             own.complain("keys", name.line, &format!("{:?}", name.value), remedy);
             &CAR
         }

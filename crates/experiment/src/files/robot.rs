@@ -11,7 +11,7 @@
 //! front_echo = 3
 //! left_enable = "high"   # an input of the driver that a jumper holds
 //! parts.start = { button = 8 }          # and others: [`super::parts`]
-//! battery = { pin = 54, ratio = 2.0 }   # a divider to A0, where one is wired
+//! battery = { pin = "A0", ratio = 2.0 } # a divider to A0, where one is wired
 //! [parameters]           # control parameters that differ from their defaults
 //! [plant.battery]        # physics; what is left out is nominal
 //! open_circuit_v = 7.4
@@ -22,7 +22,7 @@ use super::line::read_line_sensors;
 use super::obstacle::read_obstacle_sensors;
 use super::parameters::read_parameters;
 use super::parts::read_parts;
-use super::pin::{Wired, read_wired};
+use super::pin::{Wired, read_pin, read_wired};
 use super::read::{Allowed, Source, Table};
 use super::sonars::{read_other_sonars, read_rig, report_unplaced, report_unwired, signals};
 use rumbo_control::params::ParamId;
@@ -340,14 +340,13 @@ fn suits_driver(table: &Table<'_, '_>, wiring: &Wiring) {
 }
 
 fn read_divider(table: &Table<'_, '_>, wired: bool, board: &Board) -> Option<Divider> {
-    let (first, last) = (board.first_analogue.into(), board.last_analogue.into());
-    let pins = Allowed::new(first, last, "count");
-    let divider = wired.then(|| Divider {
-        input: (table.required_number("pin", pins) - first) as u8,
-        ratio: table.required_number("ratio", RATIO),
+    let divider = wired.then(|| {
+        let ratio = table.required_number("ratio", RATIO);
+        let input = read_pin(table, "pin", board, true)? - board.first_analogue;
+        Some(Divider { input, ratio })
     });
     table.finish();
-    divider
+    divider.flatten()
 }
 
 fn read_caps(table: &Table<'_, '_>) -> FirmwareCaps {

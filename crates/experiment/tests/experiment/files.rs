@@ -124,13 +124,29 @@ fn the_robot_with_an_uno_has_the_body_and_motors_of_the_report_s() {
 #[test]
 fn a_wiring_may_have_a_divider_for_the_battery() {
     use rumbo_sim::wiring::Divider;
-    let text = "title = \"t\"\n[rig.a.front]\nx_m = 0.1\n[wiring.final]\nbattery = { pin = 57, ratio = 2.5 }\n";
-    let robot = RobotFile::parse("x", "x.toml", text).unwrap();
+    let text = |pin: &str| {
+        format!(
+            "title = \"t\"\n[rig.a.front]\nx_m = 0.1\n[wiring.final]\nbattery = {{ pin = {pin}, ratio = 2.5 }}\n"
+        )
+    };
     let divider = Divider {
         input: 3,
         ratio: 2.5,
     };
-    assert_eq!(robot.wirings["final"].battery, Some(divider));
+    for pin in ["57", "\"A3\""] {
+        let robot = RobotFile::parse("x", "x.toml", &text(pin)).unwrap();
+        assert_eq!(robot.wirings["final"].battery, Some(divider), "{pin}");
+    }
+    // Only pins with an analogue input will do.
+    let error = RobotFile::parse("x", "x.toml", &text("3"))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains(
+            "wiring.final.battery.pin = 3: must be an analogue input of the Arduino Mega"
+        ),
+        "{error}"
+    );
 }
 
 #[test]

@@ -204,3 +204,44 @@ fn a_pair_of_sonars_and_what_was_measured_are_options_of_a_new_robot() {
         "{refused}"
     );
 }
+
+#[test]
+fn gears_of_metal_a_battery_s_divider_and_a_starter_kit_s_remote_are_options() {
+    let Some(bench) = bench("metal") else {
+        return;
+    };
+    let pins = "--pins=left_forward=5,left_backward=6,right_forward=9,right_backward=10,battery=A0,battery_ratio=4";
+    let remote = "--parts=remote=infrared:2:starter";
+    new(
+        &bench,
+        "metal",
+        "bts7960-jumpers",
+        &[pins, remote, "--motor=25d"],
+    );
+    let own = ["--motor=tt", "--battery=12"];
+    new(
+        &bench,
+        "yellow",
+        "bts7960-jumpers",
+        &[&[pins, remote], &own[..]].concat(),
+    );
+    // Drives by a PWM of 20 while 12 V, divided by 4, are at A0, and for a moment by more.
+    let sketch = "const byte pins[] = {5, 6, 9, 10};\nvoid setup() { for (byte pin : pins) pinMode(pin, OUTPUT); }\n\
+                  void loop() {\n  int volts = analogRead(A0);\n  int pwm = volts < 530 || volts > 690 ? 0 : millis() < 300 ? 120 : 20;\n\
+                  \x20 analogWrite(5, pwm); analogWrite(9, pwm);\n}\n";
+    let press = ["--press", "remote=power@1"];
+    let (metrics, said) = run(&bench, "metal.toml", sketch, &press);
+    assert!(metrics["path_m"].as_f64().unwrap() > 0.1, "{said}");
+    assert!(!said.contains("no wheel turned"), "{said}");
+    let (_, said) = run(&bench, "yellow.toml", sketch, &press);
+    assert!(
+        said.contains("by a PWM of at most 21 of 255, and no wheel turned"),
+        "{said}"
+    );
+    // One input high, the other by PWM: what is left of it stirs the wheels and turns none.
+    new(&bench, "braked", "l298n-jumpers", &[pins]);
+    let sketch = "void setup() {\n  pinMode(5, OUTPUT); digitalWrite(5, HIGH); analogWrite(6, 200);\n\
+                  \x20 pinMode(9, OUTPUT); digitalWrite(9, HIGH); analogWrite(10, 200);\n}\nvoid loop() {}\n";
+    let (_, said) = run(&bench, "braked.toml", sketch, &[]);
+    assert!(said.contains("of 255, and no wheel turned"), "{said}");
+}
