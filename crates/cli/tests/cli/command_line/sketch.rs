@@ -168,12 +168,12 @@ fn what_the_compiler_refuses_is_said_with_file_and_line_and_status_2() {
     assert!(rumbo(&bench, &["new", "sketch", "mine"]).status.success());
     let ino = bench.join("mine/mine.ino");
     let text = std::fs::read_to_string(&ino).unwrap();
-    std::fs::write(&ino, text.replace("delay(50);", "delay(50)")).unwrap();
+    std::fs::write(&ino, text.replace("delay(40);", "delay(40)")).unwrap();
     let run = rumbo(&bench, &["run", "mode1", "--sketch", "mine"]);
     assert_eq!(run.status.code(), Some(2));
     let line = 1 + text
         .lines()
-        .position(|line| line.contains("delay(50)"))
+        .position(|line| line.contains("delay(40)"))
         .unwrap();
     let expected = format!(
         "mine.ino:{}:1: error: expected ';' before '}}' token\n",
