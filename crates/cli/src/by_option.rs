@@ -1,7 +1,7 @@
 //! What is wrong with the file of a new robot, said of the options that were to make it: that file was never written.
 
 use rumbo_experiment::files::new_robot::{LINE, NewRobot, OBSTACLE, SHARP};
-use rumbo_experiment::files::{FileError, FileProblem};
+use rumbo_experiment::files::{About, FileError, FileProblem};
 
 /// The problems by option and entry; those that come from no option alone as they are.
 pub(crate) fn said_of_options(robot: &NewRobot, error: FileError) -> FileError {
@@ -10,24 +10,16 @@ pub(crate) fn said_of_options(robot: &NewRobot, error: FileError) -> FileError {
     };
     let text = robot.text();
     let said = problems.into_iter().map(|problem| {
-        let (path, remedy) = match problem.text.strip_prefix('[') {
-            Some(table) => table.split_once("] ").unwrap_or((table, "")),
-            None => problem.text.split_once(' ').unwrap_or_default(),
+        let path = match &problem.about {
+            About::File => path_at(&text, problem.line),
+            About::Table(path) | About::Key(path, _) => path.clone(),
         };
-        let (path, remedy) = match problem.text.starts_with("not valid") {
-            true => (path_at(&text, problem.line), problem.text.as_str()),
-            false => (path.to_owned(), remedy),
-        };
-        let remedy = match remedy.strip_prefix("= ") {
-            Some(value) => value.split_once(": ").map_or(value, |(_, remedy)| remedy),
-            None => remedy,
-        };
-        let remedy = remedy.to_owned();
         match entry(robot, &path.split('.').collect::<Vec<_>>()) {
             Some(file) => FileProblem {
                 file,
                 line: 0,
-                text: remedy,
+                about: About::File,
+                text: problem.text,
             },
             None => problem,
         }

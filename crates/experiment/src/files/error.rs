@@ -11,16 +11,36 @@ pub struct FileProblem {
     pub file: String,
     /// Line, from 1; 0 for the file as a whole.
     pub line: usize,
-    /// Key, value and what is allowed.
+    /// What it is about.
+    pub about: About,
+    /// What is wrong, and what is allowed.
     pub text: String,
+}
+
+/// What of a file a problem is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum About {
+    /// All of it, or a line that is no TOML.
+    File,
+    /// A table, by its path: `wiring.own`.
+    Table(String),
+    /// A key, by its path, and its value as it stands there; without one where it is missing.
+    Key(String, Option<String>),
 }
 
 impl fmt::Display for FileProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.line {
-            0 => write!(f, "{}: {}", self.file, self.text),
-            line => write!(f, "{}:{line}: {}", self.file, self.text),
+            0 => write!(f, "{}: ", self.file)?,
+            line => write!(f, "{}:{line}: ", self.file)?,
         }
+        match &self.about {
+            About::File => {}
+            About::Table(path) => write!(f, "[{path}] ")?,
+            About::Key(path, None) => write!(f, "{path} ")?,
+            About::Key(path, Some(value)) => write!(f, "{path} = {value}: ")?,
+        }
+        f.write_str(&self.text)
     }
 }
 

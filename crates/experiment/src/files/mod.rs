@@ -40,7 +40,7 @@ mod world;
 
 pub use commands::TimedCommand;
 pub(crate) use error::did_you_mean;
-pub use error::{FileError, FileProblem};
+pub use error::{About, FileError, FileProblem};
 pub(crate) use fit::takes;
 pub(crate) use kept::Calibrated;
 pub use kept::Calibrations;

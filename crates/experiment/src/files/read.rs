@@ -4,7 +4,7 @@
 //! remaining keys. A missing or wrong value is recorded and the loader continues with a placeholder, so that one pass
 //! reports everything that is wrong; [`Source::verdict`] turns the collection into an error.
 
-use super::error::{FileError, FileProblem};
+use super::error::{About, FileError, FileProblem};
 use super::near;
 pub(crate) use super::value::{Allowed, Placed};
 use super::value::{number_of, shown};
@@ -47,6 +47,7 @@ impl<'t> Source<'t> {
             FileError::Invalid(vec![FileProblem {
                 file: self.file.clone(),
                 line,
+                about: About::File,
                 text,
             }])
         })
@@ -64,11 +65,12 @@ impl<'t> Source<'t> {
     }
 
     /// Records a problem.
-    pub(crate) fn complain(&self, line: usize, text: String) {
+    fn complain(&self, line: usize, about: About, text: &str) {
         self.problems.borrow_mut().push(FileProblem {
             file: self.file.clone(),
             line,
-            text,
+            about,
+            text: text.to_owned(),
         });
     }
 
@@ -118,19 +120,17 @@ pub(crate) struct Table<'a, 't> {
 impl<'a, 't> Table<'a, 't> {
     /// Records a problem with one of its keys: `key = value: remedy`.
     pub(crate) fn complain(&self, key: &str, line: usize, value: &str, remedy: &str) {
-        let path = self.path_of(key);
-        self.source
-            .complain(line, format!("{path} = {value}: {remedy}"));
+        let about = About::Key(self.path_of(key), Some(value.to_owned()));
+        self.source.complain(line, about, remedy);
     }
 
     /// Records a problem with the table itself.
     pub(crate) fn complain_here(&self, text: &str) {
-        let place = if self.path.is_empty() {
-            String::new()
-        } else {
-            format!("[{}] ", self.path)
+        let about = match self.path.is_empty() {
+            true => About::File,
+            false => About::Table(self.path.clone()),
         };
-        self.source.complain(self.line, format!("{place}{text}"));
+        self.source.complain(self.line, about, text);
     }
 
     /// A number, if the key is there.
@@ -258,7 +258,10 @@ impl<'a, 't> Table<'a, 't> {
 
     /// The raw value of a key, with its line; marks the key as known.
     pub(crate) fn value(&self, key: &str) -> Option<(usize, &'a DeValue<'t>)> {
-        self.known.borrow_mut().push(key.to_owned());
+        let mut known = self.known.borrow_mut();
+        if known.iter().all(|own| own != key) {
+            known.push(key.to_owned());
+        }
         let (_, value) = self.entries?.iter().find(|(own, _)| own.get_ref() == key)?;
         Some((self.source.line_of(value.span().start), value.get_ref()))
     }
@@ -302,9 +305,11 @@ impl<'a, 't> Table<'a, 't> {
             let path = format!("{}[{}]", self.path_of(key), index + 1);
             match item.get_ref().as_table() {
                 Some(entries) => tables.push(self.below(path, line, Some(entries))),
-                None => self
-                    .source
-                    .complain(line, format!("{path}: must be a table [[{key}]]")),
+                None => {
+                    let text = format!("must be a table [[{key}]]");
+                    let about = About::Key(path, None);
+                    self.source.complain(line, about, &text);
+                }
             }
         }
         tables
@@ -388,10 +393,9 @@ impl<'a, 't> Table<'a, 't> {
         if self.has(key) || self.entries.is_none() {
             return;
         }
-        self.source.complain(
-            self.line,
-            format!("{} is missing: {what}", self.path_of(key)),
-        );
+        let about = About::Key(self.path_of(key), None);
+        let text = format!("is missing: {what}");
+        self.source.complain(self.line, about, &text);
     }
 
     /// A value as an allowed number; reports a problem if it is not.
