@@ -11,7 +11,7 @@ use rumbo_experiment::files::new_robot::{
 };
 use rumbo_experiment::files::{Kind, Library};
 use rumbo_sim::boards::{BOARDS, Board};
-use rumbo_sim::drivers::{DRIVERS, Driver};
+use rumbo_sim::drivers::{DRIVERS, Direction, Driver};
 use std::collections::HashSet;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
@@ -179,6 +179,12 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
                 pins.push((signal.to_owned(), pin));
             }
         }
+    }
+    if let (Direction::Pulse, Some(motor)) = (driver.direction, args.motor) {
+        return Err(Failure::Input(format!(
+            "--motor {}: {} are motors themselves; leave it out",
+            motor.name, driver.title
+        )));
     }
     let sensors = sensors(args, &pins)?;
     Ok(NewRobot {

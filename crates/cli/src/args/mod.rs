@@ -172,7 +172,7 @@ pub(crate) struct NewArgs {
     /// Its motors: tt, the yellow ones; with gears of metal and for encoders n20, 6 V, and 25d, 12 V [default: tt; of servos theirs]
     #[arg(long, value_name = "MOTOR", value_parser = values::motor)]
     pub(crate) motor: Option<&'static GearMotor>,
-    /// Voltage of the battery, 5.6 to 12: 6 of four AA cells, 7.4 or 11.1 of Li-ion ones [default: 6; of four wheels 7.4]
+    /// Voltage of the battery, 5.6 to 12: 6 of four AA cells, 7.4 or 11.1 of Li-ion ones [default: 6; of four wheels 7.4, of 25d 12]
     #[arg(long, value_name = "V", value_parser = values::battery)]
     pub(crate) battery: Option<f64>,
     /// Between the middles of the tyres, in m [default: 0.13; of servos 0.105]
