@@ -12,7 +12,7 @@ pub(crate) fn said_of_options(robot: &NewRobot, error: FileError) -> FileError {
     let said = problems.into_iter().map(|problem| {
         let path = match &problem.about {
             About::File => path_at(&text, problem.line),
-            About::Table(path) | About::Key(path, _) => path.clone(),
+            About::Table(path) | About::Key(path, _) | About::Missing(path) => path.clone(),
         };
         match entry(robot, &path.split('.').collect::<Vec<_>>()) {
             Some(file) => FileProblem {

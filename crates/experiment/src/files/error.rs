@@ -24,8 +24,10 @@ pub enum About {
     File,
     /// A table, by its path: `wiring.own`.
     Table(String),
-    /// A key, by its path, and its value as it stands there; without one where it is missing.
-    Key(String, Option<String>),
+    /// A key, by its path, and its value as it stands there.
+    Key(String, String),
+    /// A key that is missing, by its path.
+    Missing(String),
 }
 
 impl fmt::Display for FileProblem {
@@ -37,8 +39,8 @@ impl fmt::Display for FileProblem {
         match &self.about {
             About::File => {}
             About::Table(path) => write!(f, "[{path}] ")?,
-            About::Key(path, None) => write!(f, "{path} ")?,
-            About::Key(path, Some(value)) => write!(f, "{path} = {value}: ")?,
+            About::Key(path, value) => write!(f, "{path} = {value}: ")?,
+            About::Missing(path) => write!(f, "{path} is missing: ")?,
         }
         f.write_str(&self.text)
     }

@@ -120,7 +120,7 @@ pub(crate) struct Table<'a, 't> {
 impl<'a, 't> Table<'a, 't> {
     /// Records a problem with one of its keys: `key = value: remedy`.
     pub(crate) fn complain(&self, key: &str, line: usize, value: &str, remedy: &str) {
-        let about = About::Key(self.path_of(key), Some(value.to_owned()));
+        let about = About::Key(self.path_of(key), value.to_owned());
         self.source.complain(line, about, remedy);
     }
 
@@ -306,9 +306,8 @@ impl<'a, 't> Table<'a, 't> {
             match item.get_ref().as_table() {
                 Some(entries) => tables.push(self.below(path, line, Some(entries))),
                 None => {
-                    let text = format!("must be a table [[{key}]]");
-                    let about = About::Key(path, None);
-                    self.source.complain(line, about, &text);
+                    let text = format!("{path}: must be a table [[{key}]]");
+                    self.source.complain(line, About::File, &text);
                 }
             }
         }
@@ -393,9 +392,8 @@ impl<'a, 't> Table<'a, 't> {
         if self.has(key) || self.entries.is_none() {
             return;
         }
-        let about = About::Key(self.path_of(key), None);
-        let text = format!("is missing: {what}");
-        self.source.complain(self.line, about, &text);
+        let about = About::Missing(self.path_of(key));
+        self.source.complain(self.line, about, what);
     }
 
     /// A value as an allowed number; reports a problem if it is not.
