@@ -11,6 +11,7 @@ use rumbo_control::rig::Rig;
 use rumbo_experiment::files::{FileError, Kind, Library, MOVEMENTS, parameters::exact};
 use rumbo_plant::params::{Limit, Params};
 use rumbo_plant::plant::{Mount, Mounts};
+use rumbo_sim::wiring::SONARS;
 use serde_json::{Map, Value, json};
 
 /// Longest list of names on a line of the overview \[characters\].
@@ -257,7 +258,7 @@ fn mode_entry(mode: ModeId) -> Value {
 
 /// Direction of each sonar of a rig.
 fn sonars(rig: &Mounts, others: &[String]) -> Map<String, Value> {
-    let names = ["left", "right", "front"].into_iter();
+    let names = SONARS.into_iter();
     let names = names.chain(others.iter().map(String::as_str));
     let carried = names
         .zip(rig.mounts())

@@ -104,29 +104,17 @@ pub const RADIO: [Known; 21] = [
 ];
 
 /// The same codes under the names on the remote of starter kits (Elegoo and others), row by row.
-pub const STARTER: [Known; 21] = [
-    ("power", 0x45),
-    ("vol+", 0x46),
-    ("func", 0x47),
-    ("prev", 0x44),
-    ("play", 0x40),
-    ("next", 0x43),
-    ("down", 0x07),
-    ("vol-", 0x15),
-    ("up", 0x09),
-    ("0", 0x16),
-    ("eq", 0x19),
-    ("st", 0x0D),
-    ("1", 0x0C),
-    ("2", 0x18),
-    ("3", 0x5E),
-    ("4", 0x08),
-    ("5", 0x1C),
-    ("6", 0x5A),
-    ("7", 0x42),
-    ("8", 0x52),
-    ("9", 0x4A),
-];
+pub const STARTER: [Known; 21] = {
+    let names = [
+        "power", "vol+", "func", "prev", "play", "next", "down", "vol-", "up", "0", "eq", "st",
+    ];
+    let (mut keys, mut at) = (RADIO, 0);
+    while at < names.len() {
+        keys[at].0 = names[at];
+        at += 1;
+    }
+    keys
+};
 
 /// The mini remote of Adafruit and DFRobot, 21 keys, row by row, as Adafruit's product 389 lists its codes.
 pub const MINI: [Known; 21] = [

@@ -8,6 +8,9 @@ use crate::obstacle::ObstacleSensor;
 use crate::remote::Key;
 use std::collections::BTreeMap;
 
+/// The sonars that the control core knows, as the plant counts them.
+pub const SONARS: [&str; 3] = ["left", "right", "front"];
+
 /// The signals that a wiring may place: enable and direction inputs of the bridge, its outputs that are low where something
 /// is wrong with a motor, encoders, servo, sonars and UARTs.
 pub const SIGNALS: [&str; 24] = [

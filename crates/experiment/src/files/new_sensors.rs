@@ -1,7 +1,8 @@
 //! The sensors of a robot file to start from: sonars at the place that their names say; what looks down or for obstacles in
 //! a row from left to right, as it was given; or where somebody says that they are.
 
-use rumbo_sim::wiring::SIGNALS;
+use super::sonars::{self, is_of_sonar};
+use rumbo_sim::wiring::SONARS;
 use std::fmt::Write;
 
 /// How the name of a line sensor begins among the pins, before a name of its own.
@@ -41,17 +42,7 @@ pub(super) fn place_of(places: &Places, signal: &str) -> Option<[f64; 3]> {
     own.map(|(_, place)| *place)
 }
 
-/// Whether a signal is of a sonar, whatever that is called.
-#[must_use]
-pub fn is_of_sonar(signal: &str) -> bool {
-    let sonar = signal
-        .strip_suffix("_trigger")
-        .or(signal.strip_suffix("_echo"));
-    let is_plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-    sonar.is_some_and(|sonar| !sonar.is_empty() && sonar.chars().all(is_plain))
-}
-
-/// The sonars among pins: left, right and front, then those of other names as they were given.
+/// The sonars among pins: front, left and right, then those of other names as they were given.
 pub(super) fn sonars(pins: &Pins) -> Vec<&str> {
     let names = pins.iter().filter(|(signal, _)| is_of_sonar(signal));
     let mut names: Vec<&str> = names
@@ -69,11 +60,11 @@ pub(super) fn sonars(pins: &Pins) -> Vec<&str> {
 
 /// The signals of a wiring with these pins, in the order in which a file has them.
 pub(super) fn signals(pins: &Pins) -> Vec<String> {
-    let own = SIGNALS.map(str::to_owned);
-    let others = sonars(pins).into_iter();
-    let others = others.flat_map(|sonar| ["trigger", "echo"].map(|end| format!("{sonar}_{end}")));
-    let others: Vec<String> = others.filter(|signal| !own.contains(signal)).collect();
-    own.into_iter().chain(others).collect()
+    let names = sonars(pins).into_iter().map(str::to_owned);
+    let others: Vec<String> = names
+        .filter(|name| !SONARS.contains(&name.as_str()))
+        .collect();
+    sonars::signals(&others).collect()
 }
 
 /// Where a sonar usually sits and looks, by its name, `rear` or `front_left`: x and y \[m\], and the direction \[deg\].

@@ -14,12 +14,11 @@ use super::read::{Allowed, Table};
 use super::value::ANGLE;
 use rumbo_plant::plant::{Mount, Mounts};
 use rumbo_plant::sonar::SonarId;
-use rumbo_sim::wiring::{SIGNALS, Wiring};
+use rumbo_sim::wiring::{SIGNALS, SONARS, Wiring};
 
-/// Those that the control core knows.
-const OWN: [&str; 3] = ["left", "right", "front"];
 /// How their signals end.
 const ENDS: [&str; 2] = ["_trigger", "_echo"];
+
 /// Names are in those of signals and of columns.
 fn is_of_name(c: char) -> bool {
     c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_'
@@ -34,7 +33,8 @@ pub(super) fn read_other_sonars(rigs: &Table<'_, '_>) -> Vec<String> {
     for rig in rigs.keys() {
         let rig = rigs.table(rig.value);
         for sonar in rig.keys() {
-            let is_new = !OWN.contains(&sonar.value) && names.iter().all(|own| own != sonar.value);
+            let is_new =
+                !SONARS.contains(&sonar.value) && names.iter().all(|own| own != sonar.value);
             if is_new && !sonar.value.chars().all(is_of_name) {
                 rig.complain_here(&format!(
                     "{:?}: a sonar's name has small letters, digits and _ alone, e.g. rear_left",
@@ -68,7 +68,7 @@ pub(super) fn read_rig(table: &Table<'_, '_>, others: &[String]) -> Mounts {
         mount.finish();
         table.has(sonar).then_some(place)
     };
-    let [left, right, front] = OWN.map(mount);
+    let [left, right, front] = SONARS.map(mount);
     let mut rig = Mounts {
         left,
         right,
@@ -80,6 +80,13 @@ pub(super) fn read_rig(table: &Table<'_, '_>, others: &[String]) -> Mounts {
     }
     table.finish();
     rig
+}
+
+/// Whether a signal is of a sonar, whatever that is called.
+#[must_use]
+pub fn is_of_sonar(signal: &str) -> bool {
+    let sonar = ENDS.iter().find_map(|end| signal.strip_suffix(end));
+    sonar.is_some_and(|sonar| !sonar.is_empty() && sonar.chars().all(is_of_name))
 }
 
 /// The signals of a wiring: those that every robot may have, and those of its other sonars.
@@ -98,7 +105,7 @@ pub(super) fn report_unplaced(table: &Table<'_, '_>, others: &[String]) {
         if let (Some(sonar), false) = (sonar, is_known) {
             let near = near_or_all(
                 sonar,
-                OWN.into_iter().chain(others.iter().map(String::as_str)),
+                SONARS.into_iter().chain(others.iter().map(String::as_str)),
             );
             table.value(key.value);
             let remedy = format!(
@@ -124,7 +131,7 @@ pub(super) fn report_unwired<'a>(
         }
         let remedy = format!(
             "no wiring has {trigger}; {}",
-            did_you_mean(&near_or_all(sonar, OWN))
+            did_you_mean(&near_or_all(sonar, SONARS))
         );
         for rig in rigs.keys() {
             let rig = rigs.table(rig.value);

@@ -3,15 +3,12 @@
 use crate::drivers::Driver;
 use crate::error::SimError;
 use crate::floor::FloorReading;
-use crate::wiring::{Divider, Motor, Wiring};
+use crate::wiring::{Divider, Motor, SONARS, Wiring};
 use rumbo_emulator::devices::ports::Pin;
 use rumbo_plant::sonar::SonarId;
 
 /// The inputs of one half of the driver.
 pub(super) const INPUTS: [&str; 4] = ["enable", "forward", "backward", "standby"];
-
-/// The sonars that the control core knows, as the plant counts them.
-const SONARS: [&str; 3] = ["left", "right", "front"];
 
 /// An input of the driver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
