@@ -6,14 +6,18 @@
 
 mod atmega2560;
 mod atmega328p;
+mod fuses;
+pub(crate) mod map;
+pub mod pin;
+pub(crate) mod timer;
+pub(crate) mod usart;
 
 use crate::decode::{Code, Op};
-use crate::devices::Fuses;
-use crate::devices::map::{Owner, REGISTERS_END};
-use crate::devices::ports::{PORTS, Pin};
-use crate::devices::{timer, usart};
 pub use atmega328p::ATMEGA328P;
 pub use atmega2560::ATMEGA2560;
+pub use fuses::Fuses;
+use map::{Owner, REGISTERS_END};
+use pin::{PORTS, Pin};
 use std::fmt;
 
 /// The models that there are.

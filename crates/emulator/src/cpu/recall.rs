@@ -6,8 +6,32 @@
 
 use super::Cpu;
 use super::lanes::Step;
-use super::wait::Held;
 use crate::io::{Access, Io};
+
+/// What the CPU itself holds.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Held {
+    registers: [u8; 32],
+    status: u8,
+    stack_pointer: u16,
+    extended: [u8; 2],
+}
+
+impl Held {
+    pub(super) fn by(cpu: &Cpu) -> Held {
+        Held {
+            registers: *cpu.registers(),
+            status: cpu.status.bits(),
+            stack_pointer: cpu.stack_pointer(),
+            extended: [cpu.rampz, cpu.eind],
+        }
+    }
+
+    /// The stack, and what only long jumps change, are the CPU's.
+    pub(super) fn is_level(&self, cpu: &Cpu) -> bool {
+        self.stack_pointer == cpu.stack_pointer() && self.extended == [cpu.rampz, cpu.eind]
+    }
+}
 
 /// A closed round.
 #[derive(Clone, Debug)]

@@ -9,7 +9,7 @@
 
 use super::Cpu;
 use super::lanes::{Alike, Ran, Step};
-use super::recall::Kept;
+use super::recall::{Held, Kept};
 use super::uses::S;
 use crate::decode::{Code, Op};
 use crate::io::Io;
@@ -93,26 +93,6 @@ impl Search {
     }
 }
 
-/// What the CPU itself holds.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Held {
-    registers: [u8; 32],
-    status: u8,
-    stack_pointer: u16,
-    extended: [u8; 2],
-}
-
-impl Held {
-    pub(super) fn by(cpu: &Cpu) -> Held {
-        Held {
-            registers: *cpu.registers(),
-            status: cpu.status.bits(),
-            stack_pointer: cpu.stack_pointer(),
-            extended: [cpu.rampz, cpu.eind],
-        }
-    }
-}
-
 /// The state at the beginning of a round, and what the round does with the rest of the world.
 struct Round {
     program_counter: u32,
@@ -155,9 +135,7 @@ impl Round {
 
     /// The stack and what only long jumps change are as they were.
     fn is_level(&self, cpu: &Cpu) -> bool {
-        self.held.stack_pointer == cpu.stack_pointer()
-            && self.held.extended == [cpu.rampz, cpu.eind]
-            && !cpu.shadow
+        self.held.is_level(cpu) && !cpu.shadow
     }
 
     /// All else is too.

@@ -1,11 +1,11 @@
 //! The peripherals as the CPU meets them: an access finds its register, after everything that is due has happened.
 
 use super::analog::Trigger;
-use super::map::{Owner, is_flags};
 use super::ports::{self, Change};
 use super::system::Sleep;
 use super::{Core, Devices, Unmodelled, timer};
 use crate::io::{Access, Counter, Demand, Io, Stored};
+use crate::model::map::{Owner, is_flags};
 use crate::registers::{ADCH, ADCL, EECR, MCUCR, TWAR, XMCRA};
 
 impl Devices {

@@ -7,7 +7,7 @@
 use super::Core;
 use super::schedule::Source;
 use crate::io::{Access, Stored};
-use crate::model::Model;
+use crate::model::{Fuses, Model};
 
 const SPMIE: u8 = 0x80;
 const RWWSB: u8 = 0x40;
@@ -24,31 +24,6 @@ const OPEN_CYCLES: u64 = 4;
 const PAGE_CYCLES: u64 = 72_000;
 /// Where the signature row has the calibration of the oscillator, and what it is there.
 const CALIBRATION: (u32, u8) = (1, 0x8D);
-
-/// What the fuses and lock bits are programmed to; zeros are programmed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Fuses {
-    /// Clock source, start-up time, CKDIV8 (bit 7).
-    pub low: u8,
-    /// BOOTRST (bit 0), BOOTSZ (bits 1 and 2), WDTON (bit 4), EESAVE, SPIEN, JTAGEN, OCDEN.
-    pub high: u8,
-    /// Brown-out detection.
-    pub extended: u8,
-    /// Lock bits.
-    pub lock: u8,
-}
-
-impl Fuses {
-    /// CKDIV8: the system clock starts with an eighth of the crystal's.
-    pub(crate) const fn divides_clock(self) -> bool {
-        self.low & 0x80 == 0
-    }
-
-    /// A reset leads to the boot section.
-    pub const fn starts_in_boot(self) -> bool {
-        self.high & 1 == 0
-    }
-}
 
 /// Registers and buffer.
 #[derive(Clone, Debug)]

@@ -1,10 +1,10 @@
 //! The ATmega2560 of an Arduino Mega (2549Q, sections 1, 14.1, 29 and 33).
 
+use super::Fuses;
+use super::map::owners;
+use super::timer::{Place as Timer, narrow, wide};
+use super::usart::Place as Usart;
 use super::{Analog, Model, PinChange, Vectors, pin, pins_of};
-use crate::devices::Fuses;
-use crate::devices::map::owners;
-use crate::devices::timer::{Place as Timer, narrow, wide};
-use crate::devices::usart::Place as Usart;
 
 /// The ATmega2560 of an Arduino Mega.
 pub static ATMEGA2560: Model = Model {
@@ -87,7 +87,7 @@ const fn change(letter: char, pins: u8, group: usize, shift: u8) -> PinChange {
     }
 }
 
-const fn analog_pins() -> [Option<crate::devices::ports::Pin>; 19] {
+const fn analog_pins() -> [Option<super::Pin>; 19] {
     let (low, high) = (pins_of::<8>('F'), pins_of::<8>('K'));
     let mut pins = [None; 19];
     let mut channel = 0;

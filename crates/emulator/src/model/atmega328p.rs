@@ -1,10 +1,10 @@
 //! The ATmega328P of an Arduino Uno or Nano (DS40002061B, sections 1, 12.4, 26 and 35).
 
+use super::Fuses;
+use super::map::owners;
+use super::timer::{Place as Timer, narrow, wide_of_two};
+use super::usart::Place as Usart;
 use super::{Analog, Model, PinChange, Vectors, pin, pins_of};
-use crate::devices::Fuses;
-use crate::devices::map::owners;
-use crate::devices::timer::{Place as Timer, narrow, wide_of_two};
-use crate::devices::usart::Place as Usart;
 use crate::registers;
 
 /// The ATmega328P of an Arduino Uno or Nano.
@@ -84,7 +84,7 @@ const fn change(letter: char, group: usize, pins: u8) -> PinChange {
     }
 }
 
-const fn analog_pins() -> [Option<crate::devices::ports::Pin>; 19] {
+const fn analog_pins() -> [Option<super::Pin>; 19] {
     let on_port = pins_of::<6>('C');
     let mut pins = [None; 19];
     let mut channel = 0;

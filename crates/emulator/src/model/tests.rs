@@ -1,9 +1,9 @@
 //! Every name and number of the descriptions, against the headers of avr-libc.
 
+use super::pin::{Register as OfPort, register as of_port};
+use super::timer::Register as OfTimer;
+use super::usart::Register as OfUsart;
 use super::*;
-use crate::devices::ports::{self, Register as OfPort};
-use crate::devices::timer::Register as OfTimer;
-use crate::devices::usart::Register as OfUsart;
 use crate::registers;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
@@ -69,7 +69,7 @@ fn split(name: &str) -> (String, usize) {
 fn has(model: &Model, name: &str, address: u16) -> bool {
     let of_port = |register| {
         let letter = name.chars().last().unwrap();
-        ports::register(address) == Some((pin(letter, 0).port(), register))
+        of_port(address) == Some((pin(letter, 0).port(), register))
     };
     let (general, number) = split(name);
     let of_timer = |register| {

@@ -4,7 +4,6 @@
 //! when something visible from outside is due: an enabled interrupt or an edge on a connected pin.
 
 mod duty;
-mod place;
 mod registers;
 mod wave;
 
@@ -12,12 +11,9 @@ use super::ports::Pin;
 use super::prescaler::Prescaler;
 use super::schedule::Source;
 use super::{Core, Event, Pwm};
-use place::ASYNCHRONOUS;
-#[cfg(test)]
-pub(crate) use place::Register;
-pub(crate) use place::{Place, narrow, wide, wide_of_two};
+use crate::model::timer::{ASYNCHRONOUS, CAPTURE, CHANNELS, MATCH, OVERFLOW, Place};
 pub(crate) use registers::{read_general_control, write_general_control};
-use wave::{CAPTURE, CHANNELS, MATCH, OVERFLOW, Top, Wave};
+use wave::{Top, Wave};
 
 /// Noise canceller and edge of the capture pin, in control register B.
 const ICNC: u8 = 0x80;

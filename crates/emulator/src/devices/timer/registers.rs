@@ -3,11 +3,11 @@
 //! Counter and capture register are 16 bits behind an 8-bit bus: reading the low byte latches the high one, and writing the low byte
 //! takes the high one along (section 17.3). Compare registers are latched for writing only.
 
-use super::place::{ASYNCHRONOUS, Register};
-use super::wave::{CAPTURE, CHANNELS, Mode, OVERFLOW, Top};
+use super::wave::{Mode, Top};
 use super::{AS2, Clock, Timer};
 use crate::devices::Core;
 use crate::io::{Access, Counter};
+use crate::model::timer::{ASYNCHRONOUS, CAPTURE, CHANNELS, OVERFLOW, Register};
 
 /// In GTCCR: hold, and the prescalers' resets.
 const TSM: u8 = 0x80;

@@ -4,9 +4,7 @@
 //! counter goes on from the compare value, an overflow when it goes on from its end. So a segment of counting is
 //! quiet up to the next value of interest, and is stepped over at once.
 
-/// Channels of a timer; the 8-bit ones have two.
-pub(crate) const CHANNELS: usize = 3;
-
+use crate::model::timer::{CAPTURE, CHANNELS, MATCH, OVERFLOW};
 /// How the counter runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
@@ -95,11 +93,6 @@ impl Mode {
         matches!(self.kind, Kind::PhaseCorrect | Kind::PhaseFrequencyCorrect)
     }
 }
-
-/// The flags as in TIFR.
-pub(crate) const OVERFLOW: u8 = 0x01;
-pub(crate) const MATCH: [u8; CHANNELS] = [0x02, 0x04, 0x08];
-pub(crate) const CAPTURE: u8 = 0x20;
 
 /// The counter with what its waveform depends on.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! Which peripheral a register belongs to, by its address in the data space (2549Q, section 33).
 
-use super::ports::{PORTS, register as port_register};
+use super::pin::{PORTS, register as port_register};
 use crate::registers;
 
 /// First address behind all registers of all models.
@@ -90,6 +90,6 @@ pub(crate) const fn owners(
 }
 
 /// Registers of flags below 0x40, where SBI touches one bit alone.
-pub(super) const fn is_flags(address: u16) -> bool {
+pub(crate) const fn is_flags(address: u16) -> bool {
     matches!(address, 0x35..=0x3C)
 }

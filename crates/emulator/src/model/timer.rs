@@ -1,11 +1,18 @@
 //! Where a timer's registers, vectors and pins are.
 
-use super::wave::{CAPTURE, CHANNELS, MATCH, OVERFLOW};
-use crate::devices::ports::Pin;
+use super::pin::Pin;
 use crate::registers;
 
+/// Channels of a timer; the 8-bit ones have two.
+pub(crate) const CHANNELS: usize = 3;
+
+/// The flags as in TIFR.
+pub(crate) const OVERFLOW: u8 = 0x01;
+pub(crate) const MATCH: [u8; CHANNELS] = [0x02, 0x04, 0x08];
+pub(crate) const CAPTURE: u8 = 0x20;
+
 /// The timer with a prescaler of its own, which may have a clock of its own too.
-pub(super) const ASYNCHRONOUS: usize = 2;
+pub(crate) const ASYNCHRONOUS: usize = 2;
 
 /// Control register A of each.
 const BASES: [u16; 6] = [
@@ -36,7 +43,7 @@ pub(crate) enum Register {
 
 impl Register {
     /// The bit of ASSR that is set while a new value waits for the clock.
-    pub(super) const fn busy(self) -> Option<u8> {
+    pub(crate) const fn busy(self) -> Option<u8> {
         match self {
             Register::Count => Some(0x10),
             Register::Compare(0) => Some(0x08),
@@ -53,17 +60,17 @@ impl Register {
 pub(crate) struct Place {
     pub(crate) number: usize,
     /// 16 bits.
-    pub(super) wide: bool,
-    pub(super) channels: usize,
+    pub(crate) wide: bool,
+    pub(crate) channels: usize,
     /// Address of control register A.
     base: u16,
     flags: u16,
     enabled: u16,
     /// Flag and vector.
     pub(crate) vectors: [(u8, u8); 5],
-    pub(super) outputs: [Pin; CHANNELS],
-    pub(super) clock: Option<Pin>,
-    pub(super) capture: Option<Pin>,
+    pub(crate) outputs: [Pin; CHANNELS],
+    pub(crate) clock: Option<Pin>,
+    pub(crate) capture: Option<Pin>,
 }
 
 impl Place {
@@ -114,7 +121,7 @@ impl Place {
     }
 
     /// The flag that has this vector.
-    pub(super) fn flag(&self, vector: u8) -> Option<u8> {
+    pub(crate) fn flag(&self, vector: u8) -> Option<u8> {
         let found = self.vectors.iter().find(|(_, own)| *own == vector);
         found.map(|(flag, _)| *flag)
     }

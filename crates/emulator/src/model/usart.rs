@@ -1,6 +1,6 @@
 //! Where a USART's registers, vectors and pins are.
 
-use crate::devices::ports::Pin;
+use super::pin::Pin;
 use crate::registers;
 
 /// A register of a USART.
@@ -17,15 +17,15 @@ pub(crate) enum Register {
 /// The place of one USART.
 #[derive(Debug)]
 pub(crate) struct Place {
-    pub(super) number: usize,
+    pub(crate) number: usize,
     /// Address of UCSRA.
     base: u16,
     /// Vector of reception; those of the empty buffer and of the complete transmission follow.
     pub(crate) vector: u8,
-    pub(super) receive: Pin,
-    pub(super) transmit: Pin,
+    pub(crate) receive: Pin,
+    pub(crate) transmit: Pin,
     /// XCK.
-    pub(super) clock: Pin,
+    pub(crate) clock: Pin,
 }
 
 /// UCSRA of each.
