@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Finding, Tree, circles};
+use super::{Finding, Tree};
 use crate::project::Project;
 use crate::test::Cost;
 
@@ -25,8 +25,6 @@ pub(crate) struct Ceilings {
     pub(crate) gate: Gate,
     /// Lines by crate, without blank ones, comments and tests.
     lines: BTreeMap<String, usize>,
-    /// Imports that are part of a circle, by crate; no further crate has any.
-    circles: BTreeMap<String, usize>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -131,14 +129,6 @@ pub(super) fn check(project: &Project, tree: &Tree) -> Result<Vec<Finding>, Stri
                 1,
                 format!("{name} has no ceiling in `lines`; it has {lines}"),
             )),
-        }
-    }
-    for (name, circles) in circles::all(tree) {
-        let most = ceilings.circles.get(name).copied().unwrap_or_default();
-        if circles.len() > most {
-            now.push((format!("imports in circles in {name}"), circles.len(), most));
-            let shown = circles.into_iter();
-            findings.extend(shown.map(|one| Finding::error(&one.path, one.line, one.text)));
         }
     }
     let over = now.into_iter().filter(|(_, now, most)| now > most);
@@ -246,7 +236,7 @@ mod tests {
     #[test]
     fn a_dear_step_is_a_warning() {
         let text = "seconds = { fmt = 10 }\npackages = { lock = 1, rumbo = 1 }\n\
-                    gate = { units = 1, executables = 1 }\nlines = {}\ncircles = {}\n";
+                    gate = { units = 1, executables = 1 }\nlines = {}\n";
         let ceilings = Ceilings::parse(text).unwrap();
         let cost = |seconds| Cost {
             processor: Duration::from_secs(seconds),

@@ -1,54 +1,42 @@
 //! No two modules that stand side by side in a crate import each other in a circle: each can be read, tested and moved by
-//! itself. The rule holds at every depth; where circles stand from before, `xtask/ceilings.toml` has how many imports of a
-//! crate are part of one.
+//! itself. The rule holds at every depth.
 //!
 //! Modules are the files below `src/`, and what a crate's root exports again is read from `src/lib.rs`; imports are read
 //! from every path that begins with `crate::` or `super::`. Tests may import what they like.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Tree;
+use super::{Finding, Tree};
 
 /// A module's path from the root of its crate.
 type Module<'a> = Vec<&'a str>;
 /// The modules that each module imports of those beside it, and where first: file and line.
 type Imports<'a> = BTreeMap<Module<'a>, BTreeMap<Module<'a>, (&'a str, usize)>>;
 
-/// An import that is part of a circle.
-#[derive(Debug, PartialEq)]
-pub(super) struct Circle {
-    pub(super) path: String,
-    pub(super) line: usize,
-    pub(super) text: String,
-}
-
-/// Those of each crate of `crates/`, by its name.
-pub(super) fn all(tree: &Tree) -> BTreeMap<&str, Vec<Circle>> {
+/// The imports that are part of a circle, in each crate of `crates/`.
+pub(super) fn check(tree: &Tree) -> Vec<Finding> {
     let files = tree.texts(|path| path.starts_with("crates/"));
     let names = files.filter_map(|(path, _)| path["crates/".len()..].split('/').next());
     let names: BTreeSet<&str> = names.collect();
     names
         .into_iter()
-        .map(|name| (name, in_crate(tree, name)))
+        .flat_map(|name| in_crate(tree, name))
         .collect()
 }
 
-fn in_crate(tree: &Tree, name: &str) -> Vec<Circle> {
+fn in_crate(tree: &Tree, name: &str) -> Vec<Finding> {
     let imports = imports(tree, name);
     let mut circles = Vec::new();
     for (from, uses) in &imports {
         for (to, (path, line)) in uses {
             if let Some(way) = way(&imports, to, from) {
                 let way: Vec<String> = way.iter().map(|module| module.join("::")).collect();
-                circles.push(Circle {
-                    path: (*path).to_owned(),
-                    line: *line,
-                    text: format!(
-                        "modules import each other in a circle: {} -> {}; move what both need into a module of its own",
-                        from.join("::"),
-                        way.join(" -> ")
-                    ),
-                });
+                let text = format!(
+                    "modules import each other in a circle: {} -> {}; move what both need into a module of its own",
+                    from.join("::"),
+                    way.join(" -> ")
+                );
+                circles.push(Finding::error(path, *line, text));
             }
         }
     }
@@ -206,11 +194,8 @@ mod tests {
             "mod a;\npub mod b;\nmod c;\npub use c::{Deep, Wide};\n",
         )];
         all.extend(files);
-        let circles = in_crate(&Tree::of(&all), "sim");
-        let shown = circles
-            .iter()
-            .map(|circle| format!("{}:{}: {}", circle.path, circle.line, circle.text));
-        shown.collect()
+        let circles = check(&Tree::of(&all));
+        circles.iter().map(ToString::to_string).collect()
     }
 
     #[test]

@@ -124,7 +124,12 @@ pub(crate) fn run(project: &Project) -> Result<bool, String> {
             findings.extend(dependencies::check(&metadata(&manifest)?));
         }
     }
-    for rule in [source::check, documents::check, presence::check] {
+    for rule in [
+        source::check,
+        documents::check,
+        presence::check,
+        circles::check,
+    ] {
         findings.extend(rule(&tree));
     }
     findings.extend(ceilings::check(project, &tree)?);
