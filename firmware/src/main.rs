@@ -16,7 +16,7 @@ mod hal;
 mod pins;
 
 use hal::{
-    adc, clock, eeprom, encoder::Encoders, link, network, outputs, power, record, sonar::Listener,
+    adc, eeprom, encoder::Encoders, link, network, outputs, power, record, sonar::Listener, tick,
 };
 use rumbo_control::{Inputs, TICK_US};
 use rumbo_robot::{Cell, Robot, RobotConfig, START_AT};
@@ -53,13 +53,13 @@ fn run(robot: &mut Robot) -> ! {
     let mut encoders = Encoders::default();
     let mut listener = Listener::default();
     let mut inputs = Inputs::default();
-    let mut tick = clock::ticks();
+    let mut tick = tick::ticks();
     hal::enable_interrupts();
     loop {
         power::sleep_after(tick);
         power::feed_watchdog();
         // A tick that was missed still counts.
-        let (last, stamp) = clock::last_tick();
+        let (last, stamp) = tick::last_tick();
         let passed = last.wrapping_sub(tick);
         tick = last;
         inputs.now = inputs.now.after(u32::from(passed) * TICK_US);

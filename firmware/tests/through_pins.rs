@@ -177,7 +177,7 @@ fn compare(seed: u64) -> Option<[u64; 2]> {
         sonar(SonarId::Right, 'D', 3, "rumbo::hal::sonar::RIGHT"),
         sonar(SonarId::Front, 'E', 5, "rumbo::hal::sonar::FRONT"),
     ];
-    let tick_at = at("rumbo::hal::clock::TICK");
+    let tick_at = at("rumbo::hal::tick::TICK");
     let (mut now, mut echoes) = (Micros(0), EchoLatch::default());
     let [mut native, mut chip] = [String::new(), String::new()];
     let (mut worst, mut edges, mut answers, mut driven) = ([0; 2], 0, 0, 0);

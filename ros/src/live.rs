@@ -3,33 +3,38 @@
 //! The node takes control with an order, as a page does, and releases it when nothing lasts that needs it: no call, no
 //! velocity, no goal; calling `take_control` keeps it.
 
+mod calls;
+mod drive;
+mod goal;
+mod settings;
+
 use crate::address::StationError;
 use crate::args::Args;
 use crate::bridge::BridgeError;
-use crate::calls::{Service, Waiting, services};
 use crate::dds::Dds;
-use crate::drive::Driving;
-use crate::goal::Navigation;
 use crate::node::{Node, Wish};
 use crate::output;
-use crate::settings::Settings;
 use crate::station::{News, Order, Seat, Station};
+use calls::{Service, Waiting, services};
+use drive::Driving;
+use goal::Navigation;
 use rumbo_log::{Level, LoggedEvent, Scene, State};
 use rumbo_ros::convert::{ConvertError, Converter, TopicMessage, clock};
 use rumbo_ros::geometry::BodyGeometry;
 use rumbo_ros::messages::DiagnosticStatus;
 use rumbo_ros::types::Byte;
+use settings::Settings;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// The robot confirms an order within this time, or it is reported that it has not.
-pub(super) const PATIENCE: Duration = Duration::from_secs(3);
+const PATIENCE: Duration = Duration::from_secs(3);
 /// Refusals are said this often at most.
-pub(super) const AGAIN: Duration = Duration::from_secs(2);
+const AGAIN: Duration = Duration::from_secs(2);
 /// Diagnostics show them for this long.
-pub(super) const SHOWN: Duration = Duration::from_secs(4);
+const SHOWN: Duration = Duration::from_secs(4);
 /// Between two looks at what is new.
 const WAKE: Duration = Duration::from_millis(4);
 /// Most requests and velocities taken in a row: a flood of them does not keep messages from going out.
@@ -67,38 +72,38 @@ impl From<ConvertError> for LiveError {
 
 /// A session as a node.
 pub(super) struct Live {
-    pub(super) node: Node<Dds>,
-    pub(super) station: Station,
+    node: Node<Dds>,
+    station: Station,
     /// It publishes the clock of a simulation, for all robots in it.
     has_clock: bool,
-    pub(super) services: Vec<(String, Service)>,
-    pub(super) waiting: Vec<Waiting>,
-    pub(super) driving: Driving,
-    pub(super) navigation: Navigation,
-    pub(super) settings: Settings,
-    pub(super) converter: Converter,
+    services: Vec<(String, Service)>,
+    waiting: Vec<Waiting>,
+    driving: Driving,
+    navigation: Navigation,
+    settings: Settings,
+    converter: Converter,
     /// The sonars become a scan too.
     with_scan: bool,
     run: u32,
     scene: Option<Box<Scene>>,
-    pub(super) state: State,
+    state: State,
     /// Telemetry frames of the run.
-    pub(super) rows: u64,
+    rows: u64,
     /// The time of a simulation [ms], and when it was published last.
     clock_ms: i64,
     clocked: Instant,
     /// The last trouble with others, and when it was said.
     trouble: Option<(String, Instant)>,
-    pub(super) reported: bool,
+    reported: bool,
 }
 
 /// Whether there may be said more, this long after what was said last.
-pub(super) fn is_due(said: Option<&(String, Instant)>, after: Duration) -> bool {
+fn is_due(said: Option<&(String, Instant)>, after: Duration) -> bool {
     said.is_none_or(|(_, since)| since.elapsed() >= after)
 }
 
 /// A node that cannot publish is reported, and the session goes on.
-pub(super) fn report(outcome: Result<(), BridgeError>, reported: &mut bool) {
+fn report(outcome: Result<(), BridgeError>, reported: &mut bool) {
     if let Err(error) = outcome
         && !std::mem::replace(reported, true)
     {
@@ -191,14 +196,14 @@ impl Live {
     }
 
     /// The name of the robot's mode.
-    pub(super) fn mode(&self) -> &str {
+    fn mode(&self) -> &str {
         let modes = &self.station.hello.modes;
         let of_robot = modes.iter().find(|mode| mode.id == self.state.robot.mode);
         of_robot.map_or("", |mode| &mode.name)
     }
 
     /// Says something on the terminal.
-    pub(super) fn note(&self, text: &str) {
+    fn note(&self, text: &str) {
         match self.node.namespace() {
             "" => output::note(text),
             namespace => output::note(&format!("{namespace}: {text}")),
@@ -206,7 +211,7 @@ impl Live {
     }
 
     /// Says something of the others on the terminal, and for a while in diagnostics.
-    pub(super) fn warn(&mut self, trouble: String) {
+    fn warn(&mut self, trouble: String) {
         self.note(&trouble);
         self.trouble = Some((trouble, Instant::now()));
     }
@@ -300,7 +305,7 @@ impl Live {
     }
 
     /// The time of messages: of the simulation, or of day \[ns\].
-    pub(super) fn now_ns(&self) -> u64 {
+    fn now_ns(&self) -> u64 {
         match self.state.simulated {
             true => self.clock_ms.unsigned_abs() * 1_000_000,
             false => since_1970_ns(SystemTime::now()),

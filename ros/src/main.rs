@@ -15,16 +15,12 @@ mod address;
 mod aim;
 mod args;
 mod bridge;
-mod calls;
 mod dds;
-mod drive;
-mod goal;
 mod live;
 mod navigate;
 mod node;
 mod output;
 mod parameters;
-mod settings;
 mod station;
 #[cfg(test)]
 mod tests;

@@ -9,7 +9,8 @@
 use crate::gradescope;
 use crate::project::{Project, shown};
 use crate::release;
-use crate::test::{tools, wheel};
+use crate::test::wheel;
+use crate::tools;
 use std::process::Stdio;
 
 /// What is no scenario: its name, and how it is run with so many seeds; true if its requirements were met.

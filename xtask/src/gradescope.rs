@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::project::{Project, run};
 use crate::release::{clean_system, inside};
-use crate::test::{Stop, tools};
+use crate::tools::{self, Stop};
 
 const ASSIGNMENT: &str = "examples/assignments/wall/assignment.toml";
 const MODEL: &str = "examples/assignments/wall/model/model.ino";

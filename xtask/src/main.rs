@@ -10,6 +10,7 @@ use std::process::ExitCode;
 
 mod bench;
 mod campaign;
+mod cost;
 mod deny;
 mod fidelity;
 mod figures;
@@ -25,6 +26,7 @@ mod site;
 mod sketches;
 mod test;
 mod tidy;
+mod tools;
 
 use project::Project;
 

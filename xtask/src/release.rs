@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use crate::project::{Project, all_metadata, find_program, output, run as run_command};
-use crate::test::{Stop, tools};
+use crate::tools::{self, Stop};
 
 /// Names that texts of licences have.
 const LICENCE_FILES: [&str; 5] = ["LICENSE", "LICENCE", "COPYING", "NOTICE", "UNLICENSE"];

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::project::Project;
-use crate::test::{Stop, tools};
+use crate::tools::{self, Stop};
 use rumbo_sketch::limits::Limits;
 use rumbo_sketch::sandbox::Sandbox;
 use rumbo_sketch::{BOARDS, Board, Compiler, Given, SketchError, Toolchain, given};

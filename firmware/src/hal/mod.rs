@@ -7,7 +7,7 @@
 //! |---|---|
 //! | INT0, INT1 | encoders: a stamp into a ring ([`encoder`]) |
 //! | INT2, INT3, INT5 | echoes: the stamps of rise and fall ([`sonar`]) |
-//! | timer 1, 2 MHz | compare A: the tick; B: outputs, 3 ms later; C: end of the trigger pulse ([`clock`], [`outputs`]) |
+//! | timer 1, 2 MHz | compare A: the tick; B: outputs, 3 ms later; C: end of the trigger pulse ([`clock`], [`tick`], [`outputs`], [`sonar`]) |
 //! | timer 2, 250 kHz | the servo's edges on OC2B ([`servo`]) |
 //! | timers 3 and 4 | PWM of the right and the left motor ([`motors`]) |
 //! | USART 2 | the link, two rings ([`link`]) |
@@ -19,7 +19,7 @@
 //! [`record`] exposes the loop's inputs and outputs to tests.
 
 pub mod adc;
-pub mod clock;
+mod clock;
 pub mod eeprom;
 pub mod encoder;
 pub mod link;
@@ -32,6 +32,7 @@ mod registers;
 pub mod servo;
 mod shared;
 pub mod sonar;
+pub mod tick;
 
 /// Sets every peripheral up, outputs at rest; interrupts are still off.
 pub fn start() {

@@ -1,8 +1,9 @@
 //! Outputs take effect exactly 3 ms after their tick: the loop stores them here, compare B writes them.
 
 use super::motors::Bridge;
+use super::registers::handler;
 use super::shared::{Byte, CriticalSection, Word};
-use super::{clock, servo, sonar};
+use super::{servo, sonar, tick};
 use rumbo_control::Outputs;
 
 static LEFT: Byte = Byte::new(0);
@@ -27,7 +28,7 @@ pub fn leave(outputs: &Outputs, tick: u8) -> bool {
         RIGHT_PWM.set(bridge.right_pwm);
         SERVO.set(servo, section);
         sonar::ask(outputs.ping, section);
-        let in_time = APPLIED.get() != tick && clock::ticks() == tick;
+        let in_time = APPLIED.get() != tick && tick::ticks() == tick;
         if !in_time {
             apply(tick, section);
             sonar::trigger(section);
@@ -38,7 +39,7 @@ pub fn leave(outputs: &Outputs, tick: u8) -> bool {
 
 /// Writes the stored outputs.
 #[inline(always)]
-pub(super) fn apply(tick: u8, section: CriticalSection<'_>) {
+fn apply(tick: u8, section: CriticalSection<'_>) {
     Bridge {
         left: LEFT.get(),
         right_e: RIGHT_E.get(),
@@ -50,3 +51,7 @@ pub(super) fn apply(tick: u8, section: CriticalSection<'_>) {
     servo::point(SERVO.get(section), section);
     APPLIED.set(tick);
 }
+
+handler! { __vector_18, "TIMER1_COMPB", |section| {
+    apply(tick::ticks(), section);
+} }

@@ -1,7 +1,7 @@
 //! Reset cause, watchdog, sleep.
 
-use super::clock;
 use super::registers::{cpu, get, put, watchdog};
+use super::tick;
 use rumbo_wire::ResetCause;
 
 /// Change enable, reset mode, and a prescaler of 16 K cycles at 128 kHz: 125 ms.
@@ -44,7 +44,7 @@ pub fn sleep_after(tick: u8) {
     put!(cpu().smcr, 1);
     loop {
         avr_device::interrupt::disable();
-        if clock::ticks() != tick {
+        if tick::ticks() != tick {
             super::enable_interrupts();
             return;
         }

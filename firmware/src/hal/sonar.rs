@@ -126,6 +126,10 @@ handler! { __vector_6, "INT5", |section| {
     edge(&FRONT, get!(port_e().pine) & pins::FRONT_ECHO.mask() != 0, section);
 } }
 
+handler! { __vector_19, "TIMER1_COMPC", |section| {
+    trigger(section);
+} }
+
 const _: () = assert!(ECHOES_D == 0b1100 && pins::FRONT_ECHO.bit == 5);
 
 /// The loop's state of the sonars.

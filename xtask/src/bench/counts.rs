@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::Figure;
 use crate::project::{Project, output, run};
-use crate::test::{Stop, tools};
+use crate::tools::{self, Stop};
 
 const FILE: &str = "xtask/counts.toml";
 /// The largest change that is none, as a share.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::{Figure, process};
 use crate::lab::Lab;
 use crate::project::{Project, find_program};
-use crate::test::installed_chromium;
+use crate::tools::installed_chromium;
 
 /// Duration of the CPU measurement.
 const WATCH: Duration = Duration::from_secs(10);

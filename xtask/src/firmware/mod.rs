@@ -15,7 +15,7 @@ pub(crate) mod toolchain;
 use std::path::Path;
 
 use crate::project::{Project, output, run as run_command};
-use crate::test::Stop;
+use crate::tools::Stop;
 use sizes::Sizes;
 use toolchain::Toolchain;
 

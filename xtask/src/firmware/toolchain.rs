@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::project::{Project, find_program, output};
-use crate::test::{Stop, tools};
+use crate::tools::{self, Stop};
 
 /// The file that pins the nightly; cargo in that folder obeys it too.
 const PIN: &str = "firmware/rust-toolchain.toml";

@@ -21,7 +21,7 @@ use sha2::{Digest, Sha256};
 
 use crate::firmware::toolchain::Toolchain;
 use crate::project::{Project, find_program, output, run as run_command};
-use crate::test::{Stop, tools};
+use crate::tools::{self, Stop};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 /// As in `Cargo.toml`.

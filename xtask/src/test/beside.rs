@@ -1,7 +1,7 @@
 //! The second lane of CI: steps run by another process of this program, and shown when the steps beside them have ended.
 
 use super::Outcome;
-use super::cost::Cost;
+use crate::cost::Cost;
 use crate::project::Project;
 use std::fs::{self, File};
 use std::path::PathBuf;

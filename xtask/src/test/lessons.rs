@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 use serde_json::Value;
 
-use super::Stop;
 use crate::markdown::Markdown;
 use crate::project::Project;
+use crate::tools::Stop;
 
 const FOLDER: &str = "docs/lessons";
 /// The program of a scenario for a sketch.

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
 
-use super::{Stop, tools};
 use crate::lab::Lab;
 use crate::project::{Project, run};
+use crate::tools::{self, Stop};
 
 /// Packages of PyPI; a log that these versions read is one.
 const PACKAGES: [&str; 3] = [

@@ -8,24 +8,21 @@
 //! lanes where the steps allow it ([`beside`]).
 
 mod beside;
-mod cost;
 mod lessons;
 mod logs;
 mod readme;
 mod ros;
 mod steps;
-pub(crate) mod tools;
 mod web;
 pub(crate) mod wheel;
 
 use beside::Beside;
-use cost::Clock;
-pub(crate) use cost::Cost;
 use steps::{Check, STEPS, Step};
-pub(crate) use tools::installed_chromium;
 
+use crate::cost::{Clock, Cost};
 use crate::project::Project;
 use crate::tidy::ceilings::Ceilings;
+use crate::tools::Stop;
 
 /// How a step ended.
 #[derive(Debug, PartialEq)]
@@ -35,28 +32,6 @@ enum Outcome {
     Failed(String),
     /// With what is missing and the remedy.
     Skipped(String),
-}
-
-/// Why a step did not pass.
-pub(crate) enum Stop {
-    /// The check ran, or should have run, and failed.
-    Failed(String),
-    /// A tool is missing and cannot be installed from here: its name and how to get it.
-    Missing(String),
-}
-
-impl From<Stop> for String {
-    fn from(stop: Stop) -> Self {
-        match stop {
-            Stop::Failed(error) | Stop::Missing(error) => error,
-        }
-    }
-}
-
-impl From<String> for Stop {
-    fn from(error: String) -> Self {
-        Self::Failed(error)
-    }
 }
 
 /// Steps that run beside another one with `CI=true`: they build into folders of their own, and have long phases of a

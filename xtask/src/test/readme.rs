@@ -10,10 +10,10 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use super::Stop;
 use crate::lab::Lab;
 use crate::markdown::{Block, Markdown};
 use crate::project::{Project, shown};
+use crate::tools::Stop;
 
 /// Longest time that one command of the README may take.
 const LIMIT: Duration = Duration::from_secs(300);

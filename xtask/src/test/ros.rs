@@ -3,8 +3,8 @@
 
 use std::env::consts::EXE_SUFFIX;
 
-use super::{Stop, tools};
 use crate::project::{Project, run};
+use crate::tools::{self, Stop};
 
 /// Packages of PyPI: rclpy of Jazzy with Fast DDS, its messages, Cyclone DDS.
 const PACKAGES: [&str; 7] = [

@@ -1,11 +1,12 @@
 //! The steps of the gate and of the full check, in order, and those that are a command or two.
 
-use super::{Stop, lessons, logs, readme, ros, tools, web, wheel};
+use super::{lessons, logs, readme, ros, web, wheel};
 use crate::project::{Project, output, run as run_command};
 use crate::tidy::{
     self,
     ceilings::{Ceilings, Gate},
 };
+use crate::tools::{self, Stop};
 use serde_json::Value;
 use std::collections::BTreeSet;
 

@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Stop, tools};
 use crate::project::{Project, run};
+use crate::tools::{self, Stop};
 
 /// Checks the types that the JSDoc comments of `web/` declare.
 pub(crate) fn types(project: &Project) -> Result<(), Stop> {

@@ -4,9 +4,9 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::{Stop, tools};
 use crate::project::{Project, output, run};
 use crate::release;
+use crate::tools::{self, Stop};
 
 /// Packages of PyPI; what type checkers find depends on their versions. They need Python 3.11, the wheel itself 3.10.
 const PACKAGES: [&str; 7] = [

@@ -7,8 +7,8 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::{Finding, Tree};
+use crate::cost::Cost;
 use crate::project::Project;
-use crate::test::Cost;
 
 const FILE: &str = "xtask/ceilings.toml";
 /// The program whose packages are counted as users build it.

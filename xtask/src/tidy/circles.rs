@@ -13,19 +13,20 @@ type Module<'a> = Vec<&'a str>;
 /// The modules that each module imports of those beside it, and where first: file and line.
 type Imports<'a> = BTreeMap<Module<'a>, BTreeMap<Module<'a>, (&'a str, usize)>>;
 
-/// The imports that are part of a circle, in each crate of `crates/`.
+/// The imports that are part of a circle, in each crate.
 pub(super) fn check(tree: &Tree) -> Vec<Finding> {
-    let files = tree.texts(|path| path.starts_with("crates/"));
-    let names = files.filter_map(|(path, _)| path["crates/".len()..].split('/').next());
-    let names: BTreeSet<&str> = names.collect();
-    names
-        .into_iter()
-        .flat_map(|name| in_crate(tree, name))
-        .collect()
+    let files = tree.texts(|path| path.ends_with(".rs"));
+    let sources = files.filter_map(|(path, _)| {
+        let end = path.find("src/")? + "src/".len();
+        Some(&path[..end])
+    });
+    let sources: BTreeSet<&str> = sources.collect();
+    let of_crate = |source| in_crate(tree, source);
+    sources.into_iter().flat_map(of_crate).collect()
 }
 
-fn in_crate(tree: &Tree, name: &str) -> Vec<Finding> {
-    let imports = imports(tree, name);
+fn in_crate(tree: &Tree, source: &str) -> Vec<Finding> {
+    let imports = imports(tree, source);
     let mut circles = Vec::new();
     for (from, uses) in &imports {
         for (to, (path, line)) in uses {
@@ -73,8 +74,8 @@ fn module(file: &str) -> Option<Module<'_>> {
     (!is_root).then(|| path.split('/').collect())
 }
 
-fn imports<'a>(tree: &'a Tree, name: &str) -> Imports<'a> {
-    let source = format!("crates/{name}/src/");
+/// Those of the crate whose sources are in this folder.
+fn imports<'a>(tree: &'a Tree, source: &str) -> Imports<'a> {
     let root = tree.text(&format!("{source}lib.rs")).unwrap_or_default();
     let exports: BTreeMap<&str, &str> = root
         .match_indices("pub use ")
@@ -88,7 +89,7 @@ fn imports<'a>(tree: &'a Tree, name: &str) -> Imports<'a> {
         })
         .collect();
     let files: Vec<_> = tree
-        .texts(|path| path.starts_with(&source) && path.ends_with(".rs"))
+        .texts(|path| path.starts_with(source) && path.ends_with(".rs"))
         .filter_map(|(path, text)| Some((path, text, module(&path[source.len()..])?)))
         .filter(|(_, _, own)| !own.contains(&"tests"))
         .collect();

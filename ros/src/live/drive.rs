@@ -1,6 +1,6 @@
 //! Velocities of ROS 2: the one way from `/cmd_vel` to the wheels.
 
-use crate::live::{AGAIN, Live, SHOWN, is_due};
+use super::{AGAIN, Live, SHOWN, is_due};
 use crate::node::{BadVelocity, Velocity};
 use crate::station::Order;
 use std::time::{Duration, Instant};

@@ -7,9 +7,9 @@
 //! A newer goal replaces the one on the way, which is aborted. Mode 8 makes each goal reached its origin, from which goals
 //! count: near its goal the robot gets the next one when it stands there and the new origin is known.
 
+use super::{Live, PATIENCE, report};
 use crate::aim::{Aim, is_task, order};
 use crate::bridge::Caller;
-use crate::live::{Live, PATIENCE, report};
 use crate::navigate::{Distribution, Goal, Goals, Id, NAME, Question, Status};
 use crate::station::Order;
 use rumbo_log::{End, Level, LoggedEvent};

@@ -4,8 +4,29 @@ use std::path::{Path, PathBuf};
 
 use std::time::Duration;
 
-use super::Stop;
 use crate::project::{Project, find_program, output, run};
+
+/// Why a step did not pass.
+pub(crate) enum Stop {
+    /// The check ran, or should have run, and failed.
+    Failed(String),
+    /// A tool is missing and cannot be installed from here: its name and how to get it.
+    Missing(String),
+}
+
+impl From<Stop> for String {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::Failed(error) | Stop::Missing(error) => error,
+        }
+    }
+}
+
+impl From<String> for Stop {
+    fn from(error: String) -> Self {
+        Self::Failed(error)
+    }
+}
 
 /// Interval and number of checks for another running apt.
 const AGAIN: Duration = Duration::from_secs(5);

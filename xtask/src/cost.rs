@@ -14,7 +14,7 @@ pub(crate) struct Cost {
 
 impl Cost {
     /// Reads what [`fmt::Display`] wrote; also returns what follows.
-    pub(super) fn parse(text: &str) -> Option<(Self, &str)> {
+    pub(crate) fn parse(text: &str) -> Option<(Self, &str)> {
         let seconds = |text: &str| Duration::try_from_secs_f64(text.trim().parse().ok()?).ok();
         let (time, rest) = text.split_once(" s, processor")?;
         let (processor, rest) = rest.split_once(" s")?;
@@ -43,20 +43,20 @@ impl Sum for Cost {
 }
 
 /// Measures the cost of what comes next.
-pub(super) struct Clock {
+pub(crate) struct Clock {
     start: Instant,
     processor: Duration,
 }
 
 impl Clock {
-    pub(super) fn start() -> Self {
+    pub(crate) fn start() -> Self {
         Self {
             start: Instant::now(),
             processor: processor(),
         }
     }
 
-    pub(super) fn stop(self) -> Cost {
+    pub(crate) fn stop(self) -> Cost {
         Cost {
             time: self.start.elapsed(),
             processor: processor().saturating_sub(self.processor),

@@ -1,8 +1,8 @@
 //! The robot's parameters for ROS 2: what is read is answered from the table, what is set becomes orders, one after the
 //! other; the robot's own answer is the outcome.
 
+use super::{Live, PATIENCE, report};
 use crate::bridge::Caller;
-use crate::live::{Live, PATIENCE, report};
 use crate::parameters::{self, ParameterState, Question, Value};
 use crate::station::Order;
 use rumbo_ros::convert::stamp;

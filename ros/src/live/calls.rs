@@ -1,7 +1,7 @@
 //! Services of ROS 2 without a question: each call is an order. It is answered when the robot's state shows what was
 //! asked for, or the robot has refused it.
 
-use crate::live::{Live, PATIENCE, report};
+use super::{Live, PATIENCE, report};
 use crate::node::Call;
 use crate::station::{Mode, Order};
 use rumbo_log::RobotState;
