@@ -205,139 +205,164 @@ fn middle(column: &Series) -> f64 {
 }
 
 /// Name, unit, what it is to be divided by, and whether that is certain.
-fn signal(column: &Series) -> Option<(&'static str, &'static str, Option<&'static str>, bool)> {
-    let words = words(&column.name);
-    let has = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
-    let last = words.last().map_or("", String::as_str);
-    let largest = column
-        .samples
-        .iter()
-        .fold(0.0_f64, |most, (_, value)| most.max(value.abs()));
-    // REP 103.
-    let is_ros = column.kind.contains('/');
-    let says = |units: &[&'static str]| {
-        let units: Vec<_> = units.iter().map(|unit| (*unit, 1.0)).collect();
-        unit(column, &units).map(|(unit, _)| unit)
-    };
-    let in_frame = |list: &[&str]| {
-        self::words(&column.frame)
-            .iter()
-            .any(|word| list.contains(&word.as_str()))
-    };
-    let side = match (has(LEFT), has(RIGHT)) {
-        (true, false) => Some(true),
-        (false, true) => Some(false),
-        _ => None,
-    };
-    if has(&["min", "max", "covariance", "imu", "status"]) || column.name.ends_with("field_of_view")
-    {
+type Signal = (&'static str, &'static str, Option<&'static str>, bool);
+
+const LENGTHS: &[&str] = &["m", "cm", "mm", "in"];
+const TURN_RATES: &[&str] = &["rpm", "rad_s", "deg_s", "rps"];
+
+fn signal(series: &Series) -> Option<Signal> {
+    let column = Column::of(series);
+    let is_other = column.has(&["min", "max", "covariance", "imu", "status"])
+        || series.name.ends_with("field_of_view");
+    if is_other {
         return None;
     }
-    // Twists and poses.
-    let is_command = has(&["cmd"]);
-    let place = has(&["position", "pose", "pos", "odom", "odometry"]) || words.len() <= 2;
-    match last {
-        "x" if has(&["linear"]) => {
-            return Some((
-                if is_command { "forward_ref" } else { "forward" },
-                "m_s",
-                None,
-                is_ros,
-            ));
+    let found = column.twist().or_else(|| column.pose());
+    found.or_else(|| column.range()).or_else(|| column.wheel())
+}
+
+/// A column, and what its name says.
+struct Column<'a> {
+    series: &'a Series,
+    words: Vec<String>,
+    is_left: Option<bool>,
+    largest: f64,
+    /// Of a message of ROS, whose units are those of REP 103.
+    is_ros: bool,
+}
+
+impl<'a> Column<'a> {
+    fn of(series: &'a Series) -> Column<'a> {
+        let words = words(&series.name);
+        let sizes = series.samples.iter().map(|(_, value)| value.abs());
+        Column {
+            series,
+            is_left: side(&words),
+            words,
+            largest: sizes.fold(0.0, f64::max),
+            is_ros: series.kind.contains('/'),
         }
-        "z" if has(&["angular"]) => {
-            return Some((
-                if is_command { "yaw_ref" } else { "yaw" },
-                "rad_s",
-                None,
-                is_ros,
-            ));
-        }
-        _ => {}
     }
-    let bare = words
-        .iter()
-        .rev()
-        .find(|word| !["m", "cm", "mm", "in", "rad", "deg", "degrees"].contains(&word.as_str()));
-    match bare.map(String::as_str) {
-        Some("x" | "y") if place && !has(&["orientation", "linear", "angular"]) => {
-            let stem = if bare.is_some_and(|word| word == "x") {
-                "x"
-            } else {
-                "y"
-            };
-            let unit = says(&["m", "cm", "mm", "in"]);
-            return Some((stem, unit.unwrap_or("m"), None, is_ros || unit.is_some()));
-        }
-        Some("yaw" | "heading" | "theta" | "rumbo") if side.is_none() => {
-            let unit = says(&["rad", "deg"]);
-            let likely = if is_ros || largest < 7.0 {
-                "rad"
-            } else {
-                "deg"
-            };
-            return Some((
-                "heading",
-                unit.unwrap_or(likely),
-                None,
-                is_ros || unit.is_some(),
-            ));
-        }
-        _ => {}
+
+    fn has(&self, list: &[&str]) -> bool {
+        has(&self.words, list)
     }
-    let wheel = |is_left: bool| if is_left { "left" } else { "right" };
-    let is_range = match column.kind.ends_with("/Range") {
-        true => last == "range",
-        false => has(RANGES) && !has(REFERENCES),
-    };
-    if is_range {
-        let unit = says(&["m", "cm", "mm", "in"]);
-        let likely = if is_ros || largest <= 10.0 { "m" } else { "cm" };
-        let side = side.or_else(|| match (in_frame(LEFT), in_frame(RIGHT)) {
-            (true, false) => Some(true),
-            (false, true) => Some(false),
-            _ => None,
-        });
-        let stem = match side {
+
+    fn last(&self) -> &str {
+        self.words.last().map_or("", String::as_str)
+    }
+
+    fn says(&self, units: &[&'static str]) -> Option<&'static str> {
+        let units: Vec<_> = units.iter().map(|unit| (*unit, 1.0)).collect();
+        unit(self.series, &units).map(|(unit, _)| unit)
+    }
+
+    fn twist(&self) -> Option<Signal> {
+        let is_command = self.has(&["cmd"]);
+        let (stem, unit) = match self.last() {
+            "x" if self.has(&["linear"]) && is_command => ("forward_ref", "m_s"),
+            "x" if self.has(&["linear"]) => ("forward", "m_s"),
+            "z" if self.has(&["angular"]) && is_command => ("yaw_ref", "rad_s"),
+            "z" if self.has(&["angular"]) => ("yaw", "rad_s"),
+            _ => return None,
+        };
+        Some((stem, unit, None, self.is_ros))
+    }
+
+    fn pose(&self) -> Option<Signal> {
+        let mut words = self.words.iter().rev().map(String::as_str);
+        let bare =
+            words.find(|word| !["m", "cm", "mm", "in", "rad", "deg", "degrees"].contains(word));
+        let of_place =
+            self.has(&["position", "pose", "pos", "odom", "odometry"]) || self.words.len() <= 2;
+        let (stem, unit, likely) = match bare? {
+            "x" | "y" if !of_place || self.has(&["orientation", "linear", "angular"]) => {
+                return None;
+            }
+            "x" => ("x", self.says(LENGTHS), "m"),
+            "y" => ("y", self.says(LENGTHS), "m"),
+            "yaw" | "heading" | "theta" | "rumbo" if self.is_left.is_none() => {
+                let is_small = self.is_ros || self.largest < 7.0;
+                let likely = if is_small { "rad" } else { "deg" };
+                ("heading", self.says(&["rad", "deg"]), likely)
+            }
+            _ => return None,
+        };
+        let is_sure = self.is_ros || unit.is_some();
+        Some((stem, unit.unwrap_or(likely), None, is_sure))
+    }
+
+    fn range(&self) -> Option<Signal> {
+        let is_range = match self.series.kind.ends_with("/Range") {
+            true => self.last() == "range",
+            false => self.has(RANGES) && !self.has(REFERENCES),
+        };
+        if !is_range {
+            return None;
+        }
+        let unit = self.says(LENGTHS);
+        let is_small = self.is_ros || self.largest <= 10.0;
+        let likely = if is_small { "m" } else { "cm" };
+        let is_left = self.is_left.or_else(|| side(&words(&self.series.frame)));
+        let stem = match is_left {
             Some(true) => "range_left",
             Some(false) => "range_right",
             None => "range_front",
         };
-        let is_sure =
-            is_ros || unit.is_some() && (side.is_some() || has(FRONT) || words.len() <= 2);
-        return Some((stem, unit.unwrap_or(likely), None, is_sure));
+        let says_where = is_left.is_some() || self.has(FRONT) || self.words.len() <= 2;
+        let is_sure = self.is_ros || unit.is_some() && says_where;
+        Some((stem, unit.unwrap_or(likely), None, is_sure))
     }
-    let is_left = side?;
-    if has(REFERENCES) {
-        let stem = if is_left { "left_ref" } else { "right_ref" };
-        let unit = says(&["rpm", "rad_s", "deg_s", "rps"]);
-        return (has(SPEEDS) || unit.is_some()).then_some((
-            stem,
-            unit.unwrap_or("rpm"),
-            None,
-            unit.is_some(),
-        ));
-    }
-    if has(PWMS) {
-        let likely = if largest <= 1.0 { "duty" } else { "pwm" };
-        let unit = says(&["pwm", "percent"]).unwrap_or(likely);
-        return Some((wheel(is_left), unit, None, has(&["pwm"]) && largest > 1.0));
-    }
-    if has(COUNTS) {
-        return Some((wheel(is_left), "turn", Some("COUNTS"), false));
-    }
-    if has(SPEEDS) || says(&["rpm", "rad_s", "deg_s", "rps"]).is_some() {
-        if says(&["m_s", "mm_s", "cm_s"]).is_some() {
-            return Some((wheel(is_left), "rad_s", Some("RADIUS"), false));
+
+    fn wheel(&self) -> Option<Signal> {
+        let [wheel, reference] = match self.is_left? {
+            true => ["left", "left_ref"],
+            false => ["right", "right_ref"],
+        };
+        let rate = self.says(TURN_RATES);
+        let is_speed = self.has(SPEEDS) || rate.is_some();
+        if self.has(REFERENCES) {
+            let signal = (reference, rate.unwrap_or("rpm"), None, rate.is_some());
+            return is_speed.then_some(signal);
         }
-        let unit = says(&["rpm", "rad_s", "deg_s", "rps"]);
-        let likely = if is_ros { "rad_s" } else { "rpm" };
+        if self.has(PWMS) {
+            let likely = if self.largest <= 1.0 { "duty" } else { "pwm" };
+            let unit = self.says(&["pwm", "percent"]).unwrap_or(likely);
+            return Some((wheel, unit, None, self.has(&["pwm"]) && self.largest > 1.0));
+        }
+        if self.has(COUNTS) {
+            return Some((wheel, "turn", Some("COUNTS"), false));
+        }
+        let is_joint = self.series.kind.ends_with("/JointState");
+        if !is_speed {
+            let is_angle = is_joint && self.last() == "position";
+            return is_angle.then_some((wheel, "rad", None, true));
+        }
+        if self.says(&["m_s", "mm_s", "cm_s"]).is_some() {
+            return Some((wheel, "rad_s", Some("RADIUS"), false));
+        }
+        let likely = if self.is_ros { "rad_s" } else { "rpm" };
         // A speed of a joint is in rad/s, one of a plain number in anything.
-        let is_sure = unit.is_some() || column.kind.ends_with("/JointState");
-        return Some((wheel(is_left), unit.unwrap_or(likely), None, is_sure));
+        Some((
+            wheel,
+            rate.unwrap_or(likely),
+            None,
+            rate.is_some() || is_joint,
+        ))
     }
-    let is_joint = column.kind.ends_with("/JointState") && last == "position";
-    is_joint.then_some((wheel(is_left), "rad", None, true))
+}
+
+fn has(words: &[String], list: &[&str]) -> bool {
+    words.iter().any(|word| list.contains(&word.as_str()))
+}
+
+/// Whether it is that on the left, where the words say one side.
+fn side(words: &[String]) -> Option<bool> {
+    match (has(words, LEFT), has(words, RIGHT)) {
+        (true, false) => Some(true),
+        (false, true) => Some(false),
+        _ => None,
+    }
 }
 
 /// `Left Speed (rpm)`, `leftSpeed_rpm`, `speedL`: words in small letters.
