@@ -149,7 +149,7 @@ fn log() -> Done {
 /// That log repeated on the plant.
 fn identify() -> Done {
     let logs = stretches(Path::new("counts.mcap"), &recorded()?)?.logs;
-    let runs = check(&logs, &setup("mode5", None)?.robot.plant)?.runs;
+    let runs = check(&logs, &setup("mode5", None)?.robot.plant)?;
     Ok(format!("{} stretches", runs.len()))
 }
 

@@ -9,7 +9,7 @@ use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::gdb::DebuggedWorld;
 use rumbo_emulator::observe::Watchpoint;
-use rumbo_emulator::observe::trace::What;
+use rumbo_emulator::observe::trace::{Traced, What};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Most snapshots; then every second one of the older ones goes.
@@ -105,20 +105,15 @@ impl<W: DebuggedWorld> History<W> {
 
     /// Runs to the next stop or the end of the interval. A stop where it stands does not count.
     pub(crate) fn go(&mut self) -> Stopped {
-        // What comes later is another future.
-        let cycle = self.cycle();
-        self.past.retain(|snapshot| snapshot.cycle() <= cycle);
+        self.forget_future();
         let here = self.now.chip().cpu().program_counter();
         let mut stopped = Stopped::Reached;
         if self.stops.contains(&here) {
             stopped = self.now.step();
             self.has_halted = true;
             // It may stand at another one already.
-            if stopped == Stopped::Reached
-                && self
-                    .stops
-                    .contains(&self.now.chip().cpu().program_counter())
-            {
+            let there = self.now.chip().cpu().program_counter();
+            if stopped == Stopped::Reached && self.stops.contains(&there) {
                 stopped = Stopped::Breakpoint;
             }
         }
@@ -133,10 +128,15 @@ impl<W: DebuggedWorld> History<W> {
         stopped
     }
 
-    /// Runs one instruction.
-    pub(crate) fn step(&mut self) -> Stopped {
+    /// What comes later is another future.
+    fn forget_future(&mut self) {
         let cycle = self.cycle();
         self.past.retain(|snapshot| snapshot.cycle() <= cycle);
+    }
+
+    /// Runs one instruction.
+    pub(crate) fn step(&mut self) -> Stopped {
+        self.forget_future();
         self.has_halted = true;
         let stopped = self.now.step();
         self.hear();
@@ -146,8 +146,7 @@ impl<W: DebuggedWorld> History<W> {
     /// Changes the present; the past leads there no longer, so that a snapshot remembers it.
     pub(crate) fn change<T>(&mut self, change: impl FnOnce(&mut W) -> T) -> T {
         let done = change(&mut self.now);
-        let cycle = self.cycle();
-        self.past.retain(|snapshot| snapshot.cycle() <= cycle);
+        self.forget_future();
         let mut world = self.now.clone();
         disarm(&mut world, &self.stops, &self.watches);
         self.base = Snapshot {
@@ -206,11 +205,10 @@ impl<W: DebuggedWorld> History<W> {
 
     /// The beginning of the interval that a cycle is in or ends.
     fn before(&self, cycle: u64) -> Snapshot<W> {
-        let last = self
+        let after = self
             .past
-            .partition_point(|snapshot| snapshot.cycle() <= cycle)
-            .saturating_sub(1);
-        let mut base = self.past[last].clone();
+            .partition_point(|snapshot| snapshot.cycle() <= cycle);
+        let mut base = self.past[after.saturating_sub(1)].clone();
         // From a sparse past, through the intervals in between.
         loop {
             let mut next = base.clone();
@@ -264,10 +262,8 @@ impl<W: DebuggedWorld> History<W> {
             let before = self
                 .past
                 .partition_point(|snapshot| snapshot.cycle() < limit);
-            let from = &self
-                .past
-                .get(before.checked_sub(1)?.saturating_sub(stretch - 1))?
-                .world;
+            let first = before.checked_sub(1)?.saturating_sub(stretch - 1);
+            let from = &self.past.get(first)?.world;
             match last_interval(from, limit, stops, watches) {
                 Some(interval) => {
                     if let Some(found) = last_within(&interval, limit, stops, watches, accept) {
@@ -285,12 +281,8 @@ impl<W: DebuggedWorld> History<W> {
     /// The cycle at which the instruction before began.
     pub(crate) fn last_instruction(&self) -> Option<u64> {
         let mut limit = self.cycle();
-        while let Some(before) = limit
-            .checked_sub(1)
-            .filter(|before| *before >= self.first())
-        {
-            let base = self.before(before);
-            let mut world = base.world;
+        while limit > self.first() {
+            let mut world = self.before(limit - 1).world;
             let start = world.chip().cycle();
             let near = limit.saturating_sub(WINDOWS[0]);
             if near > start {
@@ -300,13 +292,12 @@ impl<W: DebuggedWorld> History<W> {
             world.go_to(limit);
             let trace = world.chip_mut().observers_mut().take_trace();
             let time = |cycle| world.chip().time_of(cycle);
-            let instructions = trace
+            let is_instruction = |traced: &&Traced| matches!(traced.what, What::Instruction(_));
+            let cycles = trace
                 .iter()
-                .filter(|traced| matches!(traced.what, What::Instruction(_)));
-            let cycles = instructions
-                .map(|traced| time(traced.cycle))
-                .filter(|cycle| *cycle < limit);
-            match cycles.max() {
+                .filter(is_instruction)
+                .map(|traced| time(traced.cycle));
+            match cycles.filter(|cycle| *cycle < limit).max() {
                 Some(found) => return Some(found),
                 None => limit = start,
             }
@@ -333,10 +324,9 @@ fn last_interval<W: DebuggedWorld>(
     while world.chip().cycle() < limit {
         let mut start = world.clone();
         let stands = stops.contains(&world.chip().cpu().program_counter());
-        let stopped = if stands {
-            Stopped::Breakpoint
-        } else {
-            world.go_to(limit)
+        let stopped = match stands {
+            true => Stopped::Breakpoint,
+            false => world.go_to(limit),
         };
         let is_stop = matches!(stopped, Stopped::Breakpoint | Stopped::Watched { .. });
         if is_stop && world.chip().cycle() < limit {
@@ -393,10 +383,9 @@ fn last_in<W: DebuggedWorld>(
     }
     arm(world, stops, watches);
     loop {
-        let mut stopped = if is_stop(world) {
-            world.step()
-        } else {
-            Stopped::Reached
+        let mut stopped = match is_stop(world) {
+            true => world.step(),
+            false => Stopped::Reached,
         };
         if stopped == Stopped::Reached && !is_stop(world) && world.chip().cycle() < limit {
             stopped = world.go_to(limit);
@@ -415,19 +404,21 @@ fn last_in<W: DebuggedWorld>(
 }
 
 fn arm<W: DebuggedWorld>(world: &mut W, stops: &BTreeSet<u32>, watches: &[Watchpoint]) {
+    let chip = world.chip_mut();
     stops
         .iter()
-        .for_each(|word| world.chip_mut().cpu_mut().set_breakpoint(*word));
-    watches
-        .iter()
-        .for_each(|watch| world.chip_mut().observers_mut().watch(watch.clone()));
+        .for_each(|word| chip.cpu_mut().set_breakpoint(*word));
+    for watch in watches {
+        chip.observers_mut().watch(watch.clone());
+    }
 }
 
 fn disarm<W: DebuggedWorld>(world: &mut W, stops: &BTreeSet<u32>, watches: &[Watchpoint]) {
+    let chip = world.chip_mut();
     stops
         .iter()
-        .for_each(|word| world.chip_mut().cpu_mut().clear_breakpoint(*word));
-    watches.iter().for_each(|watch| {
-        world.chip_mut().observers_mut().unwatch(watch);
-    });
+        .for_each(|word| chip.cpu_mut().clear_breakpoint(*word));
+    for watch in watches {
+        chip.observers_mut().unwatch(watch);
+    }
 }

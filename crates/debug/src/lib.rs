@@ -8,8 +8,8 @@
 //! history: snapshots -> control: breakpoints, steps -> dap: requests in, responses and events out
 //! ```
 //!
-//! Nothing here does I/O or reads a clock: a [`World`](rumbo_emulator::gdb::World) advances by the chip's cycles, and while the program stands, so does
-//! the world. A [`dap::Adapter`] takes and gives bytes.
+//! Nothing here does I/O or reads a clock: a [world](rumbo_emulator::gdb::DebuggedWorld) advances by the chip's cycles, and
+//! while the program stands, so does the world. A [`dap::Adapter`] takes and gives bytes.
 
 pub mod control;
 pub mod dap;
@@ -21,6 +21,3 @@ mod stack;
 pub mod symbols;
 mod unwind;
 mod value;
-
-pub use stack::CallFrame;
-pub use value::OPTIMISED_OUT;

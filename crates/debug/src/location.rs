@@ -17,7 +17,8 @@ use rumbo_emulator::space::DATA;
 use std::ops::Range;
 use std::sync::Arc;
 
-type Bytes<'a> = EndianSlice<'a, LittleEndian>;
+/// A section of the file, or a part of one.
+pub(crate) type Bytes<'a> = EndianSlice<'a, LittleEndian>;
 
 /// An expression.
 #[derive(Clone, Debug)]
@@ -112,20 +113,14 @@ impl Context<'_> {
         match location {
             Location::Register { register } => {
                 let from = usize::from(register.0);
-                Some(Spot::Pieces(
-                    (from..from + bytes)
-                        .map(|number| self.frame.register(number))
-                        .collect(),
-                ))
+                let numbers = from..from + bytes;
+                let pieces = numbers.map(|number| self.frame.register(number));
+                Some(Spot::Pieces(pieces.collect()))
             }
-            Location::Address { address } => {
-                let address = *address as u32;
-                Some(Spot::Memory(if of_registers {
-                    DATA | address & 0xFFFF
-                } else {
-                    address
-                }))
-            }
+            Location::Address { address } => Some(Spot::Memory(match of_registers {
+                true => DATA | *address as u32 & 0xFFFF,
+                false => *address as u32,
+            })),
             Location::Value { value } => {
                 let value = raw(*value).to_le_bytes();
                 Some(Spot::known(&value[..bytes.min(8)]))
@@ -140,11 +135,8 @@ impl Context<'_> {
         let (pieces, _) = self.evaluate(code)?;
         match pieces.first()?.location {
             Location::Register { register } => {
-                let pair = [
-                    self.byte(register)?,
-                    self.byte(Register(register.0 + 1)).unwrap_or(0),
-                ];
-                Some(u16::from_le_bytes(pair).into())
+                let high = self.byte(Register(register.0 + 1)).unwrap_or(0);
+                Some(u16::from_le_bytes([self.byte(register)?, high]).into())
             }
             Location::Address { address } => Some(address),
             Location::Value { value } => Some(raw(value)),
@@ -188,14 +180,11 @@ impl Context<'_> {
                     base_type,
                     ..
                 } => {
-                    let address = if of_registers {
-                        u64::from(DATA) | address & 0xFFFF
-                    } else {
-                        address
-                    };
-                    let bytes = Spot::Memory(address as u32).read(self.chip, size.into())?;
-                    evaluation
-                        .resume_with_memory(parsed(&bytes, self.base_type(code, base_type.0))?)
+                    let location = Location::Address { address };
+                    let spot = self.whole(&location, size.into(), of_registers)?;
+                    let bytes = spot.read(self.chip, size.into())?;
+                    let of = self.base_type(code, base_type.0);
+                    evaluation.resume_with_memory(parsed(&bytes, of)?)
                 }
                 EvaluationResult::RequiresEntryValue(Expression(bytes)) => {
                     let inner = Expression(bytes).operations(code.encoding).next().ok()??;
@@ -215,27 +204,22 @@ impl Context<'_> {
 
     fn base_type(&self, code: &Code, offset: usize) -> ValueType {
         let mut known = code.base_types.iter();
-        known
-            .find(|(at, _)| *at == offset)
-            .map_or(ValueType::Generic, |(_, of)| *of)
+        let found = known.find(|(at, _)| *at == offset);
+        found.map_or(ValueType::Generic, |(_, of)| *of)
     }
 
     /// A register; wider than a byte with those that follow it. A base of addresses is a pair.
     fn register(&self, register: Register, of: ValueType) -> Option<Value> {
         if register.0 == STACK_POINTER {
-            return self
-                .frame
-                .stack_pointer
-                .map(|pointer| Value::Generic(pointer.into()));
+            let pointer = self.frame.stack_pointer?;
+            return Some(Value::Generic(pointer.into()));
         }
         let count = match of {
             ValueType::Generic => 2,
             _ => of.bit_size(u64::MAX).div_ceil(8) as u16,
         };
-        let bytes: Option<Vec<u8>> = (0..count)
-            .map(|more| self.byte(Register(register.0 + more)))
-            .collect();
-        parsed(&bytes?, of)
+        let bytes = (0..count).map(|more| self.byte(Register(register.0 + more)));
+        parsed(&bytes.collect::<Option<Vec<u8>>>()?, of)
     }
 
     fn base(&self) -> Option<u64> {
@@ -243,14 +227,12 @@ impl Context<'_> {
         match *code.bytes {
             // DW_OP_call_frame_cfa, which nearly every function has.
             [0x9c] => self.frame.cfa.map(u64::from),
-            _ => {
-                // A base may not refer to itself.
-                let alone = Context {
-                    frame_base: &Place::None,
-                    ..*self
-                };
-                alone.value(code)
+            // A base may not refer to itself.
+            _ => Context {
+                frame_base: &Place::None,
+                ..*self
             }
+            .value(code),
         }
     }
 
@@ -268,10 +250,10 @@ impl Context<'_> {
         let value = (self.passed)(u8::try_from(register.0).ok()?)?;
         match of {
             ValueType::Generic => Some(Value::Generic(value)),
-            _ => parsed(
-                &value.to_le_bytes()[..of.bit_size(u64::MAX).div_ceil(8).min(8) as usize],
-                of,
-            ),
+            _ => {
+                let bytes = of.bit_size(u64::MAX).div_ceil(8).min(8) as usize;
+                parsed(&value.to_le_bytes()[..bytes], of)
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The stack as a person sees it: a frame for each function, also for those that were inlined, with what is in scope.
 
 use crate::expression::{Item, Names, member, register};
-use crate::location::Context;
+use crate::location::{Context, Place};
 use crate::symbols::{Scope, ScopeKind, Symbols, Variable};
 use crate::unwind::Frame;
 use crate::value::{Memory, Value};
@@ -11,17 +11,17 @@ use std::rc::Rc;
 
 /// A function that runs.
 #[derive(Clone)]
-pub struct CallFrame<'a> {
+pub(crate) struct CallFrame<'a> {
     /// Its name with classes and namespaces; of what has no debugging information, that of the linker.
-    pub name: String,
+    pub(crate) name: String,
     /// The file, in [`crate::symbols::Lines::files`].
-    pub file: Option<usize>,
+    pub(crate) file: Option<usize>,
     /// From 1; 0: unknown.
-    pub line: u32,
+    pub(crate) line: u32,
     /// From 1; 0: unknown.
-    pub column: u32,
+    pub(crate) column: u32,
     /// Its next instruction [bytes].
-    pub address: u32,
+    pub(crate) address: u32,
     pub(crate) memory: Memory<'a>,
     frames: Rc<Vec<Frame>>,
     index: usize,
@@ -82,19 +82,15 @@ pub(crate) fn stack(memory: Memory<'_>) -> Vec<CallFrame<'_>> {
         for scope in function.chain(at).into_iter().rev() {
             whole.scopes.push(scope);
             match scope.kind {
-                ScopeKind::Block => {}
-                ScopeKind::Function => stack.push(CallFrame {
+                ScopeKind::Block => continue,
+                ScopeKind::Function | ScopeKind::Inlined { .. } => stack.push(CallFrame {
                     name: scope.name.clone(),
                     ..whole.clone()
                 }),
-                ScopeKind::Inlined { file, line } => {
-                    stack.push(CallFrame {
-                        name: scope.name.clone(),
-                        ..whole.clone()
-                    });
-                    (whole.file, whole.line, whole.column) = (file, line, 0);
-                    whole.scopes.clear();
-                }
+            }
+            if let ScopeKind::Inlined { file, line } = scope.kind {
+                (whole.file, whole.line, whole.column) = (file, line, 0);
+                whole.scopes.clear();
             }
         }
     }
@@ -103,53 +99,29 @@ pub(crate) fn stack(memory: Memory<'_>) -> Vec<CallFrame<'_>> {
 
 impl<'a> CallFrame<'a> {
     /// Parameters and variables, those of inner blocks first.
-    pub(crate) fn variables(&self) -> Vec<(&'a Variable, Value)> {
-        let variables = self.scopes.iter().flat_map(|scope| &scope.variables);
-        variables
-            .map(|variable| (variable, self.value(variable)))
-            .collect()
-    }
-
-    /// Names, types and values, as GDB writes them, and whether each is a parameter.
-    pub fn locals(&self) -> Vec<(String, String, String, bool)> {
-        let types = &self.memory.symbols.types;
-        let text = |(variable, value): (&Variable, Value)| {
-            (
-                variable.name.clone(),
-                types.name(variable.of),
-                self.memory.text(&value),
-                variable.is_parameter,
-            )
-        };
-        self.variables().into_iter().map(text).collect()
+    pub(crate) fn locals_in_scope(&self) -> impl Iterator<Item = &'a Variable> {
+        self.scopes.iter().flat_map(|scope| &scope.variables)
     }
 
     /// The value of a variable.
     pub(crate) fn value(&self, variable: &Variable) -> Value {
         let bytes = self.memory.symbols.types.bytes(variable.of);
         let base = self.function.map(|function| &function.frame_base);
-        let frame = &self.frames[self.index];
         let context = Context {
             chip: self.memory.chip,
-            frame,
-            frame_base: base.unwrap_or(&crate::location::Place::None),
+            frame: &self.frames[self.index],
+            frame_base: base.unwrap_or(&Place::None),
             passed: &|register| self.passed(register),
         };
-        Value {
-            of: variable.of,
-            spot: context.spot(&variable.place, bytes),
-            bits: None,
-        }
+        Value::new(variable.of, context.spot(&variable.place, bytes))
     }
 
     /// What the caller passed in a register, where its call says so.
     fn passed(&self, register: u8) -> Option<u64> {
         let caller = self.frames.get(self.index + 1)?;
         let function = self.memory.symbols.function(caller.address_in_code())?;
-        let (_, code) = function
-            .call(caller.program_counter)?
-            .iter()
-            .find(|(own, _)| *own == register)?;
+        let mut passed = function.call(caller.program_counter)?.iter();
+        let (_, code) = passed.find(|(own, _)| *own == register)?;
         let context = Context {
             chip: self.memory.chip,
             frame: caller,
@@ -177,30 +149,18 @@ impl Names for CallFrame<'_> {
         if name.starts_with('$') {
             return register(name, self.memory, |number| frame.register(number));
         }
-        let mut locals = self.scopes.iter().flat_map(|scope| &scope.variables);
-        if let Some(local) = locals.find(|variable| variable.name == name) {
+        let locals = || self.locals_in_scope();
+        if let Some(local) = locals().find(|variable| variable.name == name) {
             return Some(Item::Value(self.value(local)));
         }
-        let mut all = self.scopes.iter().flat_map(|scope| &scope.variables);
-        if let Some(this) = all.find(|variable| variable.name == "this")
+        if let Some(this) = locals().find(|variable| variable.name == "this")
             && let Some((address, of)) = self.memory.target(&self.value(this))
+            && let Some(found) = member(self.memory, &Value::at(address, of), name)
         {
-            let whole = Value {
-                of,
-                spot: Some(crate::spot::Spot::Memory(address)),
-                bits: None,
-            };
-            if let Some(found) = member(self.memory, &whole, name) {
-                return Some(Item::Value(found));
-            }
+            return Some(Item::Value(found));
         }
         // Those of the same file come before others of this name.
-        let unit = self
-            .scopes
-            .iter()
-            .flat_map(|scope| &scope.variables)
-            .map(|variable| variable.unit)
-            .next();
+        let unit = locals().next().map(|variable| variable.unit);
         let globals = symbols.globals.iter().chain(&symbols.registers);
         let mut named: Vec<&Variable> = globals.filter(|variable| variable.name == name).collect();
         named.sort_by_key(|variable| Some(variable.unit) != unit);
@@ -215,16 +175,13 @@ impl Names for CallFrame<'_> {
     }
 
     fn all(&self) -> Vec<String> {
-        let locals = self.scopes.iter().flat_map(|scope| &scope.variables);
-        let all = locals
-            .chain(self.memory.symbols.listed())
-            .map(|variable| variable.name.clone());
+        let globals = self.memory.symbols.listed();
         let mut names: Vec<String> = Vec::new();
-        all.for_each(|name| {
-            if !names.contains(&name) {
-                names.push(name);
+        for variable in self.locals_in_scope().chain(globals) {
+            if !names.contains(&variable.name) {
+                names.push(variable.name.clone());
             }
-        });
+        }
         names
     }
 }

@@ -63,10 +63,8 @@ impl Frame {
     }
 
     pub(crate) fn register(&self, number: usize) -> Piece {
-        self.registers
-            .get(number)
-            .copied()
-            .unwrap_or(Piece::Unknown)
+        let register = self.registers.get(number);
+        register.copied().unwrap_or(Piece::Unknown)
     }
 
     pub(crate) fn innermost(chip: &Chip) -> Frame {
@@ -114,15 +112,13 @@ impl Unwinder {
                 let Some((_, return_at)) = returns.first() else {
                     continue;
                 };
+                let of_byte = |(register, at): (&Register, i64)| (register.0 as u8, at);
                 rows.extend(counted(
                     Row {
                         addresses: row.start_address() as u32..row.end_address() as u32,
                         base: register.0,
                         offset,
-                        saved: saved
-                            .iter()
-                            .map(|(register, at)| (register.0 as u8, *at))
-                            .collect(),
+                        saved: saved.into_iter().map(of_byte).collect(),
                         return_at: *return_at,
                     },
                     &uncounted,
@@ -134,9 +130,8 @@ impl Unwinder {
     }
 
     fn row(&self, address: u32) -> Option<&Row> {
-        let after = self
-            .rows
-            .partition_point(|row| row.addresses.start <= address);
+        let rows = &self.rows;
+        let after = rows.partition_point(|row| row.addresses.start <= address);
         let row = self.rows.get(after.checked_sub(1)?)?;
         row.addresses.contains(&address).then_some(row)
     }
@@ -144,11 +139,8 @@ impl Unwinder {
     /// The CFA of a frame at an address with this stack pointer and Y.
     pub(crate) fn cfa(&self, address: u32, stack_pointer: u16, y: u16) -> Option<u16> {
         let row = self.row(address)?;
-        let base = if row.base == STACK_POINTER {
-            stack_pointer
-        } else {
-            y
-        };
+        let is_stack_pointer = row.base == STACK_POINTER;
+        let base = if is_stack_pointer { stack_pointer } else { y };
         Some(base.wrapping_add(row.offset as u16))
     }
 
@@ -287,11 +279,10 @@ fn return_address(chip: &Chip, at: u16) -> Option<u32> {
 
 /// Whether the instruction before an address [bytes] is a call.
 fn follows_call(chip: &Chip, address: u32) -> bool {
-    let calls = |at: Option<u32>, codes: &[Code]| {
-        at.is_some_and(|at| codes.contains(&operation(chip.cpu().flash(), at).code))
+    let before = |bytes: u32| {
+        let at = address.checked_sub(bytes)?;
+        Some(operation(chip.cpu().flash(), at).code)
     };
-    calls(
-        address.checked_sub(2),
-        &[Code::Rcall, Code::Icall, Code::Eicall],
-    ) || calls(address.checked_sub(4), &[Code::Call])
+    matches!(before(2), Some(Code::Rcall | Code::Icall | Code::Eicall))
+        || before(4) == Some(Code::Call)
 }

@@ -1,7 +1,7 @@
 //! Values as GDB writes them: `97 'a'`, `0x800208 <pts+6>`, `{x = 1, y = 2.5}`.
 
 use crate::spot::Spot;
-use crate::symbols::{Symbols, Type, TypeId};
+use crate::symbols::{Member, Symbols, Type, TypeId};
 use gimli::constants;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::space::DATA;
@@ -13,7 +13,7 @@ const REPEATS: usize = 10;
 /// Deepest structure in a structure that is written.
 const DEEPEST: usize = 8;
 /// What stands for a value that is nowhere.
-pub const OPTIMISED_OUT: &str = "<optimized out>";
+pub(crate) const OPTIMISED_OUT: &str = "<optimized out>";
 
 /// A typed value somewhere.
 #[derive(Clone, Debug)]
@@ -23,6 +23,33 @@ pub(crate) struct Value {
     pub(crate) spot: Option<Spot>,
     /// Of a bit field: its lowest bit, and how many.
     pub(crate) bits: Option<(u64, u64)>,
+}
+
+impl Value {
+    /// A whole one at this place, no bit field.
+    pub(crate) fn new(of: Option<TypeId>, spot: Option<Spot>) -> Value {
+        Value {
+            of,
+            spot,
+            bits: None,
+        }
+    }
+
+    /// One in memory.
+    pub(crate) fn at(address: u32, of: Option<TypeId>) -> Value {
+        Value::new(of, Some(Spot::Memory(address)))
+    }
+
+    /// A part of it, so many bytes from its beginning.
+    fn part(&self, of: Option<TypeId>, offset: usize, bytes: usize) -> Value {
+        let spot = self.spot.as_ref();
+        Value::new(of, spot.map(|spot| spot.part(offset, bytes)))
+    }
+
+    /// An element of it as an array of elements of so many bytes.
+    pub(crate) fn element(&self, of: Option<TypeId>, index: usize, bytes: usize) -> Value {
+        self.part(of, index.saturating_mul(bytes), bytes)
+    }
 }
 
 /// A number, to calculate with.
@@ -41,10 +68,8 @@ pub(crate) struct Memory<'a> {
 
 impl Memory<'_> {
     fn bytes(&self, value: &Value) -> Option<Vec<u8>> {
-        value
-            .spot
-            .as_ref()?
-            .read(self.chip, self.symbols.types.bytes(value.of))
+        let bytes = self.symbols.types.bytes(value.of);
+        value.spot.as_ref()?.read(self.chip, bytes)
     }
 
     /// The value of a scalar.
@@ -59,28 +84,24 @@ impl Memory<'_> {
             0 => 0,
             _ => (raw << (64 - bits)) as i64 >> (64 - bits),
         };
-        match self.symbols.types.plain(value.of)? {
+        let is_signed = match self.symbols.types.plain(value.of)? {
             Type::Base {
                 encoding, bytes, ..
-            } => Some(match *encoding {
-                constants::DW_ATE_float if *bytes == 4 => {
-                    Number::Real(f32::from_bits(raw as u32).into())
+            } => match (*encoding, bytes) {
+                (constants::DW_ATE_float, 4) => {
+                    return Some(Number::Real(f32::from_bits(raw as u32).into()));
                 }
-                constants::DW_ATE_float if *bytes == 8 => Number::Real(f64::from_bits(raw)),
-                constants::DW_ATE_signed | constants::DW_ATE_signed_char => {
-                    Number::Integer(signed())
-                }
-                _ => Number::Integer(raw as i64),
-            }),
-            Type::Enumeration { values, .. } => {
-                Some(match values.iter().any(|(_, value)| *value < 0) {
-                    true => Number::Integer(signed()),
-                    false => Number::Integer(raw as i64),
-                })
-            }
-            Type::Pointer { .. } => Some(Number::Integer(raw as i64)),
-            _ => None,
-        }
+                (constants::DW_ATE_float, 8) => return Some(Number::Real(f64::from_bits(raw))),
+                (of, _) => [constants::DW_ATE_signed, constants::DW_ATE_signed_char].contains(&of),
+            },
+            Type::Enumeration { values, .. } => values.iter().any(|(_, value)| *value < 0),
+            Type::Pointer { .. } => false,
+            _ => return None,
+        };
+        Some(Number::Integer(match is_signed {
+            true => signed(),
+            false => raw as i64,
+        }))
     }
 
     /// Where a pointer points; into the flash if it is one to a function.
@@ -104,11 +125,7 @@ impl Memory<'_> {
             Some(Type::Pointer {
                 is_reference: true, ..
             }) => match self.target(&value) {
-                Some((address, of)) => Value {
-                    of,
-                    spot: Some(Spot::Memory(address)),
-                    bits: None,
-                },
+                Some((address, of)) => Value::at(address, of),
                 None => value,
             },
             _ => value,
@@ -118,41 +135,24 @@ impl Memory<'_> {
     /// Its parts: members, elements, what it points to.
     pub(crate) fn parts(&self, value: &Value) -> Vec<(String, Value)> {
         let types = &self.symbols.types;
-        let part = |of: Option<TypeId>, offset: usize| Value {
-            of,
-            spot: value
-                .spot
-                .as_ref()
-                .map(|spot| spot.part(offset, types.bytes(of))),
-            bits: None,
-        };
         match types.plain(value.of) {
-            Some(Type::Record { members, .. }) => members
-                .iter()
-                .map(|member| {
-                    (
-                        member.name.clone(),
-                        Value {
-                            bits: member.bits,
-                            ..part(member.of, member.offset)
-                        },
-                    )
-                })
-                .collect(),
+            Some(Type::Record { members, .. }) => {
+                let part = |member: &Member| {
+                    let bytes = types.bytes(member.of);
+                    let mut part = value.part(member.of, member.offset, bytes);
+                    part.bits = member.bits;
+                    (member.name.clone(), part)
+                };
+                members.iter().map(part).collect()
+            }
             Some(Type::Array { of, count }) => {
                 let bytes = types.bytes(*of);
-                (0..*count)
-                    .map(|index| (format!("[{index}]"), part(*of, index * bytes)))
-                    .collect()
+                let element = |index| (format!("[{index}]"), value.element(*of, index, bytes));
+                (0..*count).map(element).collect()
             }
             Some(Type::Pointer { .. }) => match self.target(value) {
-                Some((address, Some(of))) if types.bytes(Some(of)) > 0 => {
-                    let value = Value {
-                        of: Some(of),
-                        spot: Some(Spot::Memory(address)),
-                        bits: None,
-                    };
-                    vec![("*".into(), value)]
+                Some((address, of)) if types.bytes(of) > 0 => {
+                    vec![("*".into(), Value::at(address, of))]
                 }
                 _ => Vec::new(),
             },
@@ -188,19 +188,16 @@ impl Memory<'_> {
         match types.plain(value.of) {
             _ if depth > DEEPEST => "{...}".into(),
             Some(Type::Record { members, .. }) => {
-                let parts =
-                    self.parts(value)
-                        .into_iter()
-                        .zip(members)
-                        .map(|((name, part), member)| {
-                            let text = self.text_within(&part, depth + 1);
-                            match (member.is_base, name.is_empty()) {
-                                (true, _) => format!("<{name}> = {text}"),
-                                (false, true) => text,
-                                (false, false) => format!("{name} = {text}"),
-                            }
-                        });
-                format!("{{{}}}", parts.collect::<Vec<_>>().join(", "))
+                let parts = self.parts(value).into_iter().zip(members);
+                let texts = parts.map(|((name, part), member)| {
+                    let text = self.text_within(&part, depth + 1);
+                    match (member.is_base, name.is_empty()) {
+                        (true, _) => format!("<{name}> = {text}"),
+                        (false, true) => text,
+                        (false, false) => format!("{name} = {text}"),
+                    }
+                });
+                format!("{{{}}}", texts.collect::<Vec<_>>().join(", "))
             }
             Some(Type::Array { of, count }) => self.array_text(value, *of, *count, depth),
             _ => self
@@ -216,20 +213,7 @@ impl Memory<'_> {
             return quoted(&bytes);
         }
         let bytes = self.symbols.types.bytes(of);
-        let element = |index: usize| {
-            let spot = value
-                .spot
-                .as_ref()
-                .map(|spot| spot.part(index * bytes, bytes));
-            self.text_within(
-                &Value {
-                    of,
-                    spot,
-                    bits: None,
-                },
-                depth + 1,
-            )
-        };
+        let element = |index| self.text_within(&value.element(of, index, bytes), depth + 1);
         let (mut texts, mut index) = (Vec::new(), 0);
         while index < count && texts.len() < MOST_ELEMENTS {
             let text = element(index);
@@ -260,15 +244,13 @@ impl Memory<'_> {
         match types.plain(value.of)? {
             Type::Pointer { to, is_reference } => {
                 let (address, _) = self.target(value)?;
-                if *is_reference {
-                    let target = Value {
-                        of: *to,
-                        spot: Some(Spot::Memory(address)),
-                        bits: None,
-                    };
-                    return Some(format!("@0x{address:x}: {}", self.text_within(&target, 1)));
-                }
-                Some(self.pointer_text(address, *to))
+                Some(match is_reference {
+                    true => {
+                        let target = self.text_within(&Value::at(address, *to), 1);
+                        format!("@0x{address:x}: {target}")
+                    }
+                    false => self.pointer_text(address, *to),
+                })
             }
             Type::Enumeration { values, .. } => {
                 let Number::Integer(number) = self.number(value)? else {
@@ -291,7 +273,6 @@ impl Memory<'_> {
                 }
                 Number::Integer(number) => number.to_string(),
             }),
-            Type::Function { .. } => None,
             _ => None,
         }
     }
@@ -302,14 +283,10 @@ impl Memory<'_> {
             0 => "0x0".into(),
             _ => format!("0x{address:x}"),
         };
-        let named = self.symbols.named(address);
-        if let Some((name, offset)) = named {
-            let more = if offset > 0 {
-                format!("+{offset}")
-            } else {
-                String::new()
-            };
-            text += &format!(" <{name}{more}>");
+        match self.symbols.named(address) {
+            Some((name, 0)) => text += &format!(" <{name}>"),
+            Some((name, offset)) => text += &format!(" <{name}+{offset}>"),
+            None => {}
         }
         if self.is_character(to) && address & 0xFFFF != 0 {
             let bytes = (address..)
@@ -323,24 +300,21 @@ impl Memory<'_> {
 
 /// Little-endian bytes as a number; the first eight.
 pub(crate) fn wide(bytes: &[u8]) -> u64 {
-    bytes
-        .iter()
-        .take(8)
-        .rev()
-        .fold(0, |number, byte| number << 8 | u64::from(*byte))
+    let bytes = bytes.iter().take(8).rev();
+    bytes.fold(0, |number, byte| number << 8 | u64::from(*byte))
 }
 
 /// A text up to its end.
 fn quoted(bytes: &[u8]) -> String {
-    let end = bytes
-        .iter()
-        .position(|byte| *byte == 0)
-        .unwrap_or(bytes.len());
-    let text: String = bytes[..end.min(MOST_ELEMENTS)]
-        .iter()
-        .map(|byte| escaped(*byte, b'"'))
-        .collect();
-    let more = if end > MOST_ELEMENTS { "..." } else { "" };
+    let mut texts = bytes.split(|byte| *byte == 0);
+    let whole = texts.next().unwrap_or_default();
+    let shown = whole.iter().take(MOST_ELEMENTS);
+    let text: String = shown.map(|byte| escaped(*byte, b'"')).collect();
+    let more = if whole.len() > MOST_ELEMENTS {
+        "..."
+    } else {
+        ""
+    };
     format!("\"{text}\"{more}")
 }
 

@@ -77,8 +77,6 @@ fn rmse_m(runs: &[RunScore]) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::fit::Identified;
-    use crate::replay::Nuisance;
-    use rumbo_plant::params::Params;
 
     fn runs(rmse_rpm: f64, r2: f64) -> Vec<RunScore> {
         let wheel = WheelError {
@@ -87,38 +85,19 @@ mod tests {
             rows: 100,
         };
         vec![RunScore {
-            name: "a.csv".into(),
-            nuisance: Nuisance {
-                battery_v: 7.4,
-                floor_scale: 1.0,
-                scrub_scale: 1.0,
-            },
             whole: Some([wheel; 2]),
-            whole_straight: None,
-            whole_turning: None,
-            ahead: None,
-            ahead_straight: None,
-            ahead_turning: None,
-            range_rmse_m: None,
+            ..RunScore::default()
         }]
     }
 
     fn found(runs: Vec<RunScore>, from_runs: f64) -> Identification {
         Identification {
-            params: Params::default(),
             parameters: vec![Identified {
-                keys: vec!["motor.back_emf_v_s".into()],
-                value: 0.3,
-                uncertainty: 0.01,
-                unit: "V s".into(),
                 from_runs,
-                shown_by: "",
+                ..Identified::default()
             }],
-            dead_zone_air_pwm: 0.0,
-            dead_zone_floor_pwm: 0.0,
             runs,
-            cost: 0.0,
-            disagreement: 1.0,
+            ..Identification::default()
         }
     }
 

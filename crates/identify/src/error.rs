@@ -1,7 +1,6 @@
 //! What can go wrong between a log and its parameters.
 
-use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Why a run could not be identified. Each message names the place and the remedy.
@@ -40,9 +39,16 @@ pub enum IdentifyError {
         /// What is allowed.
         allowed: &'static str,
     },
-    /// A log of ranges cannot be used.
-    #[error(transparent)]
-    Sonar(SonarLogError),
+    /// A row of a log of ranges is not what it should be.
+    #[error("{path}, line {line}: {cause}")]
+    Row {
+        /// The file.
+        path: PathBuf,
+        /// Line, the header being 1.
+        line: u64,
+        /// What is wrong with it.
+        cause: String,
+    },
     /// No log shows speeds or a distance ahead.
     #[error(
         "no log shows wheel speeds (modes 5 to 7) or a wall ahead (modes 1, 2); add one that does"
@@ -72,23 +78,19 @@ pub enum IdentifyError {
     Interrupted,
 }
 
-/// A log of ranges that cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SonarLogError {
-    pub(crate) path: PathBuf,
-    /// 1-based; 0 if the file as a whole is meant.
-    pub(crate) line: u64,
-    pub(crate) cause: String,
-}
-
-impl fmt::Display for SonarLogError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.path.display())?;
-        if self.line > 0 {
-            write!(f, ", line {}", self.line)?;
+impl IdentifyError {
+    /// A file that cannot be used as a whole.
+    pub(crate) fn read(path: &Path, cause: impl ToString) -> Self {
+        Self::Read {
+            path: path.into(),
+            cause: cause.to_string(),
         }
-        write!(f, ": {}", self.cause)
+    }
+
+    /// A run longer than is compared.
+    pub(crate) fn too_long(path: &Path) -> Self {
+        let most = crate::log::LONGEST_MS / 1_000;
+        let remedy = "the most that is compared; cut it into shorter runs";
+        Self::read(path, format!("lasts longer than {most} s, {remedy}"))
     }
 }
-
-impl std::error::Error for SonarLogError {}

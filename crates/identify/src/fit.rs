@@ -34,7 +34,7 @@ pub(crate) const SDS_95: f64 = 1.96;
 const SPREAD: f64 = 1.0;
 
 /// One identified parameter.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Identified {
     /// Dotted keys below `[plant]` that have this value.
     pub keys: Vec<String>,
@@ -64,7 +64,7 @@ pub struct AgainstTruth {
 }
 
 /// The outcome of an identification.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Identification {
     /// All parameters of the plant, the identified ones among them.
     #[serde(skip)]
@@ -103,13 +103,6 @@ impl Identification {
     }
 }
 
-/// The outcome of a check: nothing fitted but three nuisance values per run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Check {
-    /// How well each run is repeated.
-    pub runs: Vec<RunScore>,
-}
-
 /// Fits the plant to all runs together, from the values in `start` and, unless `generations` is 0, also from what is believed
 /// beforehand, with a search around the better of the two, each round so many generations ([`GENERATIONS`] suffice).
 ///
@@ -125,7 +118,7 @@ pub fn identify(
     let problem = Problem::new(&UNKNOWNS, &logs, start).until(Some(progress.stop));
     (progress.report)(0.0);
     let fit = |params: &Params| -> Result<DVector<f64>, IdentifyError> {
-        let runs = check(&logs, params)?.runs;
+        let runs = check(&logs, params)?;
         let nuisances: Vec<Nuisance> = runs.iter().map(|run| run.nuisance).collect();
         Ok(descend(problem.clone(), &problem.point(params, &nuisances))?.1)
     };
@@ -180,13 +173,11 @@ pub fn identify(
 ///
 /// # Errors
 /// As [`identify`].
-pub fn check(logs: &[DriveLog], params: &Params) -> Result<Check, IdentifyError> {
+pub fn check(logs: &[DriveLog], params: &Params) -> Result<Vec<RunScore>, IdentifyError> {
     let logs = useful(logs)?;
-    let mut runs = Vec::new();
-    for source in logs.chunk_by(|a, b| a.source == b.source) {
-        runs.extend(check_source(source, params)?);
-    }
-    Ok(Check { runs })
+    let sources = logs.chunk_by(|a, b| a.source == b.source);
+    let runs: Result<Vec<_>, _> = sources.map(|source| check_source(source, params)).collect();
+    Ok(runs?.concat())
 }
 
 /// Fits the plant to all runs but one, from `start`, and repeats that one on it: for each run in turn. What a plant
@@ -224,10 +215,8 @@ fn check_source(logs: &[DriveLog], params: &Params) -> Result<Vec<RunScore>, Ide
     let problem = Problem::new(&[], logs, params);
     // A coarse grid first: a battery too low, or a floor too hard to turn on, is a robot that never moves, and no slope leads
     // away from that.
-    let scrubs: &[f64] = match logs
-        .iter()
-        .any(|log| log.rows.iter().any(LogRow::is_turning))
-    {
+    let mut rows = logs.iter().flat_map(|log| &log.rows);
+    let scrubs: &[f64] = match rows.any(LogRow::is_turning) {
         true => &[-1.0, 0.0, 1.0],
         false => &[0.0],
     };
@@ -256,10 +245,9 @@ fn useful(logs: &[DriveLog]) -> Result<Vec<DriveLog>, IdentifyError> {
         Seen::SidePair => log.pair.is_some_and(|pair| pair.beside_wall().is_some()),
     };
     let useful: Vec<DriveLog> = logs.iter().filter(shows_drive).cloned().collect();
-    if useful.is_empty() {
-        Err(IdentifyError::NothingToFit)
-    } else {
-        Ok(useful)
+    match useful.is_empty() {
+        true => Err(IdentifyError::NothingToFit),
+        false => Ok(useful),
     }
 }
 
@@ -347,14 +335,9 @@ fn correlated(
     inverse: &DMatrix<f64>,
 ) -> DMatrix<f64> {
     let unknowns = z.len();
-    let of_block = || {
-        (
-            DMatrix::zeros(unknowns, unknowns),
-            DVector::<f64>::zeros(unknowns),
-        )
-    };
-    let mut blocks = BTreeMap::new();
-    let mut middle = DMatrix::zeros(unknowns, unknowns);
+    let square = || DMatrix::zeros(unknowns, unknowns);
+    let of_block = || (square(), DVector::<f64>::zeros(unknowns));
+    let (mut blocks, mut middle) = (BTreeMap::new(), square());
     for (i, block) in problem.blocks(z).iter().enumerate() {
         let slopes = jacobian.row(i).transpose();
         let curvature = &slopes * slopes.transpose();

@@ -36,18 +36,15 @@ pub fn lacks(rows: &[rumbo_log::Row]) -> Vec<&'static str> {
 /// # Errors
 /// One without the PWM of both wheels, or without their speeds and a distance ahead; one that is too long.
 pub(crate) fn foreign(path: &Path, log: &Log) -> Result<DriveLog, IdentifyError> {
-    let wrong = |cause: String| IdentifyError::Read {
-        path: path.into(),
-        cause,
-    };
     let missing = lacks(&log.rows);
     if !missing.is_empty() {
-        return Err(wrong(format!(
+        let cause = format!(
             "has no {}: an identification needs what drove both wheels and how they turned; import it again, as with \
              --columns auto,{}=COLUMN",
             missing.join(", "),
             missing.join("=COLUMN,")
-        )));
+        );
+        return Err(IdentifyError::read(path, cause));
     }
     let has = |names: [&str; 2]| {
         names
@@ -67,10 +64,7 @@ pub(crate) fn foreign(path: &Path, log: &Log) -> Result<DriveLog, IdentifyError>
             continue;
         };
         if at_ms > LONGEST_MS {
-            let most = LONGEST_MS / 1_000;
-            return Err(wrong(format!(
-                "lasts longer than {most} s, the most that is compared; cut it into shorter runs"
-            )));
+            return Err(IdentifyError::too_long(path));
         }
         let pair = |names: [&str; 2]| Some([row.signal(names[0])?, row.signal(names[1])?]);
         let range_m = row.signal(AHEAD).filter(|range_m| range_m.is_finite());
@@ -94,27 +88,12 @@ pub(crate) fn foreign(path: &Path, log: &Log) -> Result<DriveLog, IdentifyError>
                 end_ms: at_ms,
                 length_ms: gap_ms.max(WINDOW_MS),
             }; 2],
-            edgeless: [false; 2],
+            ..LogRow::default()
         });
     }
     if rows.iter().filter(|row| row.duty != [0.0; 2]).count() < 2 {
-        return Err(wrong(
-            "the wheels are never driven: PWM is zero throughout".into(),
-        ));
+        let cause = "the wheels are never driven: PWM is zero throughout";
+        return Err(IdentifyError::read(path, cause));
     }
-    let name = path
-        .file_name()
-        .map_or_else(|| "log".into(), |name| name.to_string_lossy().into_owned());
-    Ok(DriveLog {
-        name,
-        source: path.into(),
-        program: RobotProgram::Another,
-        on_floor: true,
-        battery_v: None,
-        seen,
-        rows,
-        window_phase_ms: None,
-        pair: None,
-        damaged: Vec::new(),
-    })
+    Ok(DriveLog::new(path, RobotProgram::Another, seen, rows))
 }

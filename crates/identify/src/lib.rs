@@ -11,15 +11,13 @@
 //! ```
 //!
 //! What differs from run to run, the battery's voltage, the floor's friction and scrubbing, is a nuisance per run;
-//! [`check`] fits nothing else. Derivation and choice of the unknowns: [`problem`].
+//! [`check`] fits nothing else. Derivation and choice of the unknowns: `problem`.
 //!
 //! It knows the plant, and the texts it is given: no scenario, no simulator, no files of the project.
 
 pub mod dialect;
 pub mod plan;
-pub mod problem;
 pub mod sonar_stats;
-pub mod unknowns;
 
 mod contradiction;
 mod descent;
@@ -30,6 +28,7 @@ mod foreign;
 mod log;
 mod pair;
 mod plot;
+mod problem;
 mod progress;
 mod recordings;
 mod replay;
@@ -40,6 +39,7 @@ mod row;
 mod score;
 mod shown;
 mod stretches;
+mod unknowns;
 mod wall;
 
 #[cfg(test)]
@@ -47,7 +47,7 @@ mod tests;
 
 pub use error::IdentifyError;
 pub use fit::{
-    AgainstTruth, Check, GENERATIONS, Identification, Identified, check, identify, leave_one_out,
+    AgainstTruth, GENERATIONS, Identification, Identified, check, identify, leave_one_out,
 };
 pub use foreign::lacks;
 pub use log::{DriveLog, RobotProgram};

@@ -70,10 +70,7 @@ impl DriveLog {
     /// # Errors
     /// A file that cannot be read, a header of no mode with PWM, a row with a value that is no number.
     pub fn read(path: &Path) -> Result<Self, IdentifyError> {
-        let file = std::fs::File::open(path).map_err(|cause| IdentifyError::Read {
-            path: path.into(),
-            cause: cause.to_string(),
-        })?;
+        let file = std::fs::File::open(path).map_err(|cause| IdentifyError::read(path, cause))?;
         Self::parse(path, file)
     }
 
@@ -85,10 +82,7 @@ impl DriveLog {
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
             .from_reader(source);
-        let bad = |error: csv::Error| IdentifyError::Read {
-            path: path.into(),
-            cause: error.to_string(),
-        };
+        let bad = |error: csv::Error| IdentifyError::read(path, error);
         let header: Vec<String> = reader
             .headers()
             .map_err(bad)?
@@ -103,9 +97,6 @@ impl DriveLog {
             Signals::Ranges { .. } if is_front => Seen::FrontRange,
             Signals::Ranges { .. } => Seen::SidePair,
         };
-        let name = path
-            .file_name()
-            .map_or_else(|| "log".into(), |name| name.to_string_lossy().into_owned());
         let window_phase_ms = if seen == Seen::Speeds {
             window_phase_ms(&rows)
         } else {
@@ -122,17 +113,27 @@ impl DriveLog {
         let is_pair = rows.iter().any(|row| row.range_m[0] != row.range_m[1]);
         let pair = is_pair.then(|| SonarPair::of(&rows, seen == Seen::SidePair));
         Ok(Self {
-            name,
+            window_phase_ms,
+            pair,
+            damaged,
+            ..Self::new(path, RobotProgram::Original, seen, rows)
+        })
+    }
+
+    /// A run on the floor of which nothing else is known.
+    pub(crate) fn new(path: &Path, program: RobotProgram, seen: Seen, rows: Vec<LogRow>) -> Self {
+        Self {
+            name: name_of(path),
             source: path.into(),
-            program: RobotProgram::Original,
+            program,
             on_floor: true,
             battery_v: None,
             seen,
             rows,
-            window_phase_ms,
-            pair,
-            damaged,
-        })
+            window_phase_ms: None,
+            pair: None,
+            damaged: Vec::new(),
+        }
     }
 
     /// Length of the run, ms.
@@ -141,6 +142,12 @@ impl DriveLog {
         let last = self.rows.last();
         last.map_or(0, |row| row.at_ms.max(row.measured_ms()))
     }
+}
+
+/// A file's name without its folder.
+pub(crate) fn name_of(path: &Path) -> String {
+    let name = path.file_name();
+    name.map_or_else(|| "log".into(), |name| name.to_string_lossy().into_owned())
 }
 
 /// When the counting window ended whose speed a row shows, ms. Unknown phases count as half a window old.
@@ -235,20 +242,16 @@ impl Columns {
         reader: &mut csv::Reader<impl std::io::Read>,
         damaged: &mut Vec<IdentifyError>,
     ) -> Result<(Vec<LogRow>, bool), IdentifyError> {
-        let bad = |cause: String| IdentifyError::Read {
-            path: path.into(),
-            cause,
-        };
         let (mut rows, mut is_front) = (Vec::new(), false);
         let (mut at_ms, mut lasted_ms) = (0_usize, 0);
         for record in reader.records() {
             let record = match record {
                 Ok(record) => record,
                 Err(error) if error.position().is_some() => {
-                    damaged.push(bad(error.to_string()));
+                    damaged.push(IdentifyError::read(path, error));
                     continue;
                 }
-                Err(error) => return Err(bad(error.to_string())),
+                Err(error) => return Err(IdentifyError::read(path, error)),
             };
             let fields = Fields {
                 path,
@@ -260,13 +263,10 @@ impl Columns {
             lasted_ms = *duration.as_ref().unwrap_or(&lasted_ms);
             at_ms += lasted_ms;
             if at_ms > LONGEST_MS {
-                return Err(bad(format!(
-                    "lasts longer than {} s, the most that is compared; cut it into shorter runs",
-                    LONGEST_MS / 1_000
-                )));
+                return Err(IdentifyError::too_long(path));
             }
             let row = duration.and_then(|_| self.row(&fields, at_ms));
-            match row.and_then(|row| Ok((row, self.is_front(&fields)?))) {
+            match row {
                 Ok((row, front)) => {
                     rows.push(row);
                     is_front = front;
@@ -278,30 +278,22 @@ impl Columns {
             return Err(damaged.swap_remove(0));
         }
         if rows.len() < 2 {
-            return Err(bad("fewer than two rows".into()));
+            return Err(IdentifyError::read(path, "fewer than two rows"));
         }
         Ok((rows, is_front))
     }
 
-    /// Whether the distances are to a wall ahead: modes 1 and 2.
-    fn is_front(&self, fields: &Fields<'_>) -> Result<bool, IdentifyError> {
-        let mode = self.mode.map_or(Ok(0.0), |column| fields.number(column))?;
-        Ok(mode == 1.0 || mode == 2.0)
-    }
-
-    fn row(&self, fields: &Fields<'_>, at_ms: usize) -> Result<LogRow, IdentifyError> {
+    /// A row, and whether its distances are to a wall ahead: modes 1 and 2.
+    fn row(&self, fields: &Fields<'_>, at_ms: usize) -> Result<(LogRow, bool), IdentifyError> {
         let pair =
             |columns: [usize; 2]| Ok([fields.number(columns[0])?, fields.number(columns[1])?]);
         let pwm = pair(self.pwm)?;
-        let is_front = self.is_front(fields)?;
+        let mode = self.mode.map_or(Ok(0.0), |column| fields.number(column))?;
+        let is_front = mode == 1.0 || mode == 2.0;
         let mut row = LogRow {
             at_ms,
             duty: pwm.map(|pwm| (pwm / 255.0).clamp(-1.0, 1.0)),
-            reference_rad_s: [0.0; 2],
-            speed_rad_s: [0.0; 2],
-            range_m: [0.0; 2],
-            window: [Window::default(); 2],
-            edgeless: [false; 2],
+            ..LogRow::default()
         };
         match self.signals {
             Signals::Speeds { speed, reference } => {
@@ -322,7 +314,7 @@ impl Columns {
                 }
             }
         }
-        Ok(row)
+        Ok((row, is_front))
     }
 }
 

@@ -50,7 +50,7 @@ struct Day {
 
 /// Unknowns, runs, and a point among the unknowns.
 #[derive(Clone)]
-pub struct Problem<'a> {
+pub(crate) struct Problem<'a> {
     unknowns: &'a [Unknown],
     logs: &'a [DriveLog],
     /// The number of each log's source.
@@ -71,8 +71,7 @@ pub struct Problem<'a> {
 impl<'a> Problem<'a> {
     /// All of `unknowns` around what is believed, the rest as in `start`, and three nuisance values per source. With
     /// logs of our program the unknowns are believed to be near `start`: it is a robot of that kind.
-    #[must_use]
-    pub fn new(unknowns: &'a [Unknown], logs: &'a [DriveLog], start: &Params) -> Self {
+    pub(crate) fn new(unknowns: &'a [Unknown], logs: &'a [DriveLog], start: &Params) -> Self {
         let is_the_reports = logs.iter().all(|log| log.program == RobotProgram::Original);
         let all = Params::limits();
         let limits = unknowns.iter().filter_map(|unknown| {
@@ -125,7 +124,6 @@ impl<'a> Problem<'a> {
     }
 
     /// The same problem, left unsolved when this is set.
-    #[must_use]
     pub(crate) fn until(self, stop: Option<&'a AtomicBool>) -> Self {
         Self { stop, ..self }
     }
@@ -141,14 +139,12 @@ impl<'a> Problem<'a> {
     }
 
     /// Number of unknowns with the nuisances.
-    #[must_use]
-    pub fn dimension(&self) -> usize {
+    pub(crate) fn dimension(&self) -> usize {
         self.z.len()
     }
 
     /// The value of unknown `index` at normalised `z`.
-    #[must_use]
-    pub fn value(&self, index: usize, z: f64) -> f64 {
+    pub(crate) fn value(&self, index: usize, z: f64) -> f64 {
         let Limit {
             min, max, nominal, ..
         } = &self.limits[index];
@@ -157,8 +153,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Change of that value per unit of `z`.
-    #[must_use]
-    pub fn slope(&self, index: usize, z: f64) -> f64 {
+    pub(crate) fn slope(&self, index: usize, z: f64) -> f64 {
         let Limit { min, max, .. } = &self.limits[index];
         let value = self.value(index, z);
         self.steepness(index) * (value - min) * (max - value) / (max - min)
@@ -189,15 +184,13 @@ impl<'a> Problem<'a> {
     }
 
     /// Unit of unknown `index`.
-    #[must_use]
-    pub fn unit(&self, index: usize) -> &'static str {
+    pub(crate) fn unit(&self, index: usize) -> &'static str {
         self.limits[index].unit
     }
 
     /// The point with the values in `params` and these nuisance values, one per log; those of a source are the first of
     /// its logs'.
-    #[must_use]
-    pub fn point(&self, params: &Params, nuisances: &[Nuisance]) -> DVector<f64> {
+    pub(crate) fn point(&self, params: &Params, nuisances: &[Nuisance]) -> DVector<f64> {
         let unknowns = self.limits.iter().enumerate().map(|(index, limit)| {
             let value = params.get(&limit.key).unwrap_or(limit.nominal);
             let relative = self.odds(index, value) / self.odds(index, limit.nominal);
@@ -220,8 +213,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The plant at `z`.
-    #[must_use]
-    pub fn plant(&self, z: &DVector<f64>) -> Params {
+    pub(crate) fn plant(&self, z: &DVector<f64>) -> Params {
         let mut params = self.start;
         for (index, unknown) in self.unknowns.iter().enumerate() {
             for key in unknown.keys {
@@ -233,8 +225,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The nuisance values of run `run` at `z`.
-    #[must_use]
-    pub fn nuisance(&self, run: usize, z: &DVector<f64>) -> Nuisance {
+    pub(crate) fn nuisance(&self, run: usize, z: &DVector<f64>) -> Nuisance {
         let source = self.sources[run];
         let at = self.unknowns.len() + NUISANCES * source;
         let Day {
@@ -250,14 +241,12 @@ impl<'a> Problem<'a> {
     }
 
     /// All residuals at `z`, each in standard deviations.
-    #[must_use]
-    pub fn residuals_at(&self, z: &DVector<f64>) -> DVector<f64> {
+    pub(crate) fn residuals_at(&self, z: &DVector<f64>) -> DVector<f64> {
         DVector::from_vec(self.measured(z).values)
     }
 
     /// The block of each residual: those of one block may have one cause. `None` for what is believed beforehand.
-    #[must_use]
-    pub fn blocks(&self, z: &DVector<f64>) -> Vec<Option<usize>> {
+    pub(crate) fn blocks(&self, z: &DVector<f64>) -> Vec<Option<usize>> {
         self.measured(z).blocks
     }
 
@@ -279,14 +268,12 @@ impl<'a> Problem<'a> {
     }
 
     /// Relative change below which a fit has converged. Timed speeds tell far more than counted ones.
-    #[must_use]
-    pub fn tolerance(&self) -> f64 {
+    pub(crate) fn tolerance(&self) -> f64 {
         if self.is_the_reports { 1e-5 } else { 1e-6 }
     }
 
     /// How many evaluations a fit may take, in units of its unknowns.
-    #[must_use]
-    pub fn patience(&self) -> usize {
+    pub(crate) fn patience(&self) -> usize {
         if self.is_the_reports { 4 } else { 8 }
     }
 
@@ -297,8 +284,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Half the sum of squares at `z`.
-    #[must_use]
-    pub fn cost(&self, z: &DVector<f64>) -> f64 {
+    pub(crate) fn cost(&self, z: &DVector<f64>) -> f64 {
         0.5 * self.residuals_at(z).norm_squared()
     }
 }
@@ -340,8 +326,7 @@ impl levenberg_marquardt::LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 }
 
 /// PWM at which the wheels start to turn, both alike, mean of wheels and directions.
-#[must_use]
-pub fn dead_zone_pwm(params: &Params, on_floor: bool) -> f64 {
+pub(crate) fn dead_zone_pwm(params: &Params, on_floor: bool) -> f64 {
     let mut params = *params;
     params.floor.roughness = 0.0;
     let drivetrain = Drivetrain::new(&params, Noise::new(0, 0), on_floor);

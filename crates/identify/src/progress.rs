@@ -1,6 +1,5 @@
 //! How far a fit is, and whether it goes on.
 
-use std::fmt;
 use std::sync::atomic::AtomicBool;
 
 /// What a fit reports to while it runs, and asks.
@@ -28,13 +27,5 @@ impl<'a> FitProgress<'a> {
     #[must_use]
     pub fn none() -> Self {
         Self::to(&|_| {})
-    }
-}
-
-impl fmt::Debug for FitProgress<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Progress")
-            .field("stop", &self.stop)
-            .finish_non_exhaustive()
     }
 }

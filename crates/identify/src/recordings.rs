@@ -74,7 +74,7 @@ impl Recordings {
         for path in paths {
             let bytes = bytes(path).map_err(|error| {
                 let cause = format!("cannot be read ({error}); give the path of a CSV or a log");
-                wrong(path, cause)
+                IdentifyError::read(path, cause)
             })?;
             let is_log = path.extension().is_some_and(|ending| ending == "mcap");
             match (is_log, recorded_csv(&bytes)) {
@@ -111,7 +111,7 @@ impl Recordings {
     /// As [`check`]; not where the sonars are all that is shown.
     pub fn check(&self, params: &Params) -> Result<RecordingsOutcome, IdentifyError> {
         let runs = match check(&self.drive, params) {
-            Ok(check) => check.runs,
+            Ok(runs) => runs,
             Err(IdentifyError::NothingToFit) if !self.sonars.is_empty() => Vec::new(),
             Err(error) => return Err(error),
         };
@@ -140,7 +140,8 @@ impl Recordings {
 
     /// A log of our own program, or one that was imported of another.
     fn add_log(&mut self, path: &Path, bytes: &[u8]) -> Result<(), IdentifyError> {
-        let log = Log::read_signals(Cursor::new(bytes)).map_err(|error| wrong(path, error))?;
+        let log = Log::read_signals(Cursor::new(bytes))
+            .map_err(|error| IdentifyError::read(path, error))?;
         let program = log
             .manifest
             .as_ref()
@@ -157,7 +158,7 @@ impl Recordings {
 
     /// A CSV of the original program.
     fn add_csv(&mut self, path: &Path, bytes: &[u8], alone: bool) -> Result<(), IdentifyError> {
-        let text = dialect::plain(bytes).map_err(|error| wrong(path, error))?;
+        let text = dialect::plain(bytes).map_err(|error| IdentifyError::read(path, error))?;
         let kind = csv::recognise(text.lines().next().unwrap_or_default());
         if kind == Some(RowKind::Mission) && !alone {
             let path = path.display();
@@ -170,16 +171,9 @@ impl Recordings {
         self.notes.extend(log.damaged.iter().map(left_out));
         self.drive.push(log);
         if kind == Some(RowKind::Distance) {
-            let log = SonarLog::parse(path, &text).map_err(IdentifyError::Sonar)?;
+            let log = SonarLog::parse(path, &text)?;
             self.sonars.push(log);
         }
         Ok(())
-    }
-}
-
-fn wrong(path: &Path, cause: impl ToString) -> IdentifyError {
-    IdentifyError::Read {
-        path: path.into(),
-        cause: cause.to_string(),
     }
 }

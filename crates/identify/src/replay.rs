@@ -57,7 +57,7 @@ pub(crate) struct Predicted {
 }
 
 /// What differs from run to run and no log says.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Nuisance {
     /// Open-circuit voltage of the battery, V.
     pub battery_v: f64,
@@ -87,7 +87,6 @@ pub(crate) struct Trace {
 
 impl<'a> Replay<'a> {
     /// The run of this log on a plant with these parameters.
-    #[must_use]
     pub(crate) fn new(log: &'a DriveLog, params: &Params, nuisance: Nuisance) -> Self {
         let mut params = *params;
         params.battery.open_circuit_v = nuisance.battery_v;
@@ -105,7 +104,6 @@ impl<'a> Replay<'a> {
     }
 
     /// The whole run from rest.
-    #[must_use]
     pub(crate) fn whole(&self) -> Trace {
         let mut trace = Trace {
             angle_rad: Vec::new(),
@@ -129,7 +127,6 @@ impl<'a> Replay<'a> {
     }
 
     /// Speeds that the rows of the log would have shown in this trace, rad/s.
-    #[must_use]
     pub(crate) fn speeds(&self, trace: &Trace) -> Vec<[f64; 2]> {
         let speed = |row: &LogRow| self.shown(&row.window, &trace.angle_rad, 0);
         self.log.rows.iter().map(speed).collect()
@@ -153,7 +150,6 @@ impl<'a> Replay<'a> {
     }
 
     /// The state at the end of each row's window.
-    #[must_use]
     pub(crate) fn observe(&self, correct: Correct) -> Vec<Observed> {
         let mut now = Observed {
             state: self.start(),
@@ -182,7 +178,6 @@ impl<'a> Replay<'a> {
 
     /// Predicts half a second from the state `observed` at row `index`: the row predicted and its speeds, rad/s.
     /// `None` near the end of the log.
-    #[must_use]
     pub(crate) fn ahead(&self, index: usize, observed: &Observed) -> Option<(usize, [f64; 2])> {
         let target = self.row_after(index, AHEAD_MS)?;
         let (angle_rad, from_ms) = self.run_on(index, observed, target);

@@ -1,6 +1,6 @@
 //! Identification in words: tables for a terminal.
 
-use crate::fit::{Check, Identification, SDS_95};
+use crate::fit::{Identification, SDS_95};
 use crate::replay::Nuisance;
 use crate::score::{RunScore, WheelError};
 use std::collections::BTreeMap;
@@ -17,15 +17,12 @@ impl fmt::Display for Identification {
             "parameter", "value", "+- (95 %)", "unit"
         )?;
         for parameter in &self.parameters {
-            let unit = if parameter.unit == "1" {
-                ""
-            } else {
-                &parameter.unit
+            let unit = match &*parameter.unit {
+                "1" => "",
+                unit => unit,
             };
-            let (value, uncertainty) = (
-                significant(parameter.value),
-                significant(SDS_95 * parameter.uncertainty),
-            );
+            let value = significant(parameter.value);
+            let uncertainty = significant(SDS_95 * parameter.uncertainty);
             let share = 100.0 * parameter.from_runs;
             for key in &parameter.keys {
                 writeln!(
@@ -58,12 +55,6 @@ impl Identification {
             let names = names.join(", ");
             writeln!(f, "these runs hardly show {names}; what does: {experiment}")
         })
-    }
-}
-
-impl fmt::Display for Check {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.runs.iter().try_for_each(|run| write!(f, "{run}"))
     }
 }
 
@@ -120,7 +111,6 @@ fn words(error: &WheelError) -> String {
 }
 
 /// Four significant digits.
-#[must_use]
 pub(crate) fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

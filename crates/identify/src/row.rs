@@ -1,7 +1,7 @@
 //! One row of a recorded run.
 
 /// One row of a log.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LogRow {
     /// Time since the log's start, ms.
     pub at_ms: usize,
@@ -61,12 +61,8 @@ mod tests {
         for window in [[ends(80), ends(95)], [ends(95), ends(80)]] {
             let row = LogRow {
                 at_ms: 100,
-                duty: [0.0; 2],
-                reference_rad_s: [0.0; 2],
-                speed_rad_s: [0.0; 2],
-                range_m: [0.0; 2],
                 window,
-                edgeless: [false; 2],
+                ..LogRow::default()
             };
             assert_eq!(row.measured_ms(), 95);
         }

@@ -24,7 +24,7 @@ pub struct WheelError {
 }
 
 /// Errors of one run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RunScore {
     /// Name of the log.
     pub name: String,
@@ -47,19 +47,12 @@ pub struct RunScore {
 }
 
 /// Replays a run and compares.
-#[must_use]
 pub(crate) fn score(log: &DriveLog, params: &Params, nuisance: Nuisance) -> RunScore {
     let replay = Replay::new(log, params, nuisance);
     let mut score = RunScore {
         name: log.name.clone(),
         nuisance,
-        whole: None,
-        whole_straight: None,
-        whole_turning: None,
-        ahead: None,
-        ahead_straight: None,
-        ahead_turning: None,
-        range_rmse_m: None,
+        ..RunScore::default()
     };
     match log.seen {
         Seen::FrontRange | Seen::SidePair => {
@@ -77,12 +70,14 @@ pub(crate) fn score(log: &DriveLog, params: &Params, nuisance: Nuisance) -> RunS
                 .filter_map(|(index, observed)| replay.ahead(index, observed))
                 .map(|(target, speeds)| (&log.rows[target], speeds))
                 .collect();
-            score.whole = errors(&whole, |_| true);
-            score.whole_straight = errors(&whole, |row| !row.is_turning());
-            score.whole_turning = errors(&whole, LogRow::is_turning);
-            score.ahead = errors(&ahead, |_| true);
-            score.ahead_straight = errors(&ahead, |row| !row.is_turning());
-            score.ahead_turning = errors(&ahead, LogRow::is_turning);
+            let straight = |row: &LogRow| !row.is_turning();
+            let of = |pairs: &[Pair]| {
+                let [straight, turning] =
+                    [straight, LogRow::is_turning].map(|is| errors(pairs, is));
+                [errors(pairs, |_| true), straight, turning]
+            };
+            [score.whole, score.whole_straight, score.whole_turning] = of(&whole);
+            [score.ahead, score.ahead_straight, score.ahead_turning] = of(&ahead);
         }
     }
     score
@@ -94,22 +89,15 @@ type Pair<'a> = (&'a LogRow, [f64; 2]);
 fn errors(pairs: &[Pair<'_>], choose: impl Fn(&LogRow) -> bool) -> Option<[WheelError; 2]> {
     let chosen: Vec<&Pair<'_>> = pairs.iter().filter(|(row, _)| choose(row)).collect();
     let wheel = |i: usize| {
-        let n = chosen.len() as f64;
-        let mean = chosen
-            .iter()
-            .map(|(row, _)| row.speed_rad_s[i])
-            .sum::<f64>()
-            / n;
-        let variance = chosen
-            .iter()
-            .map(|(row, _)| (row.speed_rad_s[i] - mean).powi(2))
-            .sum::<f64>()
-            / n;
-        let square = chosen
-            .iter()
-            .map(|(row, speed)| (row.speed_rad_s[i] - speed[i]).powi(2))
-            .sum::<f64>()
-            / n;
+        let mean_of = |value: &dyn Fn(f64, f64) -> f64| {
+            let values = chosen
+                .iter()
+                .map(|(row, speed)| value(row.speed_rad_s[i], speed[i]));
+            values.sum::<f64>() / chosen.len() as f64
+        };
+        let mean = mean_of(&|measured, _| measured);
+        let variance = mean_of(&|measured, _| (measured - mean).powi(2));
+        let square = mean_of(&|measured, simulated| (measured - simulated).powi(2));
         let r2 = if variance > STEADY {
             1.0 - square / variance
         } else {
@@ -121,28 +109,19 @@ fn errors(pairs: &[Pair<'_>], choose: impl Fn(&LogRow) -> bool) -> Option<[Wheel
             rows: chosen.len(),
         }
     };
-    if chosen.is_empty() {
-        None
-    } else {
-        Some([wheel(0), wheel(1)])
-    }
+    (!chosen.is_empty()).then(|| [wheel(0), wheel(1)])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row::Window;
 
     #[test]
     fn of_a_speed_that_never_changes_nothing_is_explained() {
         let row = LogRow {
-            at_ms: 0,
             duty: [0.5; 2],
-            reference_rad_s: [0.0; 2],
             speed_rad_s: [10.1; 2],
-            range_m: [0.0; 2],
-            window: [Window::default(); 2],
-            edgeless: [false; 2],
+            ..LogRow::default()
         };
         let pairs: Vec<Pair<'_>> = (0..199).map(|_| (&row, [8.0; 2])).collect();
         let [left, right] = errors(&pairs, |_| true).unwrap();

@@ -12,7 +12,6 @@
 //! [`OUTLIER_SDS`] robust standard deviations (1.4826 times the median magnitude) and at least [`OUTLIER_LEAST_M`];
 //! the standard deviation is that of the others.
 
-pub use crate::error::SonarLogError;
 pub use log::SonarLog;
 pub use residuals::{OUTLIER_LEAST_M, OUTLIER_SDS, SonarStats, statistics};
 
@@ -84,13 +83,23 @@ pub fn compare(log: &SonarLog, params: &Params) -> Vec<Comparison> {
 
 /// The figures of each sonar, mean over [`SEEDS`] of the plant.
 fn simulated(log: &SonarLog, sonar: &params::Sonar) -> Vec<SonarStats> {
-    let runs: Vec<_> = (0..SEEDS)
-        .map(|seed| statistics(&repeat(log, sonar, seed)))
-        .collect();
-    let sonars = 0..log.range_m.len();
-    sonars
-        .map(|index| mean(runs.iter().map(|run| run[index])))
-        .collect()
+    let runs = (0..SEEDS).map(|seed| statistics(&repeat(log, sonar, seed)));
+    let runs: Vec<_> = runs.collect();
+    let mean = |index: usize| {
+        let of = |value: fn(&SonarStats) -> f64| {
+            runs.iter().map(|run| value(&run[index])).sum::<f64>() / SEEDS as f64
+        };
+        SonarStats {
+            rest_n: of(|s| s.rest_n),
+            rest_sd_m: of(|s| s.rest_sd_m),
+            motion_n: of(|s| s.motion_n),
+            motion_sd_m: of(|s| s.motion_sd_m),
+            second_sd_m: of(|s| s.second_sd_m),
+            outlier_rate: of(|s| s.outlier_rate),
+            loss_rate: of(|s| s.loss_rate),
+        }
+    };
+    (0..log.range_m.len()).map(mean).collect()
 }
 
 /// The growth, of those that a seed draws, with which the plant's figures come nearest to those of the run.
@@ -177,29 +186,6 @@ pub fn table(comparisons: &[Comparison]) -> String {
         );
     }
     text
-}
-
-fn mean(runs: impl Iterator<Item = SonarStats>) -> SonarStats {
-    let (mut sum, mut n) = (SonarStats::default(), 0.0);
-    for run in runs {
-        n += 1.0;
-        sum.rest_n += run.rest_n;
-        sum.rest_sd_m += run.rest_sd_m;
-        sum.motion_n += run.motion_n;
-        sum.motion_sd_m += run.motion_sd_m;
-        sum.second_sd_m += run.second_sd_m;
-        sum.outlier_rate += run.outlier_rate;
-        sum.loss_rate += run.loss_rate;
-    }
-    SonarStats {
-        rest_n: sum.rest_n / n,
-        rest_sd_m: sum.rest_sd_m / n,
-        motion_n: sum.motion_n / n,
-        motion_sd_m: sum.motion_sd_m / n,
-        second_sd_m: sum.second_sd_m / n,
-        outlier_rate: sum.outlier_rate / n,
-        loss_rate: sum.loss_rate / n,
-    }
 }
 
 /// The same run with the plant's sonars: they look square at a wall from the smoothed distances of the log, and are

@@ -10,7 +10,7 @@
 //! simulated robots have too, is not looked at.
 
 use crate::error::IdentifyError;
-use crate::log::{DriveLog, RobotProgram, Seen};
+use crate::log::{DriveLog, RobotProgram, Seen, name_of};
 use crate::row::{LogRow, Window};
 use crate::shown::{EDGE_RAD, MOTOR_TURN_RAD};
 use rumbo_log::Log;
@@ -70,14 +70,9 @@ struct Frame {
 /// # Errors
 /// A log of the original's text, or one in which the wheels were never driven.
 pub fn stretches(path: &Path, log: &Log) -> Result<Stretches, IdentifyError> {
-    let wrong = |cause: &str| IdentifyError::Read {
-        path: path.into(),
-        cause: cause.into(),
-    };
     if log.speaks_text() {
-        return Err(wrong(
-            "the robot spoke the original's text, whose rows have no time of their own; give its CSV",
-        ));
+        let cause = "the robot spoke the original's text, whose rows have no time of their own; give its CSV";
+        return Err(IdentifyError::read(path, cause));
     }
     let mut found = Stretches::default();
     if let Some(cut) = &log.cut {
@@ -111,9 +106,8 @@ pub fn stretches(path: &Path, log: &Log) -> Result<Stretches, IdentifyError> {
     }
     found.close(path, log, &mut stretch, &surface);
     if found.logs.is_empty() {
-        return Err(wrong(
-            "the wheels are never driven for a second without a gap; record a run with ON",
-        ));
+        let cause = "the wheels are never driven for a second without a gap; record a run with ON";
+        return Err(IdentifyError::read(path, cause));
     }
     Ok(found)
 }
@@ -134,24 +128,13 @@ impl Stretches {
         let mut rows: Vec<LogRow> = frames.iter().map(|frame| frame.row(from_ms)).collect();
         mark_edgeless(&mut rows);
         let on_floor = surface(first.t_ms);
-        let name = path
-            .file_name()
-            .map_or_else(|| "log".into(), |name| name.to_string_lossy());
+        let (name, from_s) = (name_of(path), first.t_ms as f64 / 1e3);
+        let surface = if on_floor { "" } else { ", in the air" };
         let stretch = DriveLog {
-            name: format!(
-                "{name}, from {:.1} s{}",
-                first.t_ms as f64 / 1e3,
-                if on_floor { "" } else { ", in the air" }
-            ),
-            source: path.into(),
-            program: RobotProgram::Rumbo,
+            name: format!("{name}, from {from_s:.1} s{surface}"),
             on_floor,
             battery_v: battery_v(log),
-            seen: Seen::Speeds,
-            rows,
-            window_phase_ms: None,
-            pair: None,
-            damaged: Vec::new(),
+            ..DriveLog::new(path, RobotProgram::Rumbo, Seen::Speeds, rows)
         };
         let drives = stretch.rows.iter().any(|row| row.duty != [0.0; 2]);
         if drives && stretch.duration_ms() >= SHORTEST_MS {
@@ -168,8 +151,6 @@ impl Frame {
             duty: self.duty,
             reference_rad_s: self.reference_rad_s,
             speed_rad_s: self.speed_rad_s,
-            edgeless: [false; 2],
-            range_m: [0.0; 2],
             window: self.speed_rad_s.map(|speed_rad_s| {
                 let (half_edge_ms, length_ms) = match speed_rad_s.abs() {
                     0.0 => (0.0, STANDING_MS),
@@ -181,6 +162,7 @@ impl Frame {
                     length_ms: length_ms.clamp(WINDOW_MS.0, WINDOW_MS.1).round() as usize,
                 }
             }),
+            ..LogRow::default()
         }
     }
 }

@@ -12,8 +12,6 @@ use rumbo_plot::Words;
 use std::fmt::Write as _;
 use std::path::Path;
 
-const RPM: f64 = 30.0 / std::f64::consts::PI;
-
 /// A run of mode 5 in the original's format: a plant under this PWM (left and right, changed every 41 ms), its edges
 /// counted in 50 ms windows.
 fn recorded(params: &Params, pwm: impl Fn(f64) -> [f64; 2], seconds: f64) -> String {
@@ -23,9 +21,8 @@ fn recorded(params: &Params, pwm: impl Fn(f64) -> [f64; 2], seconds: f64) -> Str
     let drivetrain = Drivetrain::new(&params, Noise::new(3, 0), true);
     let mut state = drivetrain.start();
     let edges = |state: &rumbo_plant::drivetrain::State| {
-        state
-            .wheels
-            .map(|wheel| (wheel.angle_rad * 384.0 / std::f64::consts::TAU).floor())
+        let edges = |angle_rad: f64| (angle_rad * 384.0 / std::f64::consts::TAU).floor();
+        state.wheels.map(|wheel| edges(wheel.angle_rad))
     };
     let mut text = String::from("dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b\n");
     let (mut counted, mut speed_rpm) = (edges(&state), [0.0; 2]);
@@ -47,13 +44,9 @@ fn recorded(params: &Params, pwm: impl Fn(f64) -> [f64; 2], seconds: f64) -> Str
                 drivetrain.set_bridge(&mut state, side, bridge);
             }
             if ms > 0 {
-                let [speed_left, speed_right] = speed_rpm;
+                let [b, a] = speed_rpm;
                 let reference = if left == 0.0 { 0 } else { 60 };
-                writeln!(
-                    text,
-                    "41,{speed_right},{speed_left},{reference},5,{right},{left}"
-                )
-                .unwrap();
+                writeln!(text, "41,{a},{b},{reference},5,{right},{left}").unwrap();
             }
         }
         drivetrain.step(&mut state, 0.001, [0.0; 2]);
@@ -77,6 +70,11 @@ fn log(text: &str) -> DriveLog {
     DriveLog::parse(Path::new("runs/test.csv"), text.as_bytes()).unwrap()
 }
 
+/// What logs tell from the nominal robot on.
+fn fitted(logs: &[DriveLog]) -> Result<Identification, IdentifyError> {
+    identify(logs, &Params::default(), 0, &FitProgress::none())
+}
+
 fn message(text: &str) -> String {
     DriveLog::parse(Path::new("runs/test.csv"), text.as_bytes())
         .unwrap_err()
@@ -89,7 +87,7 @@ fn a_zero_reference_is_a_released_bridge_and_motor_a_is_the_right_one() {
         "dt_ms,speed_a_rpm,speed_b_rpm,reference_rpm,mode,pwm_a,pwm_b\n41,30,60,60,5,51,102\n41,30,60,0,5,-38,-35\n",
     );
     assert_eq!(log.rows[0].duty, [0.4, 0.2]);
-    assert!((log.rows[0].speed_rad_s[0] * RPM - 60.0).abs() < 1e-9);
+    assert!((log.rows[0].speed_rad_s[0] * score::RPM_PER_RAD_S - 60.0).abs() < 1e-9);
     assert_eq!(log.rows[1].duty, [0.0, 0.0]);
     assert_eq!(log.rows[1].at_ms, 82);
 }
@@ -131,13 +129,13 @@ fn the_rows_show_when_the_counting_windows_end() {
 fn a_run_of_a_known_plant_is_repeated_by_it() {
     let params = Params::default();
     let run = [log(&recorded(&params, exercise, 9.0))];
-    let check = check(&run, &params).unwrap();
-    let nuisance = check.runs[0].nuisance;
+    let runs = check(&run, &params).unwrap();
+    let nuisance = runs[0].nuisance;
     assert!(
         (nuisance.battery_v - params.battery.open_circuit_v).abs() < 0.3,
         "{nuisance:?}"
     );
-    for error in check.runs[0].whole.unwrap() {
+    for error in runs[0].whole.unwrap() {
         // One count per window is 3.125 rpm: rounding alone leaves 1.3 rpm.
         assert!(error.rmse_rpm < 2.0, "{error:?}");
         assert!(error.r2 > 0.99);
@@ -190,7 +188,7 @@ fn an_empty_battery_is_distinguished_from_a_full_one() {
     let volts = [6.9, 8.2].map(|volts| {
         params.battery.open_circuit_v = volts;
         let run = [log(&recorded(&params, exercise, 9.0))];
-        check(&run, &Params::default()).unwrap().runs[0]
+        check(&run, &Params::default()).unwrap()[0]
             .nuisance
             .battery_v
     });
@@ -206,8 +204,8 @@ fn a_plant_with_other_parameters_is_found_from_its_run() {
     other.motor.inertia_kg_m2 *= 1.4;
     let run = [log(&recorded(&other, exercise, 9.0))];
     let before = check(&run, &Params::default()).unwrap();
-    let found = identify(&run, &Params::default(), 0, &FitProgress::none()).unwrap();
-    let (before, after) = (before.runs[0].whole.unwrap(), found.runs[0].whole.unwrap());
+    let found = fitted(&run).unwrap();
+    let (before, after) = (before[0].whole.unwrap(), found.runs[0].whole.unwrap());
     for i in 0..2 {
         assert!(
             after[i].rmse_rpm < before[i].rmse_rpm && after[i].rmse_rpm < 2.5,
@@ -215,12 +213,8 @@ fn a_plant_with_other_parameters_is_found_from_its_run() {
         );
     }
     assert_eq!(found.params.check(), Ok(()));
-    assert!(
-        found
-            .parameters
-            .iter()
-            .all(|parameter| parameter.uncertainty > 0.0)
-    );
+    let mut parameters = found.parameters.iter();
+    assert!(parameters.all(|parameter| parameter.uncertainty > 0.0));
     let left = found.params.wheels.left.coulomb_forward_n_m;
     assert!(
         left > found.params.wheels.right.coulomb_forward_n_m,
@@ -238,34 +232,20 @@ fn a_log_without_driving_is_refused() {
 }
 
 fn identification() -> Identification {
+    let of = |keys: &[&str], value| Identified {
+        keys: keys.iter().map(|key| key.to_string()).collect(),
+        value,
+        ..Identified::default()
+    };
     Identification {
-        cost: 0.0,
-        disagreement: 1.0,
-        params: Params::default(),
         parameters: vec![
-            Identified {
-                keys: vec!["motor.back_emf_v_s".into()],
-                value: 0.243_187,
-                uncertainty: 0.01,
-                unit: "V s/rad".into(),
-                from_runs: 0.9,
-                shown_by: "",
-            },
-            Identified {
-                keys: vec![
-                    "wheels.left.onset_ratio".into(),
-                    "wheels.right.onset_ratio".into(),
-                ],
-                value: 0.5,
-                uncertainty: 0.1,
-                unit: "1".into(),
-                from_runs: 0.9,
-                shown_by: "",
-            },
+            of(&["motor.back_emf_v_s"], 0.243_187),
+            of(
+                &["wheels.left.onset_ratio", "wheels.right.onset_ratio"],
+                0.5,
+            ),
         ],
-        dead_zone_air_pwm: 35.0,
-        dead_zone_floor_pwm: 65.0,
-        runs: vec![],
+        ..Identification::default()
     }
 }
 
@@ -314,11 +294,8 @@ fn the_simulated_curve_of_a_known_plant_lies_on_the_measured_one() {
     let apart = |(one, other): (&(f64, f64), &(f64, f64))| {
         (one.0 - other.0).abs() + (one.1 - other.1).abs()
     };
-    let worst = measured
-        .iter()
-        .zip(&simulated)
-        .map(apart)
-        .fold(0.0, f64::max);
+    let apart = measured.iter().zip(&simulated).map(apart);
+    let worst = apart.fold(0.0, f64::max);
     // A window of 50 ms counts whole edges of 3.1 rpm each.
     assert!(worst < 7.0, "{worst}");
 }
@@ -350,17 +327,15 @@ fn the_identified_robot_repeats_the_real_runs() {
     };
     let run = |name: &str| DriveLog::read(&Path::new(&folder).join(name)).unwrap();
     let params = memoria();
-    let check = check(
-        &[run("mode5_wheel_speed.csv"), run("mode7_square.csv")],
-        &params,
-    )
-    .unwrap();
+    let runs = ["mode5_wheel_speed.csv", "mode7_square.csv"].map(run);
+    let scores = check(&runs, &params).unwrap();
+    let [speed, square] = [0, 1].map(|run| &scores[run]);
     for i in 0..2 {
-        assert!(check.runs[0].whole.unwrap()[i].rmse_rpm < 7.0, "{check}");
-        assert!(check.runs[0].ahead.unwrap()[i].rmse_rpm < 5.0, "{check}");
+        assert!(speed.whole.unwrap()[i].rmse_rpm < 7.0, "{speed}");
+        assert!(speed.ahead.unwrap()[i].rmse_rpm < 5.0, "{speed}");
         assert!(
-            check.runs[1].whole_straight.unwrap()[i].rmse_rpm < 12.0,
-            "{check}"
+            square.whole_straight.unwrap()[i].rmse_rpm < 12.0,
+            "{square}"
         );
     }
 }
@@ -436,13 +411,9 @@ fn a_run_along_a_wall_identifies_the_yaw_damping() {
         let mut params = Params::default();
         params.floor.yaw_damping_n_m_s = true_n_m_s;
         let run = [log(&along_a_wall(&params, true))];
-        let found = identify(&run, &Params::default(), 0, &FitProgress::none()).unwrap();
-        let key = "floor.yaw_damping_n_m_s".to_owned();
-        let found = found
-            .parameters
-            .iter()
-            .find(|one| one.keys == [key.clone()]);
-        found.unwrap().clone()
+        let parameters = fitted(&run).unwrap().parameters.into_iter();
+        let mut of_key = parameters.filter(|one| one.keys == ["floor.yaw_damping_n_m_s"]);
+        of_key.next().unwrap()
     };
     for true_n_m_s in [0.008, 0.03] {
         let found = damping(true_n_m_s);

@@ -2,15 +2,15 @@
 
 /// A parameter (or several of one value) to identify.
 #[derive(Clone, Copy, Debug)]
-pub struct Unknown {
+pub(crate) struct Unknown {
     /// The dotted keys that take the value.
-    pub keys: &'static [&'static str],
+    pub(crate) keys: &'static [&'static str],
     /// Standard deviation of what is believed beforehand, in the logarithm.
-    pub prior_sd: f64,
+    pub(crate) prior_sd: f64,
     /// What is believed, where that is not the nominal value.
-    pub believed: Option<f64>,
+    pub(crate) believed: Option<f64>,
     /// The experiment that shows it.
-    pub shown_by: &'static str,
+    pub(crate) shown_by: &'static str,
 }
 
 /// Standard deviation of what is believed of the floor's scrubbing, in the logarithm.
@@ -34,7 +34,7 @@ const fn unknown(keys: &'static [&'static str], prior_sd: f64, shown_by: &'stati
 }
 
 /// What the runs can tell. Resistance, gear efficiency and mass scale all torques together and stay nominal.
-pub const UNKNOWNS: [Unknown; 17] = [
+pub(crate) const UNKNOWNS: [Unknown; 17] = [
     unknown(&["motor.back_emf_v_s"], 0.3, LEVELS),
     unknown(&["motor.inductance_h"], 0.5, LEVELS),
     unknown(&["motor.inertia_kg_m2"], 0.5, STARTS),

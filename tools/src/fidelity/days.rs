@@ -24,8 +24,8 @@ impl Days {
             let log = DriveLog::read(&folder.join(name));
             let log = log.map_err(|error| FileError::Setting(error.to_string()))?;
             // A run that does not show the drive does not show its day either.
-            if let Ok(check) = check(std::slice::from_ref(&log), plant)
-                && let Some(run) = check.runs.first()
+            if let Ok(runs) = check(std::slice::from_ref(&log), plant)
+                && let Some(run) = runs.first()
             {
                 eprintln!("{run}");
                 nuisances.insert(log.name, run.nuisance);

@@ -1,8 +1,7 @@
 //! The way back: where the program stood before.
 
-use super::{DataBreakpoint, Debugger, Reason, StepKind, calls};
-use crate::expression;
-use crate::stack::stack;
+use super::breakpoints::holds;
+use super::{Debugger, Reason, StepKind, calls};
 use crate::value::Memory;
 use rumbo_emulator::chip::Chip;
 use rumbo_emulator::gdb::DebuggedWorld;
@@ -10,7 +9,7 @@ use std::collections::BTreeSet;
 
 impl<W: DebuggedWorld> Debugger<W> {
     /// Goes back: over an instruction, a line, or out to the call.
-    pub fn step_back(&mut self, step: StepKind) -> Reason {
+    pub(crate) fn step_back(&mut self, step: StepKind) -> Reason {
         let found = match step {
             StepKind::Instruction => self.history.last_instruction(),
             _ => {
@@ -38,11 +37,10 @@ impl<W: DebuggedWorld> Debugger<W> {
     fn lines_back(&self) -> (BTreeSet<u32>, Option<u16>, BTreeSet<u32>) {
         let frames = self.symbols.frames(self.chip());
         let (mut stops, mut inside) = (BTreeSet::new(), BTreeSet::new());
-        let own = self
-            .symbols
-            .function(self.address())
-            .map(|function| calls(function, self.address()));
-        let is_own = self.is_own(self.address());
+        let address = self.address();
+        let here = self.symbols.function(address);
+        let own = here.map(|function| calls(function, address));
+        let is_own = self.is_own(address);
         let mut called = frames.iter().skip(1);
         if is_own && !called.any(|frame| self.is_own(frame.address_in_code())) {
             // The core called it, and the one before.
@@ -52,11 +50,7 @@ impl<W: DebuggedWorld> Debugger<W> {
             let Some(function) = self.symbols.function(frame.address_in_code()) else {
                 continue;
             };
-            let rows = function
-                .ranges
-                .iter()
-                .flat_map(|range| self.symbols.lines.begins(range.clone()));
-            for row in rows {
+            for row in self.symbols.begins(function) {
                 if is_own && !self.own.contains(&row.file) {
                     continue;
                 }
@@ -71,34 +65,24 @@ impl<W: DebuggedWorld> Debugger<W> {
     }
 
     /// Goes back to the last breakpoint, or to the beginning.
-    pub fn go_back(&mut self) -> Reason {
-        let addresses = self
-            .breakpoints
-            .iter()
-            .filter(|breakpoint| breakpoint.log.is_none());
-        let stops: BTreeSet<u32> = addresses
-            .flat_map(|breakpoint| &breakpoint.addresses)
-            .map(|at| at / 2)
-            .collect();
-        let watches: Vec<_> = self.data.iter().map(DataBreakpoint::watchpoint).collect();
+    pub(crate) fn go_back(&mut self) -> Reason {
+        let breakpoints = self.breakpoints.iter();
+        let stopping = breakpoints.filter(|breakpoint| breakpoint.log.is_none());
+        let addresses = stopping.flat_map(|breakpoint| &breakpoint.addresses);
+        let stops: BTreeSet<u32> = addresses.map(|at| at / 2).collect();
+        let watches = self.watches();
         let (symbols, breakpoints) = (&self.symbols, &self.breakpoints);
         let accept = &mut |chip: &Chip| {
             let at = 2 * chip.cpu().program_counter();
-            let mut here = breakpoints
+            let here = breakpoints
                 .iter()
-                .filter(|breakpoint| breakpoint.addresses.contains(&at))
-                .peekable();
+                .filter(|breakpoint| breakpoint.addresses.contains(&at));
+            let mut here = here.peekable();
+            let memory = Memory { chip, symbols };
+            let mut conditions = here.clone().map(|breakpoint| &breakpoint.condition);
+            let accepts = |condition: &String| holds(condition, memory) == Ok(true);
             here.peek().is_none()
-                || here.any(|breakpoint| {
-                    breakpoint.condition.as_ref().is_none_or(|condition| {
-                    let memory = Memory { chip, symbols };
-                    let frames = stack(memory);
-                    let item = frames
-                        .first()
-                        .map(|frame| expression::evaluate(condition, frame));
-                    matches!(item, Some(Ok(item)) if expression::is_true(&item, memory) == Ok(true))
-                })
-                })
+                || conditions.any(|condition| condition.as_ref().is_none_or(accepts))
         };
         let found = match stops.is_empty() && watches.is_empty() {
             true => None,
@@ -109,15 +93,7 @@ impl<W: DebuggedWorld> Debugger<W> {
 
     fn arrive(&mut self, found: Option<u64>, reason: Reason) -> Reason {
         self.history.set_stops(BTreeSet::new(), Vec::new());
-        match found {
-            Some(cycle) => {
-                self.history.travel(cycle);
-                reason
-            }
-            None => {
-                self.history.travel(self.history.first());
-                Reason::Start
-            }
-        }
+        self.history.travel(found.unwrap_or(self.history.first()));
+        found.map_or(Reason::Start, |_| reason)
     }
 }

@@ -2,48 +2,49 @@
 
 use super::Debugger;
 use crate::expression;
+use crate::stack::stack;
+use crate::value::Memory;
 use rumbo_emulator::gdb::DebuggedWorld;
 use rumbo_emulator::observe::Watchpoint;
 
 /// What a breakpoint is set at, and when it stops the program.
 #[derive(Clone, Debug, Default)]
-pub struct Breakpoint {
+pub(crate) struct Breakpoint {
     /// Its number.
-    pub id: u64,
+    pub(crate) id: u64,
     /// What it was set with: those of a file, those of functions.
-    pub group: String,
+    pub(crate) group: String,
     /// Addresses [bytes].
-    pub addresses: Vec<u32>,
+    pub(crate) addresses: Vec<u32>,
     /// It stops only where this is not 0.
-    pub condition: Option<String>,
+    pub(crate) condition: Option<String>,
     /// It stops from this time on that it is reached; 0: each time.
-    pub hits: u64,
+    pub(crate) hits: u64,
     /// Instead of stopping it writes this; `{expression}` is its value.
-    pub log: Option<String>,
+    pub(crate) log: Option<String>,
     /// So often it was reached.
-    pub reached: u64,
+    pub(crate) reached: u64,
 }
 
 /// A variable whose accesses stop the program.
 #[derive(Clone, Debug)]
-pub struct DataBreakpoint {
+pub(crate) struct DataBreakpoint {
     /// Its number.
-    pub id: u64,
+    pub(crate) id: u64,
     /// The first address, in the data space.
-    pub address: u16,
+    pub(crate) address: u16,
     /// How many bytes from there on.
-    pub bytes: u16,
+    pub(crate) bytes: u16,
     /// Reading stops it.
-    pub reads: bool,
+    pub(crate) reads: bool,
     /// Writing stops it.
-    pub writes: bool,
+    pub(crate) writes: bool,
 }
 
 impl DataBreakpoint {
     pub(super) fn watchpoint(&self) -> Watchpoint {
-        let addresses = self.address..self.address.saturating_add(self.bytes);
         Watchpoint {
-            addresses,
+            addresses: self.address..self.address.saturating_add(self.bytes),
             reads: self.reads,
             writes: self.writes,
         }
@@ -52,7 +53,7 @@ impl DataBreakpoint {
 
 impl<W: DebuggedWorld> Debugger<W> {
     /// Replaces the breakpoints of a group by others.
-    pub fn set_breakpoints(&mut self, group: &str, breakpoints: Vec<Breakpoint>) {
+    pub(crate) fn set_breakpoints(&mut self, group: &str, breakpoints: Vec<Breakpoint>) {
         self.breakpoints
             .retain(|breakpoint| breakpoint.group != group);
         self.breakpoints.extend(breakpoints);
@@ -60,7 +61,7 @@ impl<W: DebuggedWorld> Debugger<W> {
     }
 
     /// Replaces the data breakpoints.
-    pub fn set_data_breakpoints(&mut self, data: Vec<DataBreakpoint>) {
+    pub(crate) fn set_data_breakpoints(&mut self, data: Vec<DataBreakpoint>) {
         self.data = data;
         self.arm_again();
     }
@@ -73,18 +74,14 @@ impl<W: DebuggedWorld> Debugger<W> {
             if !breakpoint.addresses.contains(&address) {
                 continue;
             }
-            let holds = breakpoint
-                .condition
-                .as_ref()
-                .map(|condition| self.holds(condition));
-            if holds == Some(Ok(false)) {
-                continue;
-            }
-            if let Some(Err(error)) = holds {
-                self.logged.push(format!(
-                    "breakpoint {}: {error}",
-                    self.breakpoints[index].id
-                ));
+            let condition = breakpoint.condition.as_ref();
+            match condition.map(|condition| holds(condition, self.memory())) {
+                Some(Ok(false)) => continue,
+                Some(Err(error)) => {
+                    let said = format!("breakpoint {}: {error}", breakpoint.id);
+                    self.logged.push(said);
+                }
+                Some(Ok(true)) | None => {}
             }
             self.breakpoints[index].reached += 1;
             let breakpoint = &self.breakpoints[index];
@@ -99,11 +96,6 @@ impl<W: DebuggedWorld> Debugger<W> {
         stopping
     }
 
-    fn holds(&self, condition: &str) -> Result<bool, String> {
-        let item = self.evaluate(condition, 0)?;
-        expression::is_true(&item, self.memory())
-    }
-
     /// A text with the values of the expressions between its braces.
     fn filled_in(&self, text: &str) -> String {
         let mut parts = text.split('{');
@@ -111,10 +103,10 @@ impl<W: DebuggedWorld> Debugger<W> {
         for part in parts {
             match part.split_once('}') {
                 Some((expression, rest)) => {
-                    let value = self
-                        .evaluate(expression, 0)
-                        .map(|item| item.shown(self.memory()).0);
-                    filled += &value.unwrap_or_else(|error| format!("<{error}>"));
+                    filled += &match self.evaluate(expression, 0) {
+                        Ok(item) => item.shown(self.memory()).0,
+                        Err(error) => format!("<{error}>"),
+                    };
                     filled += rest;
                 }
                 None => filled += part,
@@ -122,4 +114,11 @@ impl<W: DebuggedWorld> Debugger<W> {
         }
         filled
     }
+}
+
+/// Whether a condition holds in the innermost frame.
+pub(super) fn holds(condition: &str, memory: Memory<'_>) -> Result<bool, String> {
+    let stack = stack(memory);
+    let frame = stack.first().ok_or("the program stands nowhere")?;
+    expression::is_true(&expression::evaluate(condition, frame)?, memory)
 }

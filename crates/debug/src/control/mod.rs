@@ -8,7 +8,7 @@ mod back;
 mod breakpoints;
 mod values;
 
-pub use breakpoints::{Breakpoint, DataBreakpoint};
+pub(crate) use breakpoints::{Breakpoint, DataBreakpoint};
 
 use crate::history::History;
 use crate::stack::{CallFrame, stack};
@@ -18,11 +18,12 @@ use rumbo_emulator::chip::Chip;
 use rumbo_emulator::cpu::Stopped;
 use rumbo_emulator::decode::Code;
 use rumbo_emulator::gdb::DebuggedWorld;
+use rumbo_emulator::observe::Watchpoint;
 use std::collections::BTreeSet;
 
 /// How far a step goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StepKind {
+pub(crate) enum StepKind {
     /// To the next line, over calls.
     Over,
     /// To the next line, into calls of functions with lines.
@@ -35,7 +36,7 @@ pub enum StepKind {
 
 /// Why the program stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Reason {
+pub(crate) enum Reason {
     /// At breakpoints, by their numbers.
     Breakpoint(Vec<u64>),
     /// It has accessed what a data breakpoint watches.
@@ -52,14 +53,7 @@ pub enum Reason {
     Start,
 }
 
-/// How the program moves.
-#[derive(Clone, Debug)]
-enum Motion {
-    Continue,
-    Step(Plan),
-}
-
-/// Where a step may end.
+/// Where the program may end that runs: a step; with nothing in it, at breakpoints only.
 #[derive(Clone, Debug, Default)]
 struct Plan {
     /// Words, in the frame with this CFA.
@@ -79,7 +73,8 @@ struct Plan {
 pub struct Debugger<W> {
     pub(crate) symbols: Symbols,
     pub(crate) history: History<W>,
-    motion: Option<Motion>,
+    /// It runs, and how far.
+    motion: Option<Plan>,
     pub(crate) breakpoints: Vec<Breakpoint>,
     pub(crate) data: Vec<DataBreakpoint>,
     /// What breakpoints have written.
@@ -105,18 +100,13 @@ impl<W: DebuggedWorld> Debugger<W> {
     }
 
     /// The chip, to look at.
-    pub fn chip(&self) -> &Chip {
+    pub(crate) fn chip(&self) -> &Chip {
         self.history.chip()
     }
 
     /// The world.
     pub fn world(&self) -> &W {
         self.history.now()
-    }
-
-    /// The symbols.
-    pub fn symbols(&self) -> &Symbols {
-        &self.symbols
     }
 
     /// Memory and symbols.
@@ -128,22 +118,22 @@ impl<W: DebuggedWorld> Debugger<W> {
     }
 
     /// The frames, innermost first.
-    pub fn stack(&self) -> Vec<CallFrame<'_>> {
+    pub(crate) fn stack(&self) -> Vec<CallFrame<'_>> {
         stack(self.memory())
     }
 
     /// It runs.
-    pub fn is_running(&self) -> bool {
+    pub(crate) fn is_running(&self) -> bool {
         self.motion.is_some()
     }
 
     /// Drains what breakpoints have written.
-    pub fn take_log(&mut self) -> Vec<String> {
+    pub(crate) fn take_log(&mut self) -> Vec<String> {
         std::mem::take(&mut self.logged)
     }
 
     /// Drains what the program has sent, each byte once, with the numbers of its streams.
-    pub fn take_output(&mut self) -> Vec<(u8, Vec<u8>)> {
+    pub(crate) fn take_output(&mut self) -> Vec<(u8, Vec<u8>)> {
         self.history.take_output()
     }
 
@@ -153,13 +143,12 @@ impl<W: DebuggedWorld> Debugger<W> {
     }
 
     /// Lets the program run.
-    pub fn go(&mut self) {
-        self.motion = Some(Motion::Continue);
-        self.arm(BTreeSet::new());
+    pub(crate) fn go(&mut self) {
+        self.follow(Plan::default());
     }
 
     /// Whether steps that begin in the program's own files end in them, as they do at first.
-    pub fn set_just_own_code(&mut self, just_own_code: bool) {
+    pub(crate) fn set_just_own_code(&mut self, just_own_code: bool) {
         self.own = match just_own_code {
             true => self.symbols.files_of_program(),
             false => BTreeSet::new(),
@@ -167,7 +156,7 @@ impl<W: DebuggedWorld> Debugger<W> {
     }
 
     /// Lets it run to the first line of `setup`, or else of `main`.
-    pub fn go_to_entry(&mut self) {
+    pub(crate) fn go_to_entry(&mut self) {
         let entry = self.symbols.entry();
         let stops = entry.map(|function| self.symbols.body(function) / 2);
         self.follow(Plan {
@@ -177,24 +166,22 @@ impl<W: DebuggedWorld> Debugger<W> {
     }
 
     /// Back to the beginning.
-    pub fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         self.motion = None;
-        self.breakpoints
-            .iter_mut()
-            .for_each(|breakpoint| breakpoint.reached = 0);
+        for breakpoint in &mut self.breakpoints {
+            breakpoint.reached = 0;
+        }
         self.history.restart();
     }
 
     pub(super) fn arm_again(&mut self) {
-        match self.motion.clone() {
-            Some(Motion::Step(plan)) => self.follow(plan),
-            Some(Motion::Continue) => self.go(),
-            None => {}
+        if let Some(plan) = self.motion.take() {
+            self.follow(plan);
         }
     }
 
     /// Stops it.
-    pub fn pause(&mut self) {
+    pub(crate) fn pause(&mut self) {
         self.motion = None;
         self.history.set_stops(BTreeSet::new(), Vec::new());
     }
@@ -203,7 +190,7 @@ impl<W: DebuggedWorld> Debugger<W> {
     ///
     /// # Errors
     /// There is nothing that it could go to.
-    pub fn step(&mut self, step: StepKind) -> Result<Option<Reason>, String> {
+    pub(crate) fn step(&mut self, step: StepKind) -> Result<Option<Reason>, String> {
         if step == StepKind::Instruction
             || self.symbols.function(self.address()).is_none() && step != StepKind::Out
         {
@@ -220,25 +207,17 @@ impl<W: DebuggedWorld> Debugger<W> {
     }
 
     fn follow(&mut self, plan: Plan) {
-        let words = plan
-            .stops
-            .iter()
-            .chain(&plan.calls)
-            .copied()
-            .chain(plan.returns)
-            .collect();
-        self.motion = Some(Motion::Step(plan));
-        self.arm(words);
+        let breakpoints = self.breakpoints.iter();
+        let addresses = breakpoints.flat_map(|breakpoint| &breakpoint.addresses);
+        let mut words: BTreeSet<u32> = addresses.map(|address| address / 2).collect();
+        words.extend(plan.stops.iter().chain(&plan.calls));
+        words.extend(plan.returns);
+        self.motion = Some(plan);
+        self.history.set_stops(words, self.watches());
     }
 
-    fn arm(&mut self, mut words: BTreeSet<u32>) {
-        let addresses = self
-            .breakpoints
-            .iter()
-            .flat_map(|breakpoint| &breakpoint.addresses);
-        words.extend(addresses.map(|address| address / 2));
-        let watches = self.data.iter().map(DataBreakpoint::watchpoint).collect();
-        self.history.set_stops(words, watches);
+    fn watches(&self) -> Vec<Watchpoint> {
+        self.data.iter().map(DataBreakpoint::watchpoint).collect()
     }
 
     fn address(&self) -> u32 {
@@ -265,17 +244,11 @@ impl<W: DebuggedWorld> Debugger<W> {
         let is_own = |row: &crate::symbols::LineRow| {
             line.is_some_and(|line| (line.line, line.file) == (row.line, row.file))
         };
-        for row in function
-            .ranges
-            .iter()
-            .flat_map(|range| self.symbols.lines.begins(range.clone()))
-        {
+        for row in self.symbols.begins(function) {
             let there = calls(function, row.address);
-            let depth = own
-                .iter()
-                .zip(&there)
-                .take_while(|(own, there)| std::ptr::eq(**own, **there))
-                .count();
+            let both = own.iter().zip(&there);
+            let common = both.take_while(|(own, there)| std::ptr::eq(**own, **there));
+            let depth = common.count();
             let goes = match step {
                 // In this or an outer of the inlined functions.
                 StepKind::Over => depth == there.len() && !is_own(&row),
@@ -305,9 +278,8 @@ impl<W: DebuggedWorld> Debugger<W> {
 
     /// The beginnings of all lines of the program's own files.
     fn own_lines(&self) -> BTreeSet<u32> {
-        let ranges = self.symbols.functions.iter();
-        let ranges = ranges.flat_map(|function| &function.ranges);
-        let rows = ranges.flat_map(|range| self.symbols.lines.begins(range.clone()));
+        let functions = self.symbols.functions.iter();
+        let rows = functions.flat_map(|function| self.symbols.begins(function));
         let own = rows.filter(|row| self.own.contains(&row.file));
         own.map(|row| row.address / 2).collect()
     }
@@ -315,10 +287,8 @@ impl<W: DebuggedWorld> Debugger<W> {
     /// The words of a function at which it calls another, or jumps to it.
     fn calls_in(&self, function: &Scope) -> BTreeSet<u32> {
         let cpu = self.chip().cpu();
-        let words = function
-            .ranges
-            .iter()
-            .flat_map(|range| range.start / 2..range.end / 2);
+        let ranges = function.ranges.iter();
+        let words = ranges.flat_map(|range| range.start / 2..range.end / 2);
         let leads_out = |word: &u32| {
             let op = cpu.operation(*word);
             match op.code {
@@ -331,7 +301,7 @@ impl<W: DebuggedWorld> Debugger<W> {
     }
 
     /// Runs for an interval; says why the program stands, if it does.
-    pub fn turn(&mut self) -> Option<Reason> {
+    pub(crate) fn turn(&mut self) -> Option<Reason> {
         self.motion.as_ref()?;
         let stopped = self.history.go();
         let reason = match stopped {
@@ -339,18 +309,15 @@ impl<W: DebuggedWorld> Debugger<W> {
                 self.history.now().is_over().then_some(Reason::Over)
             }
             Stopped::Watched { ref watchpoint, .. } => {
-                let hit = self
-                    .data
-                    .iter()
-                    .find(|data| data.watchpoint() == *watchpoint);
+                let mut data = self.data.iter();
+                let hit = data.find(|data| data.watchpoint() == *watchpoint);
                 hit.map(|data| Reason::Data(data.id))
             }
             Stopped::Breakpoint => self.at_stop(),
             Stopped::Ended(_) => self.ended(&stopped),
         };
         if reason.is_some() {
-            self.motion = None;
-            self.history.set_stops(BTreeSet::new(), Vec::new());
+            self.pause();
         }
         reason
     }
@@ -367,7 +334,7 @@ impl<W: DebuggedWorld> Debugger<W> {
         let word = self.chip().cpu().program_counter();
         // Breakpoints count also where a step ends.
         let hit = self.hit(2 * word);
-        if let Some(Motion::Step(plan)) = self.motion.clone() {
+        if let Some(plan) = self.motion.clone() {
             if self.ends(&plan) {
                 if plan.own && hit.is_empty() && !self.is_own(2 * word) {
                     // The core called it, and calls the next one.
@@ -380,10 +347,9 @@ impl<W: DebuggedWorld> Debugger<W> {
                     });
                     return None;
                 }
-                return Some(if hit.is_empty() {
-                    Reason::Step
-                } else {
-                    Reason::Breakpoint(hit)
+                return Some(match hit.is_empty() {
+                    true => Reason::Step,
+                    false => Reason::Breakpoint(hit),
                 });
             }
             if hit.is_empty() && plan.calls.contains(&word) && self.is_in(&plan) {
@@ -412,13 +378,10 @@ impl<W: DebuggedWorld> Debugger<W> {
         let before = self.chip().cpu().program_counter();
         let stopped = self.history.step();
         let entry = self.address();
-        let function = self
-            .symbols
-            .function(entry)
-            .filter(|function| function.entry == entry)
-            .filter(|function| !plan.own || self.is_own(self.symbols.body(function)));
+        let function = self.symbols.function(entry);
+        let function = function.filter(|function| function.entry == entry && entry / 2 != before);
         let body = function.map(|function| self.symbols.body(function));
-        let next = match body.filter(|_| entry / 2 != before) {
+        let next = match body.filter(|body| !plan.own || self.is_own(*body)) {
             Some(body) if body == entry => {
                 self.pause();
                 return Some(self.ended(&stopped).unwrap_or(Reason::Step));
@@ -436,9 +399,7 @@ impl<W: DebuggedWorld> Debugger<W> {
 
 /// The function and the functions inlined at an instruction, the outermost first.
 fn calls(function: &Scope, address: u32) -> Vec<&Scope> {
-    function
-        .chain(address)
-        .into_iter()
-        .filter(|scope| scope.kind != ScopeKind::Block)
-        .collect()
+    let mut chain = function.chain(address);
+    chain.retain(|scope| scope.kind != ScopeKind::Block);
+    chain
 }

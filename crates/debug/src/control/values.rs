@@ -10,10 +10,8 @@ impl<W: DebuggedWorld> Debugger<W> {
     /// An expression in a frame of the stack, by its number.
     pub(crate) fn evaluate(&self, text: &str, frame: usize) -> Result<Item, String> {
         let stack = self.stack();
-        let frame = stack
-            .get(frame)
-            .or(stack.first())
-            .ok_or("the program stands nowhere")?;
+        let frame = stack.get(frame).or(stack.first());
+        let frame = frame.ok_or("the program stands nowhere")?;
         expression::evaluate(text, frame)
     }
 
@@ -35,9 +33,10 @@ impl<W: DebuggedWorld> Debugger<W> {
         let Some(spot) = spot else {
             return Err(format!("{target} was optimised out"));
         };
-        self.write(&spot, &bytes)
-            .then_some(())
-            .ok_or_else(|| format!("{target} is nowhere that can be written to"))
+        match self.write(&spot, &bytes) {
+            true => Ok(()),
+            false => Err(format!("{target} is nowhere that can be written to")),
+        }
     }
 
     pub(crate) fn write(&mut self, spot: &Spot, bytes: &[u8]) -> bool {

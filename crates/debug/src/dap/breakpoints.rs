@@ -1,22 +1,31 @@
 //! Breakpoints as a client sets them: all of a kind, or of a file, at a time.
 
 use super::inspect::source;
-use super::message::{Breakpoints, Lines, Place, SetBreakpoints, Source, Wanted};
+use super::message::{Arguments, Breakpoints, LineRange, Source, Wanted};
 use super::{Adapter, LaunchHost};
 use crate::control::{Breakpoint, DataBreakpoint};
 use serde_json::{Value, json};
 use std::path::Path;
 
 impl<H: LaunchHost> Adapter<H> {
-    pub(super) fn set_breakpoints(&mut self, set: &SetBreakpoints) -> Result<Value, String> {
+    pub(super) fn set_breakpoints(&mut self, set: &Breakpoints) -> Result<Value, String> {
         let first = self.lines_start_at;
         let name = path(&set.source)?.to_owned();
         let file = self.debugger()?.symbols.lines.file_named(Path::new(&name));
         let place = |adapter: &mut Self, wanted: &Wanted| {
-            let Some(file) = file else {
-                return Err(adapter.no_file(&name));
-            };
             let symbols = &adapter.debugger()?.symbols;
+            let Some(file) = file else {
+                let found = symbols
+                    .lines
+                    .files
+                    .iter()
+                    .filter(|file| file.path.is_some());
+                let found: Vec<_> = found.map(|file| &*file.name).take(10).collect();
+                let found = found.join(", ");
+                return Err(format!(
+                    "{name} is no file of the program; it was compiled from {found}"
+                ));
+            };
             let line = u32::try_from(wanted.line - first + 1).unwrap_or(0);
             match symbols.stops_of_line(file, line) {
                 (addresses, Some(line)) => {
@@ -72,21 +81,15 @@ impl<H: LaunchHost> Adapter<H> {
     ) -> Result<Value, String> {
         let (mut set, mut shown) = (Vec::new(), Vec::new());
         for wanted in wanted {
-            let id = self.next_breakpoint;
-            self.next_breakpoint += 1;
-            let hits = wanted
-                .hit_condition
-                .as_deref()
-                .filter(|text| !text.trim().is_empty())
-                .map(hits)
-                .transpose();
+            let id = self.number();
+            let given = |text: &Option<String>| text.clone().filter(|text| !text.trim().is_empty());
+            let hits = given(&wanted.hit_condition).map(|text| hits(&text));
+            let hits = hits.transpose();
             match place(self, wanted).and_then(|placed| Ok((placed, hits?))) {
                 Ok(((addresses, mut body), hits)) => {
                     body["id"] = json!(id);
                     body["verified"] = json!(true);
                     shown.push(body);
-                    let given =
-                        |text: &Option<String>| text.clone().filter(|text| !text.trim().is_empty());
                     set.push(Breakpoint {
                         id,
                         group: group.to_owned(),
@@ -106,43 +109,27 @@ impl<H: LaunchHost> Adapter<H> {
         Ok(json!({"breakpoints": shown}))
     }
 
-    fn no_file(&mut self, name: &str) -> String {
-        let Ok(debugger) = self.debugger() else {
-            return String::new();
-        };
-        let files = debugger
-            .symbols
-            .lines
-            .files
-            .iter()
-            .filter(|file| file.path.is_some());
-        let files: Vec<_> = files.map(|file| file.name.as_str()).take(10).collect();
-        format!(
-            "{name} is no file of the program; it was compiled from {}",
-            files.join(", ")
-        )
+    /// The next breakpoint's number.
+    fn number(&mut self) -> u64 {
+        self.next_breakpoint += 1;
+        self.next_breakpoint - 1
     }
 
-    pub(super) fn breakpoint_locations(&mut self, lines: &Lines) -> Result<Value, String> {
+    pub(super) fn breakpoint_locations(&mut self, lines: &LineRange) -> Result<Value, String> {
         let first = self.lines_start_at;
         let symbols = &self.debugger()?.symbols;
         let Some(file) = symbols.lines.file_named(Path::new(path(&lines.source)?)) else {
             return Ok(json!({"breakpoints": []}));
         };
         let range = lines.line..=lines.end_line.unwrap_or(lines.line);
-        let all = symbols
-            .lines
-            .with_code(file)
-            .into_iter()
-            .map(|line| i64::from(line) - 1 + first);
-        let inside: Vec<_> = all
-            .filter(|line| range.contains(line))
-            .map(|line| json!({"line": line}))
-            .collect();
+        let all = symbols.lines.with_code(file).into_iter();
+        let all = all.map(|line| i64::from(line) - 1 + first);
+        let inside = all.filter(|line| range.contains(line));
+        let inside: Vec<_> = inside.map(|line| json!({"line": line})).collect();
         Ok(json!({"breakpoints": inside}))
     }
 
-    pub(super) fn data_breakpoint_info(&mut self, place: &Place) -> Result<Value, String> {
+    pub(super) fn data_breakpoint_info(&mut self, place: &Arguments) -> Result<Value, String> {
         let (frame, name) = self.named(place)?;
         Ok(match self.debugger()?.watched(&name, frame) {
             Ok((address, bytes)) => json!({
@@ -156,8 +143,7 @@ impl<H: LaunchHost> Adapter<H> {
     pub(super) fn set_data_breakpoints(&mut self, set: &Breakpoints) -> Result<Value, String> {
         let (mut data, mut shown) = (Vec::new(), Vec::new());
         for wanted in &set.breakpoints {
-            let id = self.next_breakpoint;
-            self.next_breakpoint += 1;
+            let id = self.number();
             let parts = wanted.data_id.split_once('/');
             let place =
                 parts.and_then(|(at, bytes)| Some((address(at).ok()? as u16, bytes.parse().ok()?)));

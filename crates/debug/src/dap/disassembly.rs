@@ -23,26 +23,19 @@ impl<H: LaunchHost> Adapter<H> {
         let count = wanted.instruction_count.min(MOST) as i64;
         // From a function that begins early enough: where an instruction begins, only what is before it shows.
         let early = at + LONGEST * wanted.instruction_offset.clamp(-(MOST as i64), 0);
-        let starts = symbols
-            .image
-            .functions()
-            .iter()
-            .map(|function| 2 * i64::from(function.address));
+        let functions = symbols.image.functions().iter();
+        let starts = functions.map(|function| 2 * i64::from(function.address));
         let mut next = starts
             .take_while(|start| *start <= early)
             .last()
-            .unwrap_or(0)
-            .max(0);
+            .unwrap_or(0);
         let (mut before, mut from) = (Vec::new(), Vec::new());
         let needed = count + wanted.instruction_offset.clamp(0, MOST as i64);
         while next < end && (from.len() as i64) < needed {
             if next < at { &mut before } else { &mut from }.push(next);
             let low = |at: i64| chip.cpu().flash()[at as usize];
-            next += if is_long(u16::from_le_bytes([low(next), low(next + 1)])) {
-                4
-            } else {
-                2
-            };
+            let is_long = is_long(u16::from_le_bytes([low(next), low(next + 1)]));
+            next += if is_long { LONGEST } else { 2 };
         }
         let all: Vec<i64> = before.iter().chain(&from).copied().collect();
         let start = before.len() as i64 + wanted.instruction_offset;

@@ -1,12 +1,12 @@
 //! What a client sees of a program that stands: frames, scopes, variables, expressions.
 
-use super::message::{Levels, Place};
+use super::message::Arguments;
 use super::{Adapter, LaunchHost};
 use crate::expression::{Item, assignment};
 use crate::spot::{Piece, Spot};
 use crate::stack::CallFrame;
 use crate::symbols::{SourceFile, Variable};
-use crate::value::Value as Shown;
+use crate::value::{Number, OPTIMISED_OUT, Value as Shown};
 use rumbo_emulator::gdb::DebuggedWorld;
 use rumbo_emulator::status::Status;
 use serde_json::{Value, json};
@@ -26,9 +26,6 @@ pub(super) enum Reference {
 
 /// Most parts that are listed at once, if a client does not page.
 const MOST_PARTS: usize = 1_000;
-/// Before what is typed for the program, not the debugger.
-const TO_PROGRAM: char = '>';
-
 /// A file as clients know it.
 pub(super) fn source(file: &SourceFile) -> Value {
     let name = file.name.rsplit('/').next().unwrap_or_default();
@@ -39,47 +36,36 @@ pub(super) fn source(file: &SourceFile) -> Value {
 }
 
 impl<H: LaunchHost> Adapter<H> {
-    pub(super) fn stack_trace(&mut self, levels: &Levels) -> Result<Value, String> {
+    pub(super) fn stack_trace(&mut self, asked: &Arguments) -> Result<Value, String> {
         let first = self.lines_start_at;
         let debugger = self.debugger()?;
         let files = &debugger.symbols.lines.files;
         let stack = debugger.stack();
-        let count = if levels.levels == 0 {
-            stack.len()
-        } else {
-            levels.levels
-        };
-        let frames = stack
-            .iter()
-            .enumerate()
-            .skip(levels.start_frame)
-            .take(count)
-            .map(|(number, frame)| {
-                let mut shown = json!({
-                    "id": number, "name": frame.name, "line": 0, "column": frame.column.max(1),
-                    "instructionPointerReference": format!("0x{:x}", frame.address),
-                });
-                match frame
-                    .file
-                    .and_then(|file| files.get(file))
-                    .filter(|_| frame.line > 0)
-                {
-                    Some(file) => {
-                        shown["line"] = json!(i64::from(frame.line) - 1 + first);
-                        shown["source"] = source(file);
-                        if file.path.is_none() {
-                            shown["presentationHint"] = json!("subtle");
-                        }
-                    }
-                    None => shown["presentationHint"] = json!("subtle"),
-                }
-                shown
+        let shown = |(number, frame): (usize, &CallFrame<'_>)| {
+            let mut shown = json!({
+                "id": number, "name": frame.name, "line": 0, "column": frame.column.max(1),
+                "instructionPointerReference": format!("0x{:x}", frame.address),
             });
-        Ok(json!({"stackFrames": frames.collect::<Vec<_>>(), "totalFrames": stack.len()}))
+            let file = frame.file.and_then(|file| files.get(file));
+            let file = file.filter(|_| frame.line > 0);
+            if let Some(file) = file {
+                shown["line"] = json!(i64::from(frame.line) - 1 + first);
+                shown["source"] = source(file);
+            }
+            if file.is_none_or(|file| file.path.is_none()) {
+                shown["presentationHint"] = json!("subtle");
+            }
+            shown
+        };
+        let frames = stack.iter().enumerate().skip(asked.start_frame).map(shown);
+        let frames: Vec<Value> = match asked.levels {
+            0 => frames.collect(),
+            levels => frames.take(levels).collect(),
+        };
+        Ok(json!({"stackFrames": frames, "totalFrames": stack.len()}))
     }
 
-    pub(super) fn scopes(&mut self, place: &Place) -> Result<Value, String> {
-        let frame = place.frame_id;
+    pub(super) fn scopes(&mut self, frame: usize) -> Result<Value, String> {
         let has_registers = !self.debugger()?.symbols.registers.is_empty();
         let mut scopes = Vec::new();
         for (name, reference, is_wanted) in [
@@ -105,82 +91,60 @@ impl<H: LaunchHost> Adapter<H> {
     }
 
     fn referred(&self, number: usize) -> Result<Reference, String> {
-        let reference = number
-            .checked_sub(1)
-            .and_then(|index| self.references.get(index));
-        reference
-            .cloned()
-            .ok_or_else(|| "the program has gone on since".into())
+        let index = number.checked_sub(1);
+        let reference = index.and_then(|index| self.references.get(index));
+        let gone = || "the program has gone on since".into();
+        reference.cloned().ok_or_else(gone)
     }
 
-    pub(super) fn variables(&mut self, place: &Place) -> Result<Value, String> {
-        let reference = self.referred(place.variables_reference)?;
-        let most = if place.count == 0 {
-            MOST_PARTS
-        } else {
-            place.count
+    pub(super) fn variables(&mut self, asked: &Arguments) -> Result<Value, String> {
+        let reference = self.referred(asked.variables_reference)?;
+        let most = match asked.count {
+            0 => MOST_PARTS,
+            count => count,
         };
         let debugger = self.debugger.as_ref().ok_or("nothing is being debugged")?;
-        let memory = debugger.memory();
-        let stack = debugger.stack();
-        let named = |variables: Vec<&Variable>| -> Vec<(String, String, Shown)> {
-            let frame = stack.first();
-            let values = variables
-                .into_iter()
-                .filter_map(|variable| Some((variable, frame?.value(variable))));
-            values
-                .map(|(variable, value)| (variable.name.clone(), variable.name.clone(), value))
-                .collect()
-        };
-        let (frame, mut values) = match &reference {
-            Reference::Locals(frame) => (*frame, locals(stack.get(*frame))),
-            Reference::Globals | Reference::Libraries => {
-                let own = matches!(reference, Reference::Globals);
-                let listed = debugger.symbols.listed();
-                (0, named(listed.filter(|each| each.is_own == own).collect()))
-            }
-            Reference::Peripherals => (0, named(debugger.symbols.registers.iter().collect())),
-            Reference::Parts(frame, name, value) => {
-                let parts = memory.parts(value).into_iter();
-                (
-                    *frame,
-                    parts
-                        .map(|(part, value)| (part.clone(), joined(name, &part), value))
-                        .collect(),
-                )
-            }
+        let (memory, stack) = (debugger.memory(), debugger.stack());
+        let (frame, values) = match &reference {
             Reference::Registers(frame) => {
                 return Ok(json!({"variables": registers(stack.get(*frame))}));
             }
             Reference::Pins => {
+                let level = |level| if level { "HIGH" } else { "LOW" };
                 let pins = debugger.world().pins().into_iter();
-                let pins = pins.map(|(name, level)| json!({"name": name, "value": if level { "HIGH" } else { "LOW" }, "variablesReference": 0}));
+                let pins = pins.map(|(name, is_high)| single(&name, level(is_high).into()));
                 return Ok(json!({"variables": pins.collect::<Vec<_>>()}));
             }
+            Reference::Locals(frame) => (*frame, stack.get(*frame).map(locals)),
+            Reference::Globals | Reference::Libraries => {
+                let own = matches!(reference, Reference::Globals);
+                let listed = debugger.symbols.listed().filter(|each| each.is_own == own);
+                let mut listed: Vec<&Variable> = listed.collect();
+                listed.sort_by_key(|variable| &variable.name);
+                (0, stack.first().map(|frame| values(frame, listed)))
+            }
+            Reference::Peripherals => {
+                let registers = debugger.symbols.registers.iter();
+                (0, stack.first().map(|frame| values(frame, registers)))
+            }
+            Reference::Parts(frame, whole, value) => {
+                let parts = memory.parts(value).into_iter();
+                let parts = parts.map(|(part, value)| (joined(whole, &part), part, value));
+                (*frame, Some(parts.collect()))
+            }
         };
-        if let Reference::Globals | Reference::Libraries = reference {
-            values.sort_by(|a, b| a.0.cmp(&b.0));
-        }
-        let hex = matches!(reference, Reference::Peripherals);
-        let shown: Vec<_> = values
-            .into_iter()
-            .skip(place.start)
-            .take(most)
-            .map(|(name, expression, value)| {
-                let text = match memory.number(&value) {
-                    Some(crate::value::Number::Integer(number)) if hex => format!("0x{number:02x}"),
-                    _ => memory.text(&value),
-                };
-                (
-                    name,
-                    expression,
-                    text,
-                    memory.symbols.types.name(value.of),
-                    value,
-                )
-            })
-            .collect();
-        let variables = shown.into_iter().map(|(name, expression, text, of, value)| {
+        let is_hex = matches!(reference, Reference::Peripherals);
+        let values = values.unwrap_or_default().into_iter();
+        let texts = values.skip(asked.start).take(most).map(|named| {
+            let text = match memory.number(&named.2) {
+                Some(Number::Integer(number)) if is_hex => format!("0x{number:02x}"),
+                _ => memory.text(&named.2),
+            };
+            let of = memory.symbols.types.name(named.2.of);
+            (named, text, of)
+        });
+        let texts: Vec<_> = texts.collect();
+        let variables = texts.into_iter().map(|((expression, name, value), text, of)| {
             let number = self.number_of_parts(frame, &expression, Some(value));
             json!({"name": name, "value": text, "type": of, "evaluateName": expression, "variablesReference": number})
         });
@@ -198,14 +162,19 @@ impl<H: LaunchHost> Adapter<H> {
         }
     }
 
-    pub(super) fn evaluate(&mut self, place: &Place) -> Result<Value, String> {
-        let text = place.expression.trim();
-        if let (Some(typed), true) = (text.strip_prefix(TO_PROGRAM), place.context == "repl") {
-            let line = format!("{typed}\n");
-            self.debugger()?
-                .change(|world| world.type_in(line.as_bytes()));
-            return Ok(json!({"result": "", "variablesReference": 0}));
+    /// Types a line for the program, not the debugger.
+    pub(super) fn type_in(&mut self, line: &str) -> Result<Value, String> {
+        let line = format!("{line}\n");
+        let type_in = |world: &mut H::World| world.type_in(line.as_bytes());
+        self.debugger()?.change(type_in);
+        Ok(json!({"result": "", "variablesReference": 0}))
+    }
+
+    pub(super) fn evaluate(&mut self, place: &Arguments) -> Result<Value, String> {
+        if let Some(typed) = place.typed() {
+            return self.type_in(typed);
         }
+        let text = place.expression.trim();
         let text = match assignment(text) {
             Some((target, value)) => {
                 self.debugger()?.assign(place.frame_id, target, value)?;
@@ -228,13 +197,13 @@ impl<H: LaunchHost> Adapter<H> {
         Ok(json!({key: text, "type": of, "variablesReference": number}))
     }
 
-    pub(super) fn set_expression(&mut self, place: &Place) -> Result<Value, String> {
+    pub(super) fn set_expression(&mut self, place: &Arguments) -> Result<Value, String> {
         self.debugger()?
             .assign(place.frame_id, &place.expression, &place.value)?;
         self.shown(place.frame_id, &place.expression, "value")
     }
 
-    pub(super) fn set_variable(&mut self, place: &Place) -> Result<Value, String> {
+    pub(super) fn set_variable(&mut self, place: &Arguments) -> Result<Value, String> {
         if let Reference::Registers(0) = self.referred(place.variables_reference)? {
             return self.set_register(place);
         }
@@ -244,7 +213,7 @@ impl<H: LaunchHost> Adapter<H> {
     }
 
     /// The frame and the expression of a variable of a reference, or of none.
-    pub(super) fn named(&self, place: &Place) -> Result<(usize, String), String> {
+    pub(super) fn named(&self, place: &Arguments) -> Result<(usize, String), String> {
         if place.variables_reference == 0 {
             return Ok((place.frame_id, place.name.clone()));
         }
@@ -261,12 +230,10 @@ impl<H: LaunchHost> Adapter<H> {
         }
     }
 
-    fn set_register(&mut self, place: &Place) -> Result<Value, String> {
-        let number = place
-            .name
-            .strip_prefix('r')
-            .and_then(|number| number.parse::<u8>().ok());
-        let Some(number) = number.filter(|number| *number < 32) else {
+    fn set_register(&mut self, place: &Arguments) -> Result<Value, String> {
+        let number = place.name.strip_prefix('r');
+        let number = number.and_then(|number| number.parse().ok());
+        let Some(number) = number.filter(|number: &u8| *number < 32) else {
             return Err(format!("{} cannot be set; r0 to r31 can", place.name));
         };
         let debugger = self.debugger()?;
@@ -288,24 +255,39 @@ fn joined(whole: &str, part: &str) -> String {
     }
 }
 
+/// An expression, what it is called, and its value.
+type Named = (String, String, Shown);
+
+/// Variables as a frame has them.
+fn values<'v>(
+    frame: &CallFrame<'_>,
+    variables: impl IntoIterator<Item = &'v Variable>,
+) -> Vec<Named> {
+    let variables = variables.into_iter();
+    let of = |each: &Variable| (each.name.clone(), each.name.clone(), frame.value(each));
+    variables.map(of).collect()
+}
+
 /// Parameters, then variables; of one name the inner.
-fn locals(frame: Option<&CallFrame<'_>>) -> Vec<(String, String, Shown)> {
-    let mut seen: Vec<(String, String, Shown)> = Vec::new();
-    let mut variables = frame.map(CallFrame::variables).unwrap_or_default();
-    variables.sort_by_key(|(variable, _)| !variable.is_parameter);
-    for (variable, value) in variables {
-        if !seen.iter().any(|(name, ..)| *name == variable.name) {
-            seen.push((variable.name.clone(), variable.name.clone(), value));
+fn locals(frame: &CallFrame<'_>) -> Vec<Named> {
+    let mut seen: Vec<&Variable> = Vec::new();
+    let mut variables: Vec<&Variable> = frame.locals_in_scope().collect();
+    variables.sort_by_key(|variable| !variable.is_parameter);
+    for variable in variables {
+        if !seen.iter().any(|inner| inner.name == variable.name) {
+            seen.push(variable);
         }
     }
-    seen
+    values(frame, seen)
 }
 
 fn byte(value: Option<u8>) -> String {
-    value.map_or_else(
-        || crate::OPTIMISED_OUT.into(),
-        |value| format!("0x{value:02x}"),
-    )
+    value.map_or(OPTIMISED_OUT.into(), |value| format!("0x{value:02x}"))
+}
+
+/// A variable without parts or type.
+fn single(name: &str, value: String) -> Value {
+    json!({"name": name, "value": value, "variablesReference": 0})
 }
 
 fn registers(frame: Option<&CallFrame<'_>>) -> Vec<Value> {
@@ -313,8 +295,6 @@ fn registers(frame: Option<&CallFrame<'_>>) -> Vec<Value> {
         return Vec::new();
     };
     let cpu = frame.memory.chip.cpu();
-    let single =
-        |name: &str, value: String| json!({"name": name, "value": value, "variablesReference": 0});
     let mut all = vec![
         single("pc", format!("0x{:05x}", frame.address)),
         single("sp", format!("0x{:04x}", cpu.stack_pointer())),

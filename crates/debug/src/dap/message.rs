@@ -92,24 +92,10 @@ pub struct Launch {
 }
 
 #[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(crate) struct Initialize {
-    #[serde(rename = "linesStartAt1")]
-    pub(crate) lines_start_at_1: Option<bool>,
-}
-
-#[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct Source {
     pub(crate) path: Option<String>,
     pub(crate) name: Option<String>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(crate) struct SetBreakpoints {
-    pub(crate) source: Source,
-    #[serde(default)]
-    pub(crate) breakpoints: Vec<Wanted>,
 }
 
 /// A breakpoint of any kind, as a client asks for it.
@@ -127,24 +113,34 @@ pub(crate) struct Wanted {
     pub(crate) access_type: Option<String>,
 }
 
+/// Breakpoints of a kind; those of lines are of a source.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct Breakpoints {
+    pub(crate) source: Source,
     pub(crate) breakpoints: Vec<Wanted>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(crate) struct Lines {
+pub(crate) struct LineRange {
     pub(crate) source: Source,
     pub(crate) line: i64,
     pub(crate) end_line: Option<i64>,
 }
 
-/// Where in the variables: a frame, a reference, a name; and what with it.
+impl Arguments {
+    /// What is typed for the program in place of an expression: behind a `>`.
+    pub(crate) fn typed(&self) -> Option<&str> {
+        let typed = self.expression.trim().strip_prefix('>');
+        typed.filter(|_| self.context == "repl")
+    }
+}
+
+/// Arguments of what is asked of a program that stands: of the stack, of variables by frame, reference and name, of steps.
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
-pub(crate) struct Place {
+pub(crate) struct Arguments {
     pub(crate) variables_reference: usize,
     pub(crate) frame_id: usize,
     pub(crate) name: String,
@@ -153,18 +149,8 @@ pub(crate) struct Place {
     pub(crate) context: String,
     pub(crate) start: usize,
     pub(crate) count: usize,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(crate) struct Levels {
     pub(crate) start_frame: usize,
     pub(crate) levels: usize,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(crate) struct Stepping {
     pub(crate) granularity: String,
 }
 

@@ -12,7 +12,7 @@ pub use message::Launch;
 
 use crate::control::{Debugger, Reason, StepKind};
 use inspect::Reference;
-use message::{Frames, Initialize, Request, Stepping, framed};
+use message::{Arguments, Frames, Request, framed};
 use rumbo_emulator::gdb::DebuggedWorld;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -193,6 +193,10 @@ impl<H: LaunchHost> Adapter<H> {
         self.send(json!({"type": "event", "event": name, "body": body}));
     }
 
+    fn show(&mut self, category: &str, text: &str) {
+        self.event("output", json!({"category": category, "output": text}));
+    }
+
     /// Shows what the program and breakpoints have written.
     fn tell(&mut self) {
         let Some(debugger) = &mut self.debugger else {
@@ -202,60 +206,43 @@ impl<H: LaunchHost> Adapter<H> {
         for (stream, bytes) in output {
             if !self.host.take(stream, &bytes) && stream == USB {
                 let text = String::from_utf8_lossy(&bytes).replace("\r\n", "\n");
-                self.event("output", json!({"category": "stdout", "output": text}));
+                self.show("stdout", &text);
             }
         }
         for line in log {
-            self.event(
-                "output",
-                json!({"category": "console", "output": format!("{line}\n")}),
-            );
+            self.show("console", &format!("{line}\n"));
         }
     }
 
     fn stopped(&mut self, reason: &Reason) {
         self.references.clear();
         self.exception = None;
-        let (word, text, ids) = match reason {
-            Reason::Step if std::mem::take(&mut self.enters) => {
-                ("entry", String::new(), Vec::new())
+        let (word, text) = match reason {
+            Reason::Step if std::mem::take(&mut self.enters) => ("entry", String::new()),
+            Reason::Breakpoint(_) => ("breakpoint", String::new()),
+            Reason::Data(_) => ("data breakpoint", String::new()),
+            Reason::Step => ("step", String::new()),
+            Reason::Pause => ("pause", String::new()),
+            Reason::Start => ("entry", "At the beginning: there is nothing before".into()),
+            Reason::Over => {
+                let text = "The scenario's time is over; step back, restart, or end it";
+                ("pause", text.into())
             }
-            Reason::Breakpoint(ids) => ("breakpoint", String::new(), ids.clone()),
-            Reason::Data(id) => ("data breakpoint", String::new(), vec![*id]),
-            Reason::Step => ("step", String::new(), Vec::new()),
-            Reason::Pause => ("pause", String::new(), Vec::new()),
-            Reason::Start => (
-                "entry",
-                "At the beginning: there is nothing before".into(),
-                Vec::new(),
-            ),
-            Reason::Over => (
-                "pause",
-                "The scenario's time is over; step back, restart, or end it".into(),
-                Vec::new(),
-            ),
             Reason::Ended(verdict) => {
                 self.exception = Some(verdict.clone());
-                (
-                    "exception",
-                    format!("The program cannot go on: {verdict}"),
-                    Vec::new(),
-                )
+                ("exception", format!("The program cannot go on: {verdict}"))
             }
         };
         let mut body = json!({"reason": word, "threadId": THREAD, "allThreadsStopped": true});
         if !text.is_empty() {
             body["description"] = json!(text);
             body["text"] = json!(text);
+            self.show("console", &format!("{text}\n"));
         }
-        if matches!(reason, Reason::Over | Reason::Start | Reason::Ended(_)) {
-            self.event(
-                "output",
-                json!({"category": "console", "output": format!("{text}\n")}),
-            );
-        }
-        if !ids.is_empty() {
-            body["hitBreakpointIds"] = json!(ids);
+        match reason {
+            Reason::Breakpoint(ids) => body["hitBreakpointIds"] = json!(ids),
+            Reason::Data(id) => body["hitBreakpointIds"] = json!([id]),
+            _ => {}
         }
         self.event("stopped", body);
     }
@@ -264,8 +251,8 @@ impl<H: LaunchHost> Adapter<H> {
         let arguments = &request.arguments;
         match &*request.command {
             "initialize" => {
-                let initialize: Initialize = read(arguments)?;
-                self.lines_start_at = i64::from(initialize.lines_start_at_1.unwrap_or(true));
+                let from_one = arguments["linesStartAt1"].as_bool().unwrap_or(true);
+                self.lines_start_at = i64::from(from_one);
                 Ok(capabilities())
             }
             "launch" | "attach" => self.launch(read(arguments)?),
@@ -307,44 +294,35 @@ impl<H: LaunchHost> Adapter<H> {
 
     /// Requests that are for a program that stands.
     fn standing(&mut self, command: &str, arguments: &Value) -> Result<Value, String> {
+        let asked: Arguments = read(arguments)?;
         if self.debugger()?.is_running() {
-            return match (command, read::<message::Place>(arguments)?) {
-                // What is typed goes to a running program too.
-                ("evaluate", place)
-                    if place.context == "repl" && place.expression.starts_with('>') =>
-                {
-                    self.evaluate(&place)
-                }
+            // What is typed goes to a running program too.
+            return match asked.typed() {
+                Some(typed) if command == "evaluate" => self.type_in(typed),
                 _ => Err("the program runs; pause it first".into()),
             };
         }
-        let by_instruction = read::<Stepping>(arguments)?.granularity == "instruction";
-        let step = |step| {
-            if by_instruction {
-                StepKind::Instruction
-            } else {
-                step
-            }
+        let step = |step| match &*asked.granularity {
+            "instruction" => StepKind::Instruction,
+            _ => step,
         };
         match command {
-            "stackTrace" => self.stack_trace(&read(arguments)?),
-            "scopes" => self.scopes(&read(arguments)?),
-            "variables" => self.variables(&read(arguments)?),
-            "setVariable" => self.set_variable(&read(arguments)?),
-            "setExpression" => self.set_expression(&read(arguments)?),
-            "evaluate" => self.evaluate(&read(arguments)?),
+            "stackTrace" => self.stack_trace(&asked),
+            "scopes" => self.scopes(asked.frame_id),
+            "variables" => self.variables(&asked),
+            "setVariable" => self.set_variable(&asked),
+            "setExpression" => self.set_expression(&asked),
+            "evaluate" => self.evaluate(&asked),
             "disassemble" => self.disassemble(&read(arguments)?),
             "next" => self.step(step(StepKind::Over)),
             "stepIn" => self.step(step(StepKind::In)),
             "stepOut" => self.step(StepKind::Out),
             "stepBack" => {
-                let reason = self.debugger()?.step_back(step(StepKind::Over));
-                self.stop = Some(reason);
+                self.stop = Some(self.debugger()?.step_back(step(StepKind::Over)));
                 Ok(Value::Null)
             }
             "reverseContinue" => {
-                let reason = self.debugger()?.go_back();
-                self.stop = Some(reason);
+                self.stop = Some(self.debugger()?.go_back());
                 Ok(Value::Null)
             }
             _ => {
@@ -367,10 +345,7 @@ impl<H: LaunchHost> Adapter<H> {
         debugger.set_just_own_code(launch.just_my_code != Some(false));
         self.launch = launch;
         for note in notes {
-            self.event(
-                "output",
-                json!({"category": "console", "output": format!("{note}\n")}),
-            );
+            self.show("console", &format!("{note}\n"));
         }
         self.later = Some("initialized");
         Ok(Value::Null)
@@ -379,20 +354,16 @@ impl<H: LaunchHost> Adapter<H> {
     /// Lets the program run, or to its first line.
     fn start(&mut self) -> Result<Value, String> {
         self.enters = self.launch.stop_on_entry;
-        let enters = self.enters;
-        let debugger = self.debugger()?;
-        match enters {
-            true => debugger.go_to_entry(),
-            false => debugger.go(),
+        match self.enters {
+            true => self.debugger()?.go_to_entry(),
+            false => self.debugger()?.go(),
         }
         Ok(Value::Null)
     }
 
     fn step(&mut self, step: StepKind) -> Result<Value, String> {
         self.references.clear();
-        if let Some(reason) = self.debugger()?.step(step)? {
-            self.stop = Some(reason);
-        }
+        self.stop = self.debugger()?.step(step)?;
         Ok(Value::Null)
     }
 }

@@ -82,10 +82,7 @@ pub(crate) fn assignment(text: &str) -> Option<(&str, &str)> {
 
 /// Whether a condition holds.
 pub(crate) fn is_true(item: &Item, memory: Memory<'_>) -> Result<bool, String> {
-    Ok(match number(item, memory)? {
-        Number::Integer(value) => value != 0,
-        Number::Real(value) => value != 0.0,
-    })
+    Ok(real(number(item, memory)?) != 0.0)
 }
 
 /// The bytes of a value as one of a type.
@@ -99,12 +96,9 @@ pub(crate) fn encoded(
     if let (Item::Value(value), Some(Type::Record { .. } | Type::Array { .. })) =
         (item, types.plain(of))
     {
-        let same = types.name(value.of) == types.name(of);
-        let read = value
-            .spot
-            .as_ref()
-            .filter(|_| same)
-            .and_then(|spot| spot.read(memory.chip, bytes));
+        let is_same = types.name(value.of) == types.name(of);
+        let spot = value.spot.as_ref().filter(|_| is_same);
+        let read = spot.and_then(|spot| spot.read(memory.chip, bytes));
         return read.ok_or_else(|| format!("only another {} can be put there", types.name(of)));
     }
     let number = number(item, memory)?;
@@ -112,14 +106,10 @@ pub(crate) fn encoded(
         Some(Type::Base {
             encoding: constants::DW_ATE_float,
             ..
-        }) => {
-            let real = real(number);
-            Ok(if bytes == 4 {
-                (real as f32).to_bits().to_le_bytes().into()
-            } else {
-                real.to_bits().to_le_bytes().into()
-            })
-        }
+        }) => Ok(match (bytes, real(number)) {
+            (4, real) => (real as f32).to_le_bytes().into(),
+            (_, real) => real.to_le_bytes().into(),
+        }),
         Some(Type::Base {
             encoding: constants::DW_ATE_boolean,
             ..
@@ -155,24 +145,15 @@ impl Item {
     pub(crate) fn shown(&self, memory: Memory<'_>) -> (String, String, Option<Value>) {
         let types = &memory.symbols.types;
         match self {
-            Item::Value(value) => (
-                memory.text(value),
-                types.name(value.of),
-                Some(value.clone()),
-            ),
+            Item::Value(value) => {
+                let text = memory.text(value);
+                (text, types.name(value.of), Some(value.clone()))
+            }
             Item::Number(Number::Integer(value)) => (value.to_string(), "int".into(), None),
             Item::Number(Number::Real(value)) => (real_text(*value, 9), "double".into(), None),
             Item::Pointer(address, to) => {
-                let target = Value {
-                    of: *to,
-                    spot: Some(Spot::Memory(*address)),
-                    bits: None,
-                };
-                (
-                    format!("0x{address:x}"),
-                    format!("{} *", types.name(*to)),
-                    Some(target),
-                )
+                let (text, of) = (format!("0x{address:x}"), format!("{} *", types.name(*to)));
+                (text, of, Some(Value::at(*address, *to)))
             }
         }
     }
@@ -298,15 +279,9 @@ impl Parser<'_> {
                 match types.plain(value.of) {
                     Some(Type::Array { of, .. }) => {
                         let bytes = types.bytes(*of);
-                        let at = usize::try_from(index)
-                            .map_err(|_| "an index is not negative")?
-                            .saturating_mul(bytes);
-                        let spot = value.spot.as_ref().map(|spot| spot.part(at, bytes));
-                        return Ok(Item::Value(Value {
-                            of: *of,
-                            spot,
-                            bits: None,
-                        }));
+                        let index =
+                            usize::try_from(index).map_err(|_| "an index is not negative")?;
+                        return Ok(Item::Value(value.element(*of, index, bytes)));
                     }
                     Some(Type::Pointer { .. }) => memory
                         .target(&value)
@@ -317,12 +292,8 @@ impl Parser<'_> {
             Item::Number(_) => return Err("a number is no pointer".into()),
         };
         let offset = index.wrapping_mul(types.bytes(of) as i64);
-        let spot = Some(Spot::Memory(address.wrapping_add(offset as u32)));
-        Ok(Item::Value(Value {
-            of,
-            spot,
-            bits: None,
-        }))
+        let address = address.wrapping_add(offset as u32);
+        Ok(Item::Value(Value::at(address, of)))
     }
 
     fn member(&self, item: &Item, name: &str) -> Result<Item, String> {
@@ -331,22 +302,17 @@ impl Parser<'_> {
             return Err(format!("a number has no member `{name}`"));
         };
         let value = memory.referred(value.clone());
-        member(memory, &value, name)
-            .map(Item::Value)
-            .ok_or_else(|| {
-                let parts: Vec<String> = memory
-                    .parts(&value)
-                    .into_iter()
-                    .map(|(name, _)| name)
-                    .collect();
-                let of = memory.symbols.types.name(value.of);
-                match memory.symbols.types.plain(value.of) {
-                    Some(Type::Record { .. }) => {
-                        format!("{of} has no member `{name}`; it has {}", parts.join(", "))
-                    }
-                    _ => format!("a {of} has no members; `->` follows a pointer to a structure"),
-                }
-            })
+        if let Some(found) = member(memory, &value, name) {
+            return Ok(Item::Value(found));
+        }
+        let of = memory.symbols.types.name(value.of);
+        Err(match memory.symbols.types.plain(value.of) {
+            Some(Type::Record { members, .. }) => {
+                let names: Vec<_> = members.iter().map(|member| &*member.name).collect();
+                format!("{of} has no member `{name}`; it has {}", names.join(", "))
+            }
+            _ => format!("a {of} has no members; `->` follows a pointer to a structure"),
+        })
     }
 
     fn calculated(&self, left: &Item, sign: &str, right: &Item) -> Result<Item, String> {
@@ -355,13 +321,12 @@ impl Parser<'_> {
         if let ("+" | "-", Some((address, of))) = (sign, pointer(left, memory))
             && let Number::Integer(count) = number(right, memory)?
         {
-            let bytes = count.wrapping_mul(memory.symbols.types.bytes(of).max(1) as i64);
-            let bytes = if sign == "-" {
-                bytes.wrapping_neg()
-            } else {
-                bytes
+            let bytes = count.wrapping_mul(memory.symbols.types.bytes(of).max(1) as i64) as u32;
+            let address = match sign {
+                "-" => address.wrapping_sub(bytes),
+                _ => address.wrapping_add(bytes),
             };
-            return Ok(Item::Pointer(address.wrapping_add(bytes as u32), of));
+            return Ok(Item::Pointer(address, of));
         }
         let (left, right) = (number(left, memory)?, number(right, memory)?);
         calculate(left, sign, right).map(Item::Number)
@@ -374,18 +339,11 @@ pub(crate) fn member(memory: Memory<'_>, value: &Value, name: &str) -> Option<Va
         return None;
     };
     let parts = memory.parts(value);
-    let own = parts
-        .iter()
-        .zip(members)
-        .find(|((own, _), member)| own == name && !member.is_base);
-    own.map(|((_, part), _)| part.clone()).or_else(|| {
-        let inner = parts
-            .iter()
-            .zip(members)
-            .filter(|(_, member)| member.is_base || member.name.is_empty());
-        inner
-            .into_iter()
-            .find_map(|((_, part), _)| member(memory, part, name))
+    let parts = || parts.iter().map(|(_, part)| part).zip(members);
+    let own = parts().find(|(_, member)| member.name == name && !member.is_base);
+    own.map(|(part, _)| part.clone()).or_else(|| {
+        let mut inner = parts().filter(|(_, member)| member.is_base || member.name.is_empty());
+        inner.find_map(|(part, _)| member(memory, part, name))
     })
 }
 

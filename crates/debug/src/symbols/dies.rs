@@ -2,15 +2,12 @@
 //!
 //! Source: DWARF 4, sections 2 to 5 and 7; avr-gcc writes versions 2 to 4, and GNU's call sites before they had numbers.
 
-use crate::location::{Code, Place};
-use gimli::{
-    Attribute, AttributeValue, DwAt, DwTag, EndianSlice, LittleEndian, Unit, UnitOffset, constants,
-};
+use crate::location::{Bytes, Code, Place};
+use gimli::{Attribute, AttributeValue, DwAt, DwTag, Unit, UnitOffset, constants};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-pub(super) type Bytes<'a> = EndianSlice<'a, LittleEndian>;
 pub(super) type Dwarf<'a> = gimli::Dwarf<Bytes<'a>>;
 
 /// An entry. References are indices of the list.

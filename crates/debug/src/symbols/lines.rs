@@ -1,39 +1,40 @@
 //! The table of lines: which line of which file each instruction is of.
 
-use super::dies::{Bytes, Dwarf};
+use super::dies::Dwarf;
+use crate::location::Bytes;
 use gimli::{ColumnType, Unit};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// A file that the program was compiled from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SourceFile {
+pub(crate) struct SourceFile {
     /// As the compiler named it, relative to the folder that it ran in or whole.
-    pub name: String,
+    pub(crate) name: String,
     /// Where it is here, if it is found.
-    pub path: Option<PathBuf>,
+    pub(crate) path: Option<PathBuf>,
 }
 
 /// A line begins at an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LineRow {
+pub(crate) struct LineRow {
     /// Of its first instruction [bytes].
-    pub address: u32,
+    pub(crate) address: u32,
     /// Its file, in [`Lines::files`].
-    pub file: usize,
+    pub(crate) file: usize,
     /// From 1; 0 where nothing is known from here on.
-    pub line: u32,
+    pub(crate) line: u32,
     /// From 1; 0: unknown.
-    pub column: u32,
+    pub(crate) column: u32,
     /// A place to stop at.
-    pub is_stop: bool,
+    pub(crate) is_stop: bool,
 }
 
 /// The table.
 #[derive(Clone, Debug, Default)]
-pub struct Lines {
+pub(crate) struct Lines {
     /// The files.
-    pub files: Vec<SourceFile>,
+    pub(crate) files: Vec<SourceFile>,
     /// By address.
     rows: Vec<LineRow>,
 }
@@ -100,7 +101,7 @@ impl Lines {
     }
 
     /// The row that an instruction is of: of several at one address the last.
-    pub fn row(&self, address: u32) -> Option<LineRow> {
+    pub(crate) fn row(&self, address: u32) -> Option<LineRow> {
         let after = self.rows.partition_point(|row| row.address <= address);
         let row = self.rows.get(after.checked_sub(1)?)?;
         (row.line != 0).then_some(*row)
@@ -113,10 +114,8 @@ impl Lines {
             let before = at.checked_sub(1).map(|before| self.rows[before]);
             let continues =
                 before.is_some_and(|before| before.line == row.line && before.file == row.file);
-            let is_last = self
-                .rows
-                .get(at + 1)
-                .is_none_or(|next| next.address != row.address);
+            let next = self.rows.get(at + 1);
+            let is_last = next.is_none_or(|next| next.address != row.address);
             (row.line != 0 && row.is_stop && is_last && !continues).then_some(row)
         })
     }
@@ -133,50 +132,43 @@ impl Lines {
     }
 
     /// The file that a user means: the one at the path, else the one that ends in most of the same names.
-    pub fn file_named(&self, path: &Path) -> Option<usize> {
-        let at = self
-            .files
-            .iter()
-            .position(|file| file.path.as_deref() == Some(path));
+    pub(crate) fn file_named(&self, path: &Path) -> Option<usize> {
+        let mut files = self.files.iter();
+        let at = files.position(|file| file.path.as_deref() == Some(path));
         let common = |file: &SourceFile| {
             let own = Path::new(&file.name).components().rev();
-            own.zip(path.components().rev())
-                .take_while(|(own, given)| own == given)
-                .count()
+            let both = own.zip(path.components().rev());
+            both.take_while(|(own, given)| own == given).count()
         };
         at.or_else(|| {
-            let files = self
-                .files
-                .iter()
-                .enumerate()
-                .map(|(number, file)| (common(file), number));
-            files
-                .filter(|(common, _)| *common > 0)
-                .max_by_key(|(common, number)| (*common, usize::MAX - number))
+            let files = self.files.iter().enumerate().rev();
+            let files = files.map(|(number, file)| (common(file), number));
+            let alike = files.filter(|(common, _)| *common > 0);
+            alike
+                .max_by_key(|(common, _)| *common)
                 .map(|(_, number)| number)
         })
     }
 
     /// The lines of a file that have code.
     pub(crate) fn with_code(&self, file: usize) -> std::collections::BTreeSet<u32> {
-        self.rows
-            .iter()
-            .filter(|row| row.file == file && row.is_stop)
-            .map(|row| row.line)
-            .collect()
+        self.stops_from(file, 0).map(|row| row.line).collect()
     }
 
     /// The rows of a line, or of the next one that has any, by address.
     pub(crate) fn of_line(&self, file: usize, line: u32) -> Vec<LineRow> {
-        let in_file = || {
-            self.rows
-                .iter()
-                .filter(move |row| row.file == file && row.is_stop && row.line >= line.max(1))
-        };
-        let Some(first) = in_file().map(|row| row.line).min() else {
-            return Vec::new();
-        };
-        in_file().filter(|row| row.line == first).copied().collect()
+        let from = || self.stops_from(file, line.max(1));
+        let first = from().map(|row| row.line).min();
+        from()
+            .filter(|row| Some(row.line) == first)
+            .copied()
+            .collect()
+    }
+
+    /// The places to stop at in a file from a line on.
+    fn stops_from(&self, file: usize, line: u32) -> impl Iterator<Item = &LineRow> {
+        let rows = self.rows.iter();
+        rows.filter(move |row| row.file == file && row.is_stop && row.line >= line)
     }
 }
 
@@ -191,10 +183,8 @@ fn name(
         return Ok(String::new());
     };
     let text = |value| -> gimli::Result<String> {
-        Ok(dwarf
-            .attr_string(unit, value)?
-            .to_string_lossy()
-            .into_owned())
+        let text = dwarf.attr_string(unit, value)?;
+        Ok(text.to_string_lossy().into_owned())
     };
     let name = text(file.path_name())?;
     let folder = match file.directory(header) {

@@ -7,14 +7,14 @@ mod lines;
 mod scopes;
 mod types;
 
-pub use lines::{LineRow, Lines, SourceFile};
+pub(crate) use lines::{LineRow, Lines, SourceFile};
 pub(crate) use scopes::Variable;
-pub use scopes::{Scope, ScopeKind};
-pub(crate) use types::{Type, TypeId, Types};
+pub(crate) use scopes::{Scope, ScopeKind};
+pub(crate) use types::{Member, Type, TypeId, Types};
 
-use crate::location::Place;
+use crate::location::{Bytes, Place};
 use crate::unwind::Unwinder;
-use dies::{Bytes, Dies};
+use dies::Dies;
 use gimli::{EndianSlice, LittleEndian, SectionId, constants};
 use object::{Object, ObjectSection};
 use rumbo_emulator::image::Image;
@@ -43,9 +43,9 @@ pub enum SymbolError {
 #[derive(Debug)]
 pub struct Symbols {
     /// Lines.
-    pub lines: Lines,
+    pub(crate) lines: Lines,
     /// Functions by their first address.
-    pub functions: Vec<Scope>,
+    pub(crate) functions: Vec<Scope>,
     pub(crate) globals: Vec<Variable>,
     /// The chip's registers, as avr-libc names them.
     pub(crate) registers: Vec<Variable>,
@@ -66,9 +66,8 @@ impl Symbols {
         let file = object::File::parse(elf).map_err(|error| SymbolError::Elf(error.to_string()))?;
         let section = |name: &str| {
             let section = file.section_by_name(name);
-            section
-                .and_then(|section| section.data().ok())
-                .unwrap_or_default()
+            let data = section.and_then(|section| section.data().ok());
+            data.unwrap_or_default()
         };
         let image = Image::parse(elf).map_err(|error| SymbolError::Elf(error.to_string()))?;
         let symbols = Symbols::of_sections(&section, image, find);
@@ -117,21 +116,17 @@ impl Symbols {
     }
 
     /// The function at an address.
-    pub fn function(&self, address: u32) -> Option<&Scope> {
-        self.functions
-            .iter()
-            .find(|function| function.contains(address))
+    pub(crate) fn function(&self, address: u32) -> Option<&Scope> {
+        let mut functions = self.functions.iter();
+        functions.find(|function| function.contains(address))
     }
 
     /// The functions of this name, with or without its classes and namespaces.
-    pub fn functions_named<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Scope> {
+    pub(crate) fn functions_named<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Scope> {
         let name = name.trim_end_matches("()");
         self.functions.iter().filter(move |function| {
-            function.name == name
-                || function
-                    .name
-                    .strip_suffix(name)
-                    .is_some_and(|rest| rest.ends_with("::"))
+            let outer = function.name.strip_suffix(name);
+            outer.is_some_and(|outer| outer.is_empty() || outer.ends_with("::"))
         })
     }
 
@@ -159,36 +154,28 @@ impl Symbols {
 
     /// The globals to list: each name once, and not the constants of headers, which every file has.
     pub(crate) fn listed(&self) -> impl Iterator<Item = &Variable> {
-        let is_first = |index: usize, name: &str| {
-            self.globals[..index]
-                .iter()
-                .all(|before| before.name != name)
-        };
-        let is_alone = |name: &str| {
-            self.globals
-                .iter()
-                .filter(|other| other.name == name)
-                .nth(1)
-                .is_none()
-        };
-        self.globals
-            .iter()
-            .enumerate()
-            .filter_map(move |(index, variable)| {
-                let is_constant = matches!(variable.place, Place::Constant(_));
-                (is_first(index, &variable.name) && (!is_constant || is_alone(&variable.name)))
-                    .then_some(variable)
-            })
+        let has = |globals: &[Variable], name: &str| globals.iter().any(|one| one.name == name);
+        let numbered = self.globals.iter().enumerate();
+        let listed = numbered.filter(move |(index, variable)| {
+            let is_constant = matches!(variable.place, Place::Constant(_));
+            let (before, after) = (&self.globals[..*index], &self.globals[index + 1..]);
+            let is_of_all = is_constant && has(after, &variable.name);
+            !has(before, &variable.name) && !is_of_all
+        });
+        listed.map(|(_, variable)| variable)
+    }
+
+    /// Where the lines of a function begin.
+    pub(crate) fn begins(&self, function: &Scope) -> impl Iterator<Item = LineRow> {
+        let ranges = function.ranges.iter();
+        ranges.flat_map(|range| self.lines.begins(range.clone()))
     }
 
     /// Where the body of a function begins: at its second line, behind what saves registers, or the first behind what is inlined
     /// there.
-    pub fn body(&self, function: &Scope) -> u32 {
-        let range = function.entry
-            ..function
-                .ranges
-                .first()
-                .map_or(function.entry, |range| range.end);
+    pub(crate) fn body(&self, function: &Scope) -> u32 {
+        let end = function.ranges.first().map(|range| range.end);
+        let range = function.entry..end.unwrap_or(function.entry);
         let is_inlined = |scope: &&Scope| matches!(scope.kind, ScopeKind::Inlined { .. });
         // Where a function begins, the one before ends.
         let rows = self.lines.within(range).iter().filter(|row| row.line != 0);
@@ -199,30 +186,22 @@ impl Symbols {
 
     /// The addresses for a breakpoint at a line or the next with code, and which line that is: in each scope the first, and
     /// where that is the beginning of a function, that of its body.
-    pub fn stops_of_line(&self, file: usize, line: u32) -> (Vec<u32>, Option<u32>) {
+    pub(crate) fn stops_of_line(&self, file: usize, line: u32) -> (Vec<u32>, Option<u32>) {
         let rows = self.lines.of_line(file, line);
-        let mut seen: Vec<(*const Scope, u32)> = Vec::new();
-        for row in &rows {
-            let scope = self.function(row.address).map(|function| {
-                function
-                    .chain(row.address)
-                    .last()
-                    .copied()
-                    .unwrap_or(function)
-            });
-            let key = scope.map_or(std::ptr::null(), std::ptr::from_ref);
-            if !seen.iter().any(|(scope, _)| *scope == key) {
-                seen.push((key, row.address));
+        let (mut seen, mut stops) = (Vec::new(), Vec::new());
+        for LineRow { address, .. } in rows.iter().copied() {
+            let function = self.function(address);
+            let scope = function.and_then(|function| function.chain(address).pop());
+            let scope = scope.map(std::ptr::from_ref);
+            if !seen.contains(&scope) {
+                seen.push(scope);
+                stops.push(match function {
+                    Some(function) if function.entry == address => self.body(function),
+                    _ => address,
+                });
             }
         }
-        let stop = |address: u32| match self.function(address) {
-            Some(function) if function.entry == address => self.body(function),
-            _ => address,
-        };
-        (
-            seen.into_iter().map(|(_, address)| stop(address)).collect(),
-            rows.first().map(|row| row.line),
-        )
+        (stops, rows.first().map(|row| row.line))
     }
 }
 

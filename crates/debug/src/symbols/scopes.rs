@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// What a scope is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ScopeKind {
+pub(crate) enum ScopeKind {
     /// A function.
     Function,
     /// A function inlined at a line of a file.
@@ -38,15 +38,15 @@ pub(crate) struct Variable {
 
 /// A scope.
 #[derive(Clone, Debug)]
-pub struct Scope {
+pub(crate) struct Scope {
     /// What it is.
-    pub kind: ScopeKind,
+    pub(crate) kind: ScopeKind,
     /// With classes and namespaces; of a block empty.
-    pub name: String,
+    pub(crate) name: String,
     /// Its first instruction [bytes].
-    pub entry: u32,
+    pub(crate) entry: u32,
     /// Its instructions [bytes].
-    pub ranges: Vec<Range<u32>>,
+    pub(crate) ranges: Vec<Range<u32>>,
     pub(crate) variables: Vec<Variable>,
     pub(crate) inner: Vec<Scope>,
     pub(crate) frame_base: Place,
@@ -56,12 +56,12 @@ pub struct Scope {
 
 impl Scope {
     /// Whether an instruction is of it.
-    pub fn contains(&self, address: u32) -> bool {
+    pub(crate) fn contains(&self, address: u32) -> bool {
         self.ranges.iter().any(|range| range.contains(&address))
     }
 
     /// The scopes around an instruction, this one first.
-    pub fn chain(&self, address: u32) -> Vec<&Scope> {
+    pub(crate) fn chain(&self, address: u32) -> Vec<&Scope> {
         let mut chain = vec![self];
         let mut at = self;
         while let Some(inner) = at.inner.iter().find(|inner| inner.contains(address)) {
@@ -110,40 +110,26 @@ fn is_global(dies: &Dies, die: &Die) -> bool {
     parent.is_some_and(|tag| outside.contains(&tag)) && !die.declaration && !die.place.is_nowhere()
 }
 
-/// Whether a parameter is the object of a method.
-fn is_this(dies: &Dies, number: usize) -> bool {
-    dies.inherited(number, |die| die.name.as_deref()) == Some("this")
-}
-
 struct ScopeReader<'a> {
     dies: &'a Dies,
     types: &'a mut Types,
     files: &'a [HashMap<u64, usize>],
 }
 
-impl ScopeReader<'_> {
+impl<'a> ScopeReader<'a> {
     fn scope(&mut self, number: usize, kind: ScopeKind) -> Scope {
         let die = &self.dies.all[number];
-        let start = die
-            .ranges
-            .iter()
-            .map(|range| range.start)
-            .min()
-            .unwrap_or(0);
+        let start = die.ranges.iter().map(|range| range.start).min();
+        let entry = die.entry.filter(|entry| *entry > 0).or(start);
+        let kept = die.ranges.iter().filter(|range| range.start > 0);
         let mut scope = Scope {
             kind,
-            name: if kind == ScopeKind::Block {
-                String::new()
-            } else {
-                qualified(self.dies, number)
+            name: match kind {
+                ScopeKind::Block => String::new(),
+                _ => qualified(self.dies, number),
             },
-            entry: die.entry.filter(|entry| *entry > 0).unwrap_or(start),
-            ranges: die
-                .ranges
-                .iter()
-                .filter(|range| range.start > 0)
-                .cloned()
-                .collect(),
+            entry: entry.unwrap_or(0),
+            ranges: kept.cloned().collect(),
             variables: Vec::new(),
             inner: Vec::new(),
             frame_base: die.frame_base.clone(),
@@ -159,13 +145,12 @@ impl ScopeReader<'_> {
                     scope.inner.push(self.scope(*child, ScopeKind::Block));
                 }
                 constants::DW_TAG_inlined_subroutine if !inner.ranges.is_empty() => {
-                    let file = inner
-                        .call_file
-                        .and_then(|file| self.files[inner.unit].get(&file).copied());
-                    let line = inner.call_line.unwrap_or(0);
-                    scope
-                        .inner
-                        .push(self.scope(*child, ScopeKind::Inlined { file, line }));
+                    let files = &self.files[inner.unit];
+                    let kind = ScopeKind::Inlined {
+                        file: inner.call_file.and_then(|file| files.get(&file).copied()),
+                        line: inner.call_line.unwrap_or(0),
+                    };
+                    scope.inner.push(self.scope(*child, kind));
                 }
                 constants::DW_TAG_GNU_call_site | constants::DW_TAG_call_site => {
                     scope.calls.push(self.call(inner))
@@ -181,24 +166,23 @@ impl ScopeReader<'_> {
         // A declaration in a function is of a variable elsewhere; what the compiler made for itself is of no use.
         let artificial = self
             .dies
-            .inherited(number, |die| die.artificial.then_some(()))
-            .is_some();
-        if die.declaration || artificial && !is_this(self.dies, number) {
+            .inherited(number, |die| die.artificial.then_some(()));
+        let own = self.dies.inherited(number, |die| die.name.as_deref());
+        if die.declaration || artificial.is_some() && own != Some("this") {
             return None;
         }
-        let name = match is_global {
-            true => qualified(self.dies, number),
-            false => self.dies.inherited(number, |die| die.name.clone())?,
-        };
         let of = self.dies.inherited(number, |die| die.of);
-        let place = self.dies.inherited(number, |die| match &die.place {
+        let place = |die: &'a Die| match &die.place {
             Place::None => None,
             place => Some(place.clone()),
-        });
+        };
         Some(Variable {
-            name,
+            name: match is_global {
+                true => qualified(self.dies, number),
+                false => own?.to_owned(),
+            },
             of: self.types.read(self.dies, of),
-            place: place.unwrap_or_default(),
+            place: self.dies.inherited(number, place).unwrap_or_default(),
             unit: die.unit,
             is_parameter: die.tag() == constants::DW_TAG_formal_parameter,
             is_own: false,

@@ -91,66 +91,50 @@ impl Types {
         let name = || die.name.clone().unwrap_or_default();
         let bytes = die.bytes.unwrap_or(0) as usize;
         match die.tag() {
-            constants::DW_TAG_base_type => Type::Base {
-                name: name(),
-                bytes,
-                encoding: die.encoding.unwrap_or(constants::DW_ATE_unsigned),
-            },
-            constants::DW_TAG_pointer_type => Type::Pointer {
+            tag @ (constants::DW_TAG_pointer_type
+            | constants::DW_TAG_reference_type
+            | constants::DW_TAG_rvalue_reference_type) => Type::Pointer {
                 to: self.read(dies, die.of),
-                is_reference: false,
+                is_reference: tag != constants::DW_TAG_pointer_type,
             },
-            constants::DW_TAG_reference_type | constants::DW_TAG_rvalue_reference_type => {
-                Type::Pointer {
-                    to: self.read(dies, die.of),
-                    is_reference: true,
-                }
-            }
             constants::DW_TAG_structure_type
             | constants::DW_TAG_class_type
             | constants::DW_TAG_union_type => {
-                let members = die
-                    .children
-                    .iter()
-                    .filter_map(|child| self.member(dies, &dies.all[*child]));
-                let members = members.collect();
+                let members = die.children.iter().map(|child| &dies.all[*child]);
                 Type::Record {
                     name: super::qualified(dies, number),
                     bytes,
-                    members,
+                    members: members.filter_map(|die| self.member(dies, die)).collect(),
                 }
             }
             constants::DW_TAG_array_type => self.array(dies, die),
             constants::DW_TAG_enumeration_type => {
                 let values = die.children.iter().map(|child| &dies.all[*child]);
-                let values = values
-                    .filter_map(|die| Some((die.name.clone()?, die.value?)))
-                    .collect();
+                let values = values.filter_map(|die| Some((die.name.clone()?, die.value?)));
                 Type::Enumeration {
                     name: super::qualified(dies, number),
                     bytes,
-                    values,
+                    values: values.collect(),
                 }
             }
             constants::DW_TAG_typedef => Type::Alias {
                 name: name(),
                 of: self.read(dies, die.of),
             },
-            constants::DW_TAG_const_type => Type::Qualified {
-                word: "const",
-                of: self.read(dies, die.of),
-            },
-            constants::DW_TAG_volatile_type => Type::Qualified {
-                word: "volatile",
-                of: self.read(dies, die.of),
-            },
+            tag @ (constants::DW_TAG_const_type | constants::DW_TAG_volatile_type) => {
+                let is_const = tag == constants::DW_TAG_const_type;
+                Type::Qualified {
+                    word: if is_const { "const" } else { "volatile" },
+                    of: self.read(dies, die.of),
+                }
+            }
             constants::DW_TAG_subroutine_type => Type::Function {
                 returns: self.read(dies, die.of),
             },
             _ => Type::Base {
                 name: name(),
                 bytes,
-                encoding: constants::DW_ATE_unsigned,
+                encoding: die.encoding.unwrap_or(constants::DW_ATE_unsigned),
             },
         }
     }
@@ -162,13 +146,11 @@ impl Types {
             return None;
         }
         let of = self.read(dies, die.of);
-        let name = if is_base {
-            self.name(of)
-        } else {
-            die.name.clone().unwrap_or_default()
-        };
         Some(Member {
-            name,
+            name: match is_base {
+                true => self.name(of),
+                false => die.name.clone().unwrap_or_default(),
+            },
             of,
             offset: die.offset as usize,
             bits: die.bits,
@@ -210,10 +192,10 @@ impl Types {
     /// The value of an enumeration's constant.
     pub(crate) fn enumerator(&self, name: &str) -> Option<i64> {
         self.all.iter().find_map(|of| match of {
-            Type::Enumeration { values, .. } => values
-                .iter()
-                .find(|(own, _)| own == name)
-                .map(|(_, value)| *value),
+            Type::Enumeration { values, .. } => {
+                let named = values.iter().find(|(own, _)| own == name)?;
+                Some(named.1)
+            }
             _ => None,
         })
     }

@@ -1,7 +1,7 @@
 //! Ranges of a recorded run, from the original program's CSV.
 
-use crate::error::SonarLogError;
-use crate::log::DAMAGED_IN;
+use crate::error::IdentifyError;
+use crate::log::{DAMAGED_IN, name_of};
 use std::path::Path;
 
 /// The ranges of a recorded run of modes 1 to 4.
@@ -22,12 +22,9 @@ impl SonarLog {
     ///
     /// # Errors
     /// A file that cannot be read, lacks a column, or holds something that is no number.
-    pub fn read(path: &Path) -> Result<Self, SonarLogError> {
-        let text = std::fs::read_to_string(path).map_err(|cause| SonarLogError {
-            path: path.into(),
-            line: 0,
-            cause: cause.to_string(),
-        })?;
+    pub fn read(path: &Path) -> Result<Self, IdentifyError> {
+        let text = std::fs::read_to_string(path);
+        let text = text.map_err(|cause| IdentifyError::read(path, cause))?;
         Self::parse(path, &text)
     }
 
@@ -35,8 +32,8 @@ impl SonarLog {
     ///
     /// # Errors
     /// As [`SonarLog::read`].
-    pub fn parse(path: &Path, text: &str) -> Result<Self, SonarLogError> {
-        let error = |line: u64, cause: String| SonarLogError {
+    pub fn parse(path: &Path, text: &str) -> Result<Self, IdentifyError> {
+        let error = |line: u64, cause: String| IdentifyError::Row {
             path: path.into(),
             line,
             cause,
@@ -44,11 +41,9 @@ impl SonarLog {
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
             .from_reader(text.as_bytes());
-        let bad = |cause: csv::Error| {
-            error(
-                cause.position().map_or(0, csv::Position::line),
-                cause.to_string(),
-            )
+        let bad = |cause: csv::Error| match cause.position() {
+            Some(at) => error(at.line(), cause.to_string()),
+            None => IdentifyError::read(path, cause),
         };
         let header = reader.headers().map_err(bad)?.clone();
         let mut columns = [0; 5];
@@ -81,9 +76,8 @@ impl SonarLog {
         if damaged.len() > t_s.len() / DAMAGED_IN {
             return Err(damaged.swap_remove(0));
         }
-        let name = path.file_name();
         Ok(Self {
-            name: name.map_or_else(|| "log".into(), |name| name.to_string_lossy().into_owned()),
+            name: name_of(path),
             t_s,
             driven,
             // Mode 1 has one sonar and writes its reading twice.

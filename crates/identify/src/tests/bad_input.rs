@@ -1,7 +1,7 @@
 //! Logs with damage, of two robots, or too short.
 
-use super::{exercise, log, message, recorded};
-use crate::{DriveLog, FitProgress, IdentifyError, identify};
+use super::{exercise, fitted, log, message, recorded};
+use crate::{DriveLog, IdentifyError};
 use rumbo_plant::params::Params;
 use std::path::Path;
 
@@ -52,7 +52,7 @@ fn logs_of_two_robots_are_refused_and_both_are_named() {
         named("monday.csv", &recorded(&Params::default(), exercise, 9.0)),
         named("other.csv", &recorded(&other, exercise, 9.0)),
     ];
-    let error = identify(&logs, &Params::default(), 0, &FitProgress::none()).unwrap_err();
+    let error = fitted(&logs).unwrap_err();
     assert!(
         matches!(error, IdentifyError::Contradiction { .. }),
         "{error}"
@@ -74,7 +74,7 @@ fn logs_of_two_wirings_are_refused() {
     let text = recorded(&Params::default(), uneven, 3.0);
     let swapped = text.replacen("pwm_a,pwm_b", "pwm_b,pwm_a", 1);
     let logs = [named("right.csv", &text), named("swapped.csv", &swapped)];
-    let error = identify(&logs, &Params::default(), 0, &FitProgress::none()).unwrap_err();
+    let error = fitted(&logs).unwrap_err();
     assert!(
         matches!(error, IdentifyError::Contradiction { .. }),
         "{error}"
@@ -90,7 +90,7 @@ fn logs_of_two_days_of_one_robot_are_not_contradictory() {
         named("monday.csv", &recorded(&Params::default(), exercise, 9.0)),
         named("tuesday.csv", &recorded(&tuesday, exercise, 9.0)),
     ];
-    let found = identify(&logs, &Params::default(), 0, &FitProgress::none()).unwrap();
+    let found = fitted(&logs).unwrap();
     let volts = [0, 1].map(|i| found.runs[i].nuisance.battery_v);
     assert!(volts[0] > volts[1], "{volts:?}");
 }
@@ -98,7 +98,7 @@ fn logs_of_two_days_of_one_robot_are_not_contradictory() {
 #[test]
 fn a_monotonous_log_says_what_it_hardly_shows_and_which_experiment_does() {
     let run = [log(&recorded(&Params::default(), |_| [90.0, 90.0], 6.0))];
-    let found = identify(&run, &Params::default(), 0, &FitProgress::none()).unwrap();
+    let found = fitted(&run).unwrap();
     let said = found.to_string();
     let line = |key: &str| {
         let mut lines = said

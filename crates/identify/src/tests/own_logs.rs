@@ -1,6 +1,7 @@
 //! Logs of our own program, cut into stretches.
 
-use crate::replay::{Correct, Nuisance, Replay};
+use super::NOMINAL;
+use crate::replay::{Correct, Replay};
 use crate::{BATTERY, IN_THE_AIR, ON_THE_FLOOR, Stretches, stretches};
 use rumbo_log::{Level, Log, LoggedEvent, Row};
 use rumbo_plant::params::Params;
@@ -45,12 +46,7 @@ fn cut(rows: Vec<Row>, events: &[(f64, String)]) -> Stretches {
 #[test]
 fn the_last_speed_of_a_prediction_changes_as_the_one_before() {
     let log = cut(driven(at(0, 4_000)), &[]).logs.remove(0);
-    let nuisance = Nuisance {
-        battery_v: 7.4,
-        floor_scale: 1.0,
-        scrub_scale: 1.0,
-    };
-    let replay = Replay::new(&log, &Params::default(), nuisance);
+    let replay = Replay::new(&log, &Params::default(), NOMINAL);
     let observed = replay.observe(Correct::Speeds);
     let last = log.rows.len() - 1;
     let span = replay.span(20, &observed[20], last);
