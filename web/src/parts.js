@@ -2,7 +2,7 @@
 /** What else is at the robot's pins: buttons, switches and potentiometers to work, LEDs, buzzers, displays and sensors to look at. */
 import { contentsOf, drawDots, drawLetters } from './displays.js';
 import { create, element } from './dom.js';
-import { shownOf } from './light.js';
+import { isSensor, shownOf } from './light.js';
 import { t } from './text.js';
 
 /** @typedef {import('./types.js').Part} Part */
@@ -16,7 +16,7 @@ const ARROWS = new Map([['up', '▲'], ['left', '◀'], ['right', '▶'], ['down
 const AGAIN_MS = 100;
 
 /** What is on the two-wire bus, and where. @param {Part} part */
-const onBus = ({ kind, address }) => t('{} at address {}', kind.toUpperCase(), `0x${(address ?? 0).toString(16)}`);
+const onBus = ({ kind, address }) => (address === undefined ? kind.toUpperCase() : t('{} at address {}', kind.toUpperCase(), `0x${address.toString(16)}`));
 
 export class PartsPanel {
   #panel = element('parts', HTMLDivElement);
@@ -147,9 +147,9 @@ export class PartsPanel {
       this.#draws.set(name, (content) => drawLetters(letters, content));
       return create('span', { className: 'part', title: onBus(part) }, `${name} `, letters);
     }
-    const light = create('output', { className: kind === 'mpu6050' ? '' : `light ${kind}` });
+    const light = create('output', { className: isSensor(kind) ? '' : `light ${kind}` });
     this.#lights.push([part, light]);
-    if (kind === 'mpu6050') {
+    if (isSensor(kind)) {
       const origin = create('small', {}, ` ${t('by its data sheet, not identified')}`);
       return create('span', { className: 'part', title: onBus(part) }, `${name} `, light, origin);
     }

@@ -123,7 +123,7 @@
  *
  * @typedef {{ticket: number, model: import('./world_shapes.js').World | null, toml: string, problem: string | null, driven: boolean}} EditedWorld A world to edit: what its file holds, its text, what is wrong with it.
  *
- * @typedef {{name: string, kind: 'button' | 'switch' | 'potentiometer' | 'led' | 'buzzer' | 'infrared' | 'mpu6050' | 'ssd1306' | 'hd44780', percent: number, address?: number, keys?: string[]}} Part Something at a pin of an emulated robot, or at an address of its two-wire bus.
+ * @typedef {{name: string, kind: 'button' | 'switch' | 'potentiometer' | 'led' | 'buzzer' | 'infrared' | 'mpu6050' | 'vl53l0x' | 'qmc5883l' | 'hmc5883l' | 'ssd1306' | 'hd44780', percent: number, address?: number, keys?: string[]}} Part Something at a pin of an emulated robot, or at an address of its two-wire bus.
  * @typedef {{stands: boolean, t_us: number, back_us: number}} HeldState A program in the hands of the debugger, where in its time it is, and how far back.
  * @typedef {{name: string, text: string}} SketchFile
  * @typedef {{ticket: number, name: string, files: SketchFile[], examples: string[]}} ShownSketch The source of a program.

@@ -13,7 +13,7 @@ export const OPTIONAL = ['left_encoder', 'left_encoder_b', 'right_encoder', 'rig
 /** Sensors of which there may be several, from left to right. */
 export const SENSORS = ['line', 'obstacle', 'sharp'];
 /** Where a device on the two-wire bus usually is. @type {Record<string, string>} */
-const ADDRESSES = { mpu6050: '0x68', ssd1306: '0x3c', hd44780: '0x27' };
+const ADDRESSES = { mpu6050: '0x68', vl53l0x: '0x29', qmc5883l: '0x0d', hmc5883l: '0x1e', ssd1306: '0x3c', hd44780: '0x27' };
 
 /** The rows of a driver: what it needs, and of those before what still suits. @param {Driver} driver @param {Row[]} before @returns {Row[]} */
 export function rowsOf(driver, before) {

@@ -28,6 +28,16 @@ test('an inertial sensor shows its accelerations and its turn rate, and nothing 
   assert.deepEqual(shownOf(imu, now({ imu_forward_m_s2: NaN })), ['– – – m/s², – °/s', 0]);
 });
 
+test('a sensor of distance and a compass show what they measure, and a dash where that is nothing', () => {
+  /** @type {import('../src/types.js').Part} */
+  const tof = { name: 'tof', kind: 'vl53l0x', percent: 0, address: 0x29 };
+  /** @type {import('../src/types.js').Part} */
+  const compass = { name: 'north', kind: 'hmc5883l', percent: 0, address: 0x1e };
+  assert.deepEqual(shownOf(tof, () => 41.26), ['41.3 cm', 0]);
+  assert.deepEqual(shownOf(tof, () => Infinity), ['– cm', 0]);
+  assert.deepEqual(shownOf(compass, (signal) => (signal === 'north_azimuth_deg' ? 271.4 : null)), ['271°', 0]);
+});
+
 test('what displays show is told by name, with dots and with letters of the program', () => {
   const contents = contentsOf('screen={"columns":8,"dots":"80ff"}\ntext={"rows":["\\ue001=4\\u00b0 "],"drawn":{},"light":true}\n');
   const screen = /** @type {import('../src/displays.js').Dots} */ (contents.get('screen'));

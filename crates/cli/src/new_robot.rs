@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::output;
 use crate::place;
 use rumbo_experiment::files::new_robot::{
-    JUMPERS, LINE, Measured, NewRobot, OBSTACLE, SHARP, counted, looks_like, meaning, needed,
-    remarks,
+    JUMPERS, LINE, Measured, NewRobot, OBSTACLE, SHARP, counted, has_place, looks_like, meaning,
+    needed, remarks,
 };
 use rumbo_experiment::files::{Kind, Library};
 use rumbo_sim::boards::{BOARDS, Board};
@@ -215,12 +215,14 @@ fn asked(signal: &str, driver: &Driver) -> String {
     }
 }
 
-/// Where sensors are, each of which has pins.
+/// Where sensors are, each of which has pins or is a part.
 fn sensors(args: &NewArgs, pins: &[(String, String)]) -> Result<Vec<(String, [f64; 3])>, Failure> {
     let trigger = |sensor: &str| format!("{sensor}_trigger");
     let is_wired = |sensor: &str| {
+        let mut parts = args.parts.iter();
         pins.iter()
             .any(|(signal, _)| signal == sensor || *signal == trigger(sensor))
+            || parts.any(|[name, kind, _]| name == sensor && has_place(kind))
     };
     match args.sensors.iter().find(|(sensor, _)| !is_wired(sensor)) {
         None => Ok(args.sensors.clone()),

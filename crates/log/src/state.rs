@@ -131,11 +131,12 @@ pub struct HeldState {
 pub struct PartState {
     /// Its name in the robot file.
     pub name: String,
-    /// `button`, `switch`, `potentiometer`, `led`, `buzzer`, `infrared`; on the two-wire bus `mpu6050`, `ssd1306`, `hd44780`.
+    /// `button`, `switch`, `potentiometer`, `led`, `buzzer`, `infrared`; on the two-wire bus `mpu6050`, `vl53l0x`,
+    /// `qmc5883l`, `hmc5883l`, `ssd1306`, `hd44780`.
     pub kind: String,
     /// How far it is pressed, closed or turned up \[%\].
     pub percent: u8,
-    /// Its address on the two-wire bus.
+    /// Its address on the two-wire bus, if it is there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub address: Option<u8>,
     /// The keys of its remote control.

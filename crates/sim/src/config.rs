@@ -24,6 +24,8 @@ pub struct Config {
     pub world: World,
     /// The dark lines on its floor.
     pub lines: Arc<[DarkLine]>,
+    /// Where magnetic north is, counter-clockwise from the world's x axis \[rad\].
+    pub north_rad: f64,
     /// Start pose in the world.
     pub start: Pose,
     /// The wheels turn freely: no floor, the body stays where it is.

@@ -87,16 +87,7 @@ impl ObstacleSensor {
             Sight::Volts if before.is_some() && now_us % READING_US >= 1_000 => return None,
             Sight::Volts => (BEAM_RAD, VOLTS[VOLTS.len() - 1].0),
         };
-        let (sin, cos) = libm::sincos(pose.heading_rad);
-        let [x_m, y_m] = self.at_m;
-        let cone = Cone {
-            apex: [
-                pose.x_m + cos * x_m - sin * y_m,
-                pose.y_m + sin * x_m + cos * y_m,
-            ],
-            axis_rad: pose.heading_rad + self.angle_rad,
-            half_angle_rad,
-        };
+        let cone = cone_at(pose, self.at_m, self.angle_rad, half_angle_rad);
         let found = cone::nearest(world, now_us, &cone, &Hearing::geometric(reach_m));
         let range_m = found.map_or(f64::INFINITY, |found| found.range_m);
         let volts = match self.sight {
@@ -116,6 +107,24 @@ impl ObstacleSensor {
             Sight::Volts => volts_at(range_m),
         };
         Some(Seen { range_m, volts })
+    }
+}
+
+/// What is seen from a place on the robot, ahead of the wheels' axis and to the left \[m\], in a direction of its own.
+pub(crate) fn cone_at(
+    pose: &Pose,
+    [x_m, y_m]: [f64; 2],
+    angle_rad: f64,
+    half_angle_rad: f64,
+) -> Cone {
+    let (sin, cos) = libm::sincos(pose.heading_rad);
+    Cone {
+        apex: [
+            pose.x_m + cos * x_m - sin * y_m,
+            pose.y_m + sin * x_m + cos * y_m,
+        ],
+        axis_rad: pose.heading_rad + angle_rad,
+        half_angle_rad,
     }
 }
 

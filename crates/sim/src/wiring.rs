@@ -1,7 +1,7 @@
 //! Which signal is on which pin of the board.
 
 use crate::boards::Board;
-use crate::bus::{BusDevice, DeviceKind};
+use crate::bus::BusDevice;
 use crate::drivers::Driver;
 use crate::floor::LineSensor;
 use crate::obstacle::ObstacleSensor;
@@ -96,6 +96,11 @@ impl Wiring {
         lines.chain(bus).chain(speeds)
     }
 
+    /// Whether a device is on the two-wire bus.
+    pub fn has_bus(&self) -> bool {
+        self.bus.iter().any(|device| device.address().is_some())
+    }
+
     /// The name of what is on a pin of the board, if anything is: a signal, a part, a line sensor, the two-wire bus.
     #[must_use]
     pub fn owner_of(&self, pin: u8) -> Option<&str> {
@@ -105,19 +110,17 @@ impl Wiring {
         let sensors = sensors.map(|sensor| (sensor.name.as_str(), sensor.pin));
         let obstacles = self.obstacle_sensors.iter();
         let obstacles = obstacles.map(|sensor| (sensor.name.as_str(), sensor.pin));
-        let interrupts = self.bus.iter().filter_map(|device| match device.kind {
-            DeviceKind::Mpu6050 { interrupt, .. } => Some((device.name.as_str(), interrupt?)),
-            _ => None,
-        });
+        let beside = self.bus.iter();
+        let beside = beside.flat_map(|device| device.pins().map(|pin| (device.name.as_str(), pin)));
         let lines = self.board.two_wire.map(|pin| ("the two-wire bus", pin));
-        let lines = lines.into_iter().filter(|_| !self.bus.is_empty());
+        let lines = lines.into_iter().filter(|_| self.has_bus());
         let shield = self.shield_pins().map(|pin| ("the motor shield", pin));
         let mut all = signals
             .chain(shield)
             .chain(parts)
             .chain(sensors)
             .chain(obstacles)
-            .chain(interrupts)
+            .chain(beside)
             .chain(lines);
         all.find(|(_, on)| *on == pin).map(|(name, _)| name)
     }

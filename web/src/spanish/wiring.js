@@ -19,5 +19,6 @@ export const WIRING = {
   'sonar, Trig': 'sónar, Trig', 'sonar, Echo': 'sónar, Echo', 'the board receives': 'la placa recibe', 'the board sends': 'la placa envía',
   standby: 'standby', 'line sensor': 'sensor de línea', 'obstacle sensor': 'sensor de obstáculos', Sharp: 'Sharp',
   button: 'pulsador', 'switch|part': 'interruptor', potentiometer: 'potenciómetro', LED: 'LED', buzzer: 'zumbador', 'infrared receiver': 'receptor de infrarrojos',
-  'MPU-6050': 'MPU-6050', 'display SSD1306': 'pantalla SSD1306', 'display HD44780': 'pantalla HD44780',
+  'MPU-6050': 'MPU-6050', 'VL53L0X, distance by light': 'VL53L0X, distancia por luz', 'compass QMC5883L': 'brújula QMC5883L', 'compass HMC5883L': 'brújula HMC5883L',
+  'display SSD1306': 'pantalla SSD1306', 'display HD44780': 'pantalla HD44780',
 };

@@ -188,7 +188,8 @@ pub(crate) struct NewArgs {
     /// side, line_rear=-0.05:0 is a line sensor behind the wheels, obstacle_rear=-0.1:0:180 looks back
     #[arg(long, alias = "sonars", value_name = "SENSOR=X:Y:DEG", value_delimiter = ',', value_parser = values::sensor)]
     pub(crate) sensors: Vec<(String, [f64; 3])>,
-    /// Parts of the robot at a pin or an address, e.g. start=button:8,go=button:9:5v,remote=infrared:2,screen=ssd1306:0x3c
+    /// Parts of the robot at a pin or an address, e.g. start=button:8,go=button:9:5v,remote=infrared:2,screen=ssd1306:0x3c;
+    /// tof=vl53l0x:0x29:7 has its XSHUT on pin 7, text=hd44780:12:11:5:4:3:2 is on the pins of LiquidCrystal(rs, e, d4 to d7)
     #[arg(long, value_name = "NAME=KIND:PLACE", value_delimiter = ',', value_parser = values::part)]
     pub(crate) parts: Vec<[String; 3]>,
     /// Begin with the file of this robot (`rumbo list robots`), or with this example (`rumbo list sketches`)

@@ -13,8 +13,7 @@
 //! beside = { pin = 4, x_m = 0.08, y_m = 0.03, rc = true }    # a time: QTR-RC
 //! ```
 
-use super::parts::is_free;
-use super::pin::read_pin;
+use super::pin::{is_free, read_pin};
 use super::read::{Allowed, Table};
 use super::value::PLACE;
 use rumbo_sim::floor::{DarkLine, FloorReading, LineSensor, USUAL_V};

@@ -8,6 +8,7 @@
 mod assemble;
 pub mod bounded;
 pub mod commands;
+mod devices;
 mod error;
 mod faults;
 pub mod firmware;
@@ -18,6 +19,7 @@ mod line;
 mod mover;
 mod names;
 pub(crate) mod near;
+mod new_parts;
 mod new_plant;
 pub mod new_robot;
 mod new_sensors;

@@ -1,6 +1,7 @@
 //! A robot file to start from: a board, a driver and pins as text with comments, and which known robot that looks like.
 
 use super::error::FileError;
+use super::new_parts::part_of;
 use super::new_plant::{encoder, plant};
 use super::new_sensors::{
     line_sensors, obstacle_sensors, place_of, quoted, signals, sonars, usual_place,
@@ -10,6 +11,7 @@ use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::{Direction, Driver};
 use rumbo_sim::wiring::{Wiring, is_driver_input};
 
+pub use super::new_parts::has_place;
 pub use super::new_plant::{GearMotor, MOTORS, Measured, counted};
 pub use super::new_sensors::{LINE, OBSTACLE, SHARP};
 pub use super::sonars::is_of_sonar;
@@ -115,25 +117,6 @@ pub fn meaning(signal: &str, driver: &Driver) -> String {
     }
 }
 
-/// The keys of a remote control by their codes, as `left=0x20DF1BE4:right=551525220`; behind `raw:` in the other order.
-fn own_remote(codes: &str) -> String {
-    let (table, codes) = match codes.strip_prefix("raw:") {
-        Some(codes) => ("raw_keys", codes),
-        None => ("keys", codes),
-    };
-    let is_bare = |key: &str| {
-        key.chars()
-            .all(|c| c.is_ascii_alphanumeric() || "-_".contains(c))
-    };
-    let entry = |code: &str| match code.split_once('=') {
-        Some((key, bits)) if is_bare(key) => format!("{key} = {bits}"),
-        Some((key, bits)) => format!("{key:?} = {bits}"),
-        None => code.to_owned(),
-    };
-    let codes: Vec<String> = codes.split(':').map(entry).collect();
-    format!(", {table} = {{ {} }}", codes.join(", "))
-}
-
 impl NewRobot {
     /// The robot's file.
     #[must_use]
@@ -203,25 +186,8 @@ impl NewRobot {
                 quoted(pin)
             ));
         }
-        for [name, kind, place] in &self.parts {
-            let (place, more) = place.split_once(':').unwrap_or((place, ""));
-            let number = match place.strip_prefix("0x") {
-                Some(digits) => u8::from_str_radix(digits, 16),
-                None => place.parse(),
-            };
-            let place = match number {
-                Ok(_) => place.to_owned(),
-                Err(_) => format!("{place:?}"),
-            };
-            // What else such a part may say.
-            let more = match (more, kind.as_str()) {
-                ("", _) => String::new(),
-                (codes, "infrared") if codes.contains('=') => own_remote(codes),
-                (keys, "infrared") => format!(", keys = {}", quoted(keys)),
-                (to, "button" | "switch") => format!(", to = {to:?}"),
-                (size, _) => format!(", size = {size:?}"),
-            };
-            put(format!("parts.{name} = {{ {kind} = {place}{more} }}"));
+        for part in &self.parts {
+            put(part_of(part, &self.sensors));
         }
         text.push_str(&line_sensors(OWN, &self.pins, &self.sensors));
         text.push_str(&obstacle_sensors(OWN, &self.pins, &self.sensors));

@@ -34,7 +34,7 @@ const APART_DEG: f64 = 30.0;
 /// Signals and their pins, or what is said of all sensors of a kind.
 type Pins = [(String, String)];
 /// Where sensors are by their signals: x and y \[m\], and the direction \[deg\].
-type Places = [(String, [f64; 3])];
+pub(super) type Places = [(String, [f64; 3])];
 
 /// Where a sensor is, if that was said.
 pub(super) fn place_of(places: &Places, signal: &str) -> Option<[f64; 3]> {

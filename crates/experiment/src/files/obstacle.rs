@@ -7,7 +7,7 @@
 //! ```
 
 use super::line::{read_level, read_mounted};
-use super::parts::is_free;
+use super::pin::is_free;
 use super::read::{Allowed, Table};
 use rumbo_sim::obstacle::{ObstacleSensor, Sight};
 use rumbo_sim::wiring::Wiring;

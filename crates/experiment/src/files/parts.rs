@@ -1,4 +1,4 @@
-//! The parts of a wiring: what a person works or looks at, at a pin, and the devices on the two-wire bus, at an address.
+//! The parts of a wiring: what a person works or looks at, at a pin, and the [devices](super::devices) on the two-wire bus.
 //!
 //! ```toml
 //! parts.start = { button = 8 }            # to GND; to = "gnd" or "5v": that, with a resistor to the other one
@@ -10,26 +10,17 @@
 //!                                         # starter kits, "mini" Adafruit's,
 //!                                         # keys = { left = 0x20DF1BE4 } any other one, by IRremote's `value`s up to
 //!                                         # version 2; raw_keys, by its `decodedRawData` from 3 on
-//! parts.imu = { mpu6050 = 0x68 }          # with x_m and y_m where it is, interrupt = 2 for its INT, and where
-//!                                         # its x, y and z point where not so: axes = "forward left up"
-//! parts.screen = { ssd1306 = 0x3c }       # with size = "128x32"
-//! parts.text = { hd44780 = 0x27 }         # with size = "20x4"
 //! ```
 
-use super::error::did_you_mean;
-use super::pin::read_pin;
+use super::devices::read_device;
+use super::pin::{is_free, read_pin};
 use super::read::{Allowed, Table};
-use rumbo_sim::bus::{BusDevice, DeviceKind};
+use rumbo_sim::bus::DeviceKind;
 use rumbo_sim::remote::{self, ARROWS, CAR, Key, Known, MINI, RADIO, STARTER};
 use rumbo_sim::wiring::{Part, PartKind, Wiring};
 
-/// What is written as an address: one of 7 bits, or by mistake one of 8.
-const ADDRESS: Allowed = Allowed::new(0.0, 255.0, "count");
 /// What a key of a remote control sends, or its command.
 const CODE: Allowed = Allowed::new(0.0, u32::MAX as f64, "count");
-/// Position of a sensor on the body.
-const MOUNT: Allowed = Allowed::new(-0.5, 0.5, "m");
-
 /// Reads the table of parts into a wiring.
 pub(super) fn read_parts(table: &Table<'_, '_>, wiring: &mut Wiring) {
     for key in table.keys() {
@@ -160,128 +151,4 @@ fn read_named_keys(own: &Table<'_, '_>) -> &'static [Known] {
         }
         _ => &CAR,
     }
-}
-
-/// Reports a pin that something else is on.
-pub(super) fn is_free(own: &Table<'_, '_>, key: &str, pin: u8, wiring: &Wiring) {
-    if let Some(other) = wiring.owner_of(pin) {
-        let remedy = format!("{other} is on that pin already: give each its own");
-        let line = own.value(key).map_or(0, |(line, _)| line);
-        own.complain(key, line, &wiring.board.shown(pin), &remedy);
-    }
-}
-
-fn read_device(own: &Table<'_, '_>, name: &str, kind: DeviceKind, wiring: &mut Wiring) {
-    let address = read_address(own, kind, wiring);
-    let mut kind = kind;
-    let sizes = kind.sizes();
-    if !sizes.is_empty()
-        && let Some(size) = own.word("size")
-    {
-        match sizes.iter().find(|(name, _)| *name == size.value) {
-            Some((_, sized)) => kind = *sized,
-            None => {
-                let names: Vec<String> = sizes.iter().map(|(name, _)| (*name).to_owned()).collect();
-                own.complain("size", size.line, &size.value, &did_you_mean(&names));
-            }
-        }
-    }
-    if let DeviceKind::Mpu6050 {
-        at_m,
-        axes,
-        interrupt,
-    } = &mut kind
-    {
-        *axes = read_axes(own).unwrap_or(*axes);
-        *at_m = ["x_m", "y_m"].map(|key| own.number(key, MOUNT).unwrap_or(0.0));
-        *interrupt = own
-            .has("interrupt")
-            .then(|| read_pin(own, "interrupt", wiring.board, false))
-            .flatten();
-        if let Some(pin) = *interrupt {
-            is_free(own, "interrupt", pin, wiring);
-        }
-    }
-    own.finish();
-    let board = wiring.board;
-    for (pin, line) in board.two_wire.into_iter().zip(["SDA", "SCL"]) {
-        let owner = wiring.owner_of(pin).filter(|_| wiring.bus.is_empty());
-        let owner = owner.filter(|_| !wiring.shield_pins().any(|own| own == pin));
-        if let Some(other) = owner {
-            own.complain_here(&format!(
-                "{} is on the two-wire bus, and {other} on its pin {} ({line}): put {other} on another pin",
-                kind.name(),
-                board.shown(pin)
-            ));
-        }
-    }
-    if let Some(address) = address {
-        wiring.bus.push(BusDevice {
-            name: name.to_owned(),
-            kind,
-            address,
-        });
-    }
-}
-
-/// Where the axes of a sensor point.
-fn read_axes(own: &Table<'_, '_>) -> Option<[i8; 3]> {
-    let text = own.text("axes")?;
-    let directions = DeviceKind::directions();
-    let words = text.value.split_whitespace();
-    let axes = words.map(|word| {
-        let found = directions.iter().find(|(name, _)| *name == word);
-        found.map(|(_, axis)| *axis)
-    });
-    let axes: Option<Vec<i8>> = axes.collect();
-    let axes = axes.and_then(|axes| <[i8; 3]>::try_from(axes).ok());
-    // Forward, left, up, and what is turned about one of them: an even order, as many opposites as that.
-    let right_handed = |axes: &[i8; 3]| {
-        let order = axes.map(i8::unsigned_abs);
-        let even = [[1, 2, 3], [2, 3, 1], [3, 1, 2]].contains(&order);
-        let odd = [[1, 3, 2], [2, 1, 3], [3, 2, 1]].contains(&order);
-        let opposites = axes.iter().filter(|axis| **axis < 0).count();
-        even && opposites.is_multiple_of(2) || odd && !opposites.is_multiple_of(2)
-    };
-    let axes = axes.filter(right_handed);
-    if axes.is_none() {
-        let names: Vec<&str> = directions.iter().map(|(name, _)| *name).collect();
-        let remedy = format!(
-            "must be where x, y and z of the chip point, right-handed, of {}, e.g. \"up left backward\"",
-            names.join(", ")
-        );
-        own.complain("axes", text.line, &format!("{:?}", text.value), &remedy);
-    }
-    axes
-}
-
-/// The address of a device, one that it can have and no other one has.
-fn read_address(own: &Table<'_, '_>, kind: DeviceKind, wiring: &Wiring) -> Option<u8> {
-    let given = own.placed_number(kind.name(), ADDRESS)?;
-    let (line, address) = (given.line, given.value as u8);
-    let allowed = kind.addresses();
-    let fits = |address: u8| allowed.iter().any(|range| range.contains(&address));
-    let ranges: Vec<String> = allowed
-        .iter()
-        .map(|range| format!("0x{:02x} to 0x{:02x}", range.start(), range.end()))
-        .collect();
-    let ranges = ranges.join(" or ");
-    let taken = wiring.bus.iter().find(|other| other.address == address);
-    let remedy = if let Some(other) = taken {
-        format!(
-            "{} has that address already: set another one by its jumpers, {ranges}",
-            other.name
-        )
-    } else if fits(address) {
-        return Some(address);
-    } else if address > 0x7F && fits(address / 2) {
-        format!(
-            "is not within 7 bits: it is 0x{:02x} with the bit for reading and writing behind it; write 0x{0:02x}",
-            address / 2
-        )
-    } else {
-        format!("must be an address that it can have, {ranges}")
-    };
-    own.complain(kind.name(), line, &format!("0x{address:02x}"), &remedy);
-    None
 }

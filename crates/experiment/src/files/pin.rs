@@ -2,7 +2,7 @@
 
 use super::read::{Allowed, Table};
 use rumbo_sim::boards::Board;
-use rumbo_sim::wiring::is_driver_input;
+use rumbo_sim::wiring::{Wiring, is_driver_input};
 
 /// What a signal of a wiring is connected to.
 pub(super) enum Wired {
@@ -79,5 +79,14 @@ pub(super) fn read_pin(
             None
         }
         Wired::Held(_) => None,
+    }
+}
+
+/// Reports a pin that something else is on.
+pub(super) fn is_free(own: &Table<'_, '_>, key: &str, pin: u8, wiring: &Wiring) {
+    if let Some(other) = wiring.owner_of(pin) {
+        let remedy = format!("{other} is on that pin already: give each its own");
+        let line = own.value(key).map_or(0, |(line, _)| line);
+        own.complain(key, line, &wiring.board.shown(pin), &remedy);
     }
 }

@@ -229,6 +229,7 @@ impl Setup {
             rig: setup.rig,
             world,
             lines: setup.world.lines.clone().into(),
+            north_rad: setup.world.north_rad,
             start: pose(&scenario.start),
             wheels_in_air: scenario.wheels_in_air,
             program,

@@ -3,6 +3,7 @@
 //! ```toml
 //! title = "A wall across the way"
 //! goal_m = [1.2, 0.5]    # of scenarios with goal = "world"
+//! north_deg = 90         # where a compass points, counter-clockwise from x
 //! [arena]                # what the map shows; walled = true puts a wall along each side
 //! from_m = [-0.5, -1.0]
 //! to_m = [1.5, 1.0]
@@ -41,6 +42,8 @@ use rumbo_sim::floor::DarkLine;
 
 /// Each ray of a sonar meets all of them.
 const MOST_SHAPES: usize = 1_000;
+/// North is up on the map, along y.
+const NORTH_DEG: f64 = 90.0;
 const GROUPS: Allowed = Allowed::new(0.0, 20.0, "count");
 const AWAY: Allowed = Allowed::new(0.5, 15.0, "m");
 const SHARE: Allowed = Allowed::new(0.0, 1.0, "");
@@ -69,6 +72,8 @@ pub struct WorldFile {
     pub start: Option<StartPose>,
     /// The goal, for scenarios whose goal is that of the world, in m.
     pub goal_m: Option<Point>,
+    /// Where magnetic north is, counter-clockwise from the x axis, in rad.
+    pub north_rad: f64,
     /// What every seed adds at random.
     pub random: Option<RandomWorld>,
     /// The goal of the world or of a seed's random one, and the true shortest path to it.
@@ -118,6 +123,7 @@ impl WorldFile {
             .then(|| read_random(&root.table("random")));
         let start = root.has("start").then(|| read_start(&root.table("start")));
         let goal_m = root.pair("goal_m", PLACE);
+        let north_deg = root.number("north_deg", ANGLE).unwrap_or(NORTH_DEG);
         if random.is_some() && goal_m.is_some() {
             root.complain_here("goal_m: [random] draws a goal; leave one of them out");
         }
@@ -134,6 +140,7 @@ impl WorldFile {
             movers,
             start,
             goal_m,
+            north_rad: north_deg.to_radians(),
             random,
             journey: None,
         })

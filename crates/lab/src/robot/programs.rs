@@ -76,7 +76,7 @@ fn device_state(device: &BusDevice) -> PartState {
     PartState {
         name: device.name.clone(),
         kind: device.kind.name().to_owned(),
-        address: Some(device.address),
+        address: device.address(),
         ..PartState::default()
     }
 }

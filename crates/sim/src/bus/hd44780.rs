@@ -1,9 +1,10 @@
 //! A character display with an HD44780 (Hitachi's data sheet, ADE-207-272) whose lines a PCF8574 drives, as the common
-//! boards wire it: P0 RS, P1 R/W, P2 E, P3 the light, P4 to P7 D4 to D7.
+//! boards wire it: P0 RS, P1 R/W, P2 E, P3 the light, P4 to P7 D4 to D7. Or the pins of the board drive RS, E and D4 to D7.
 //!
 //! A falling E takes a nibble. Until 4 bits are selected each is a whole instruction. An instruction that comes while the
 //! one before is at work is lost.
 
+use super::kind::Place;
 use super::{hex, quoted};
 
 const RS: u8 = 0x01;
@@ -56,7 +57,8 @@ pub(super) struct Text {
 }
 
 impl Text {
-    pub(super) fn new(columns: u8, rows: u8) -> Self {
+    /// Just switched on, with its lines at a PCF8574, or at pins, and its light then at the supply.
+    pub(super) fn new(columns: u8, rows: u8, place: Place) -> Self {
         Self {
             columns,
             rows,
@@ -72,11 +74,18 @@ impl Text {
             four_bits: false,
             upper: None,
             read_lower: false,
-            lines: 0xFF,
+            lines: place.address().map_or(LIGHT, |_| 0xFF),
             busy_until: 0,
             lost: 0,
             changed: false,
         }
+    }
+
+    /// One of the lines that are at pins, in the order of [`Place::Lines`], has this level.
+    pub(super) fn set(&mut self, line: usize, high: bool, cycle: u64) {
+        let bit = [RS, E, 0x10, 0x20, 0x40, 0x80][line];
+        let others = self.lines & !bit;
+        self.write(if high { others | bit } else { others }, cycle);
     }
 
     /// The PCF8574 gets a byte: its lines.
@@ -214,9 +223,14 @@ impl Text {
         }
     }
 
-    /// Bytes that came while it was busy.
-    pub(super) fn lost(&self) -> u32 {
-        self.lost
+    /// What a program did that it did not take.
+    pub(super) fn oddity(&self) -> Option<String> {
+        (self.lost > 0).then(|| {
+            format!(
+                "{} bytes came while the display was busy and are lost; wait 2 ms after clear and home",
+                self.lost
+            )
+        })
     }
 
     pub(super) fn take_changed(&mut self) -> bool {
@@ -309,7 +323,7 @@ mod tests {
     }
 
     fn begun(columns: u8, rows: u8) -> (Text, u64) {
-        let (mut text, mut now) = (Text::new(columns, rows), 0);
+        let (mut text, mut now) = (Text::new(columns, rows, Place::Address(0x27)), 0);
         for nibble in [0x30, 0x30, 0x30, 0x20] {
             strobe(&mut text, &mut now, nibble);
         }
@@ -358,7 +372,7 @@ mod tests {
         send(&mut text, &mut now, b'a', RS);
         now += LONG;
         send(&mut text, &mut now, b'b', RS);
-        assert_eq!((text.rows()[0].trim(), text.lost()), ("b", 1));
+        assert_eq!((text.rows()[0].trim(), text.lost), ("b", 1));
     }
 
     #[test]

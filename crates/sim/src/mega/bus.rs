@@ -2,13 +2,16 @@
 
 use super::pins::DriverInput;
 use super::{CYCLES_PER_US, Mega, PARTS};
+use crate::bus::vl53l0x::sight::Sight;
 use crate::bus::{DeviceKind, Interrupt, Motion};
 use rumbo_emulator::devices::{Input, Pwm, Transfer};
+use rumbo_plant::contact::Pose;
 use rumbo_plant::noise::Noise;
+use rumbo_plant::world::World;
 
 /// How often it is looked whether a display has changed [us].
 const LOOK_US: u64 = 200_000;
-/// How often inertial sensors measure [us].
+/// How often inertial sensors and compasses may measure [us].
 const MEASURING_US: u64 = 1_000;
 /// How long INT is active where it is a pulse (register map, INT_PIN_CFG).
 const PULSE_CYCLES: u64 = 50 * CYCLES_PER_US;
@@ -68,6 +71,31 @@ impl Mega {
         }
     }
 
+    /// North is so far to the left of ahead \[rad\]: its compasses measure it, in whole milliseconds.
+    pub(crate) fn orient(&mut self, north_rad: f64, now_us: u64, noise: &Noise) {
+        if now_us.is_multiple_of(MEASURING_US) {
+            self.bus.orient(north_rad, now_us, noise);
+        }
+    }
+
+    /// The robot stands there now: its sensors of distance look at the world, as far as a measurement ends before the next time.
+    pub(crate) fn range(&mut self, world: &World, pose: &Pose, now_us: u64, noise: &Noise) {
+        let cycle = self.cycle_of(now_us);
+        let until = cycle + MEASURING_US * CYCLES_PER_US;
+        for (device, ranger) in self.bus.rangers() {
+            let DeviceKind::Vl53l0x {
+                at_m, angle_rad, ..
+            } = device.kind
+            else {
+                continue;
+            };
+            if ranger.ends_within(cycle, until) {
+                let sight = Sight::of(world, pose, (at_m, angle_rad), now_us);
+                ranger.see(sight, noise);
+            }
+        }
+    }
+
     /// The INT outputs that are wired; `fresh` of each sensor: a value has just come.
     fn raise_interrupts(&mut self, cycle: u64, fresh: impl Fn(usize) -> bool) {
         let board = self.firmware.board();
@@ -104,14 +132,20 @@ impl Mega {
         }
     }
 
-    /// What the inertial sensors measure, by name: `imu_forward_m_s2`.
-    pub(super) fn read_imus(&mut self) -> Vec<(String, f64)> {
+    /// What its sensors measure, by name: `imu_forward_m_s2`, `compass_azimuth_rad`, `tof_m`.
+    pub(super) fn read_bus(&mut self) -> Vec<(String, f64)> {
         let mut shown = Vec::new();
         for (device, imu) in self.bus.imus() {
             let names = ["forward_m_s2", "left_m_s2", "up_m_s2", "yaw_rad_s"];
             let named = names.iter().zip(imu.shown());
             shown.extend(named.map(|(name, value)| (format!("{}_{name}", device.name), value)));
         }
+        let azimuths = self.bus.azimuths();
+        shown.extend(azimuths.map(|(device, rad)| (format!("{}_azimuth_rad", device.name), rad)));
+        let rangers = self.bus.rangers();
+        shown.extend(
+            rangers.map(|(device, ranger)| (format!("{}_m", device.name), ranger.shown_m())),
+        );
         shown
     }
 }

@@ -185,7 +185,8 @@ impl Mega {
         chip.watch(&firmware.wires().felt());
         let shield = firmware.wires().driver.shield;
         let shield = shield.and_then(|shield| shield.address);
-        chip.watch_two_wire(!firmware.bus().is_empty() || shield.is_some());
+        let on_bus = firmware.bus().iter().any(|own| own.address().is_some());
+        chip.watch_two_wire(on_bus || shield.is_some());
         let Wires {
             driver, bridges, ..
         } = *firmware.wires();
@@ -343,7 +344,7 @@ impl Mega {
         let mut shown = self.meters.read(self.chip.cycle());
         shown.extend(self.read_floor());
         shown.extend(self.read_obstacles());
-        shown.extend(self.read_imus());
+        shown.extend(self.read_bus());
         shown
     }
 

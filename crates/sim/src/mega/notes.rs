@@ -4,12 +4,12 @@ use super::console::Console;
 use super::firmware::LinkLanguage;
 use super::pins::LinkOn;
 use super::{CYCLES_PER_US, Mega, PARTS, TRIGGER_CYCLES};
-use crate::bus::DeviceKind;
 use crate::floor::FloorReading;
 use crate::wiring::PartKind;
 use rumbo_emulator::cpu::Standstill;
 use rumbo_emulator::devices::ports::Drive;
 use rumbo_emulator::devices::{Cause, Unmodelled};
+use std::collections::BTreeSet;
 
 /// The USARTs as a sketch calls them, and the module on other pins.
 const NAMES: [&str; PARTS as usize] = ["Serial (USB)", "Serial1", "Serial2", "Serial3", "its pins"];
@@ -110,7 +110,12 @@ impl Mega {
         let strange = strange.map(Note::from);
         let notes = strange.chain(self.oddities.notes()).chain(self.silence());
         notes
-            .chain(self.bus.notes().into_iter().map(Note::from))
+            .chain(
+                self.bus
+                    .notes(self.chip.cycle())
+                    .into_iter()
+                    .map(Note::from),
+            )
             .collect()
     }
 
@@ -133,13 +138,11 @@ impl Mega {
             "sensors for obstacles: by what their sellers and Sharp's data sheet say, not identified"
                 .to_owned()
         });
-        let mut bus = self.firmware.bus().iter();
-        let imu = bus.any(|device| matches!(device.kind, DeviceKind::Mpu6050 { .. }));
-        let imu = imu.then(|| {
-            "accelerometer and gyroscope: MPU-6050 by its data sheet, not identified".to_owned()
-        });
-        let all = [driver, sensors, obstacles, imu].into_iter().flatten();
-        let all: Vec<String> = all.collect();
+        let bus = self.firmware.bus().iter();
+        let bus = bus.filter_map(|device| device.kind.data_sheet());
+        let bus: BTreeSet<String> = bus.map(str::to_owned).collect();
+        let all = [driver, sensors, obstacles].into_iter().flatten();
+        let all: Vec<String> = all.chain(bus).collect();
         (!all.is_empty()).then(|| all.join("; "))
     }
 

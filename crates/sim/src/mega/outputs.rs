@@ -20,6 +20,9 @@ impl Mega {
                 Event::Pin(pin, drive) => {
                     self.charge(cycle, pin, drive);
                     self.level(cycle, pin, matches!(drive, Drive::High | Drive::PullUp));
+                    let board = self.firmware.board();
+                    self.bus
+                        .steer(cycle, drive, |number| board.pin(number) == Some(pin));
                 }
                 Event::Duty { pin, pwm } => self.modulate(cycle, pin, pwm),
                 Event::Byte { usart, byte, baud } => self.byte_sent(cycle, usart, byte as u8, baud),

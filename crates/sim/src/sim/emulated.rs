@@ -36,6 +36,9 @@ impl Sim {
                     yaw_rad_s,
                 };
                 mega.feel(motion, self.now_us(), &self.noise);
+                let north_rad = self.north_rad - self.pose().heading_rad;
+                mega.orient(north_rad, self.now_us(), &self.noise);
+                mega.range(self.world(), &self.pose(), self.now_us(), &self.noise);
                 mega.look_at_displays(self.now_us());
             }
             mega.send_infrared(self.now_us(), end_us);

@@ -70,6 +70,8 @@ pub struct Sim {
     noise: Noise,
     /// The dark lines on the floor.
     lines: Arc<[DarkLine]>,
+    /// Where magnetic north is, counter-clockwise from the world's x axis [rad].
+    north_rad: f64,
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
     /// The chip is without power: its program does not run, and its pins drive nothing.
@@ -94,6 +96,7 @@ impl Sim {
             rig,
             world,
             lines,
+            north_rad,
             start,
             wheels_in_air,
             program,
@@ -169,6 +172,7 @@ impl Sim {
             wire_faults,
             noise,
             lines,
+            north_rad,
             outputs_us: (0, 0, 0),
             off: false,
             motors_cut: false,

@@ -5,11 +5,11 @@ use super::sketch::rumbo;
 use crate::support::{stderr, stdout};
 use std::path::Path;
 
-const DRIVES: &str = "left_enable = 5\nleft_forward = 7\nleft_backward = 8\nright_enable = 6\nright_forward = 12\n\
+pub(super) const DRIVES: &str = "left_enable = 5\nleft_forward = 7\nleft_backward = 8\nright_enable = 6\nright_forward = 12\n\
                       right_backward = 11\ndebug_tx = 1\ndebug_rx = 0\n";
 
 /// A master of the two-wire bus at 400 kHz: `send` tells whether it was acknowledged.
-const BUS: &str = "
+pub(super) const BUS: &str = "
 void wait() { while (!(TWCR & _BV(TWINT))) {} }
 bool send(byte value) {
   TWDR = value; TWCR = _BV(TWINT) | _BV(TWEN); wait();
@@ -22,7 +22,7 @@ byte receive(bool more) { TWCR = _BV(TWINT) | _BV(TWEN) | (more ? _BV(TWEA) : 0)
 ";
 
 /// What a display has shown, one content after the other.
-fn shown(bench: &Path, name: &str) -> Vec<serde_json::Value> {
+pub(super) fn shown(bench: &Path, name: &str) -> Vec<serde_json::Value> {
     let text = std::fs::read_to_string(bench.join("out/floor-1-displays.txt")).unwrap();
     let lines = text.lines().filter_map(|line| line.split_once('='));
     lines

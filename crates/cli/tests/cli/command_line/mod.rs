@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod bus_sensors;
 mod check;
 mod devices;
 mod import;
