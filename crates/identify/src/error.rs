@@ -3,6 +3,9 @@
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
+/// Longest run: the simulation is kept for each millisecond.
+pub(crate) const LONGEST_MS: usize = 3_600_000;
+
 /// Why a run could not be identified. Each message names the place and the remedy.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum IdentifyError {
@@ -89,7 +92,7 @@ impl IdentifyError {
 
     /// A run longer than is compared.
     pub(crate) fn too_long(path: &Path) -> Self {
-        let most = crate::log::LONGEST_MS / 1_000;
+        let most = LONGEST_MS / 1_000;
         let remedy = "the most that is compared; cut it into shorter runs";
         Self::read(path, format!("lasts longer than {most} s, {remedy}"))
     }

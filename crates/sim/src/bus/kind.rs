@@ -21,7 +21,6 @@ impl BusDevice {
     }
 
     /// The board's pins that it has beside the bus.
-    #[must_use]
     pub fn pins(&self) -> impl Iterator<Item = u8> {
         let (lines, beside) = match self.place {
             Place::Address(_) => (None, self.kind.pin()),
