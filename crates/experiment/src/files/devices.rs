@@ -3,7 +3,8 @@
 //! ```toml
 //! parts.imu = { mpu6050 = 0x68 }          # with x_m and y_m where it is, interrupt = 2 for its INT, and where
 //!                                         # its x, y and z point where not so: axes = "forward left up"
-//! parts.tof = { vl53l0x = 0x29 }          # with x_m, y_m and angle_deg where it is and looks, xshut = 7 for its XSHUT
+//! parts.tof = { vl53l0x = 0x29 }          # with x_m, y_m and angle_deg where it is and looks, on_servo = true,
+//!                                         # and xshut = 7 for its XSHUT
 //! parts.compass = { qmc5883l = 0x0d }     # or hmc5883l = 0x1e; with axes as above, and in iron_x_ut and iron_y_ut the field
 //!                                         # of the robot's iron, ahead and to the left
 //! parts.screen = { ssd1306 = 0x3c }       # with size = "128x32"
@@ -129,13 +130,10 @@ fn read_sensor(own: &Table<'_, '_>, mut kind: DeviceKind, wiring: &Wiring) -> De
             *at_m = place();
             *interrupt = free_pin("interrupt");
         }
-        DeviceKind::Vl53l0x {
-            at_m,
-            angle_rad,
-            shutdown,
-        } => {
-            *at_m = place();
-            *angle_rad = own.number("angle_deg", ANGLE).unwrap_or(0.0).to_radians();
+        DeviceKind::Vl53l0x { mount, shutdown } => {
+            [mount.x_m, mount.y_m] = place();
+            mount.angle_rad = own.number("angle_deg", ANGLE).unwrap_or(0.0).to_radians();
+            mount.on_servo = own.flag("on_servo").is_some_and(|flag| flag.value);
             *shutdown = free_pin("xshut");
         }
         DeviceKind::Qmc5883l(mounted) | DeviceKind::Hmc5883l(mounted) => {

@@ -1,5 +1,6 @@
 //! What devices there are for the two-wire bus, as robot files have them. A display of letters may be on pins of its own.
 
+use rumbo_plant::rig::Mount;
 use std::ops::RangeInclusive;
 
 /// A device, as a robot file has it.
@@ -64,10 +65,8 @@ pub enum DeviceKind {
     },
     /// A VL53L0X: distance by the time that light takes.
     Vl53l0x {
-        /// Where it is on the robot, ahead of the wheels' axis and to the left \[m\].
-        at_m: [f64; 2],
-        /// Where it looks, counter-clockwise from ahead \[rad\].
-        angle_rad: f64,
+        /// Where it is on the robot, and where it looks.
+        mount: Mount,
         /// The board's pin of its XSHUT input, which its board pulls up.
         shutdown: Option<u8>,
     },
@@ -107,8 +106,12 @@ impl DeviceKind {
             interrupt: None,
         },
         Self::Vl53l0x {
-            at_m: [0.0; 2],
-            angle_rad: 0.0,
+            mount: Mount {
+                x_m: 0.0,
+                y_m: 0.0,
+                angle_rad: 0.0,
+                on_servo: false,
+            },
             shutdown: None,
         },
         Self::Qmc5883l(Mounted {

@@ -2,10 +2,9 @@
 
 use super::pins::DriverInput;
 use super::{CYCLES_PER_US, Mega, PARTS};
-use crate::bus::vl53l0x::sight::Sight;
+use crate::bus::vl53l0x::sight::{Eyes, Sight};
 use crate::bus::{DeviceKind, Interrupt, Motion};
 use rumbo_emulator::devices::{Input, Pwm, Transfer};
-use rumbo_plant::contact::Pose;
 use rumbo_plant::noise::Noise;
 use rumbo_plant::world::World;
 
@@ -79,18 +78,15 @@ impl Mega {
     }
 
     /// The robot stands there now: its sensors of distance look at the world, as far as a measurement ends before the next time.
-    pub(crate) fn range(&mut self, world: &World, pose: &Pose, now_us: u64, noise: &Noise) {
+    pub(crate) fn range(&mut self, world: &World, eyes: &Eyes, now_us: u64, noise: &Noise) {
         let cycle = self.cycle_of(now_us);
         let until = cycle + MEASURING_US * CYCLES_PER_US;
         for (device, ranger) in self.bus.rangers() {
-            let DeviceKind::Vl53l0x {
-                at_m, angle_rad, ..
-            } = device.kind
-            else {
+            let DeviceKind::Vl53l0x { mount, .. } = device.kind else {
                 continue;
             };
             if ranger.ends_within(cycle, until) {
-                let sight = Sight::of(world, pose, (at_m, angle_rad), now_us);
+                let sight = Sight::of(world, eyes, &mount, now_us);
                 ranger.see(sight, noise);
             }
         }

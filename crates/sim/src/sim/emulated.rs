@@ -7,6 +7,7 @@
 use super::Sim;
 use super::touches::Touches;
 use crate::bus::Motion;
+use crate::bus::vl53l0x::sight::Eyes;
 use crate::mega::{Action, Faults, Mega, Pause};
 use rumbo_control::{Duty, SonarId};
 use rumbo_plant::drivetrain::{Bridge, Side};
@@ -38,7 +39,11 @@ impl Sim {
                 mega.feel(motion, self.now_us(), &self.noise);
                 let north_rad = self.north_rad - self.pose().heading_rad;
                 mega.orient(north_rad, self.now_us(), &self.noise);
-                mega.range(self.world(), &self.pose(), self.now_us(), &self.noise);
+                let eyes = Eyes {
+                    pose: self.pose(),
+                    servo_rad: self.state.servo_rad(),
+                };
+                mega.range(self.world(), &eyes, self.now_us(), &self.noise);
                 mega.look_at_displays(self.now_us());
             }
             mega.send_infrared(self.now_us(), end_us);

@@ -123,6 +123,43 @@ void loop() {}";
     assert!(told.contains("several answer at once at 0x29"), "{told}");
 }
 
+#[test]
+fn a_sensor_of_distance_on_the_servo_looks_where_that_points() {
+    let sketch = "
+int range() {
+  put(0x29, 0x00, 1);
+  while (!(get(0x29, 0x13) & 7)) {}
+  put(0x29, 0x0B, 1);
+  return get(0x29, 0x1E) << 8 | get(0x29, 0x1F);
+}
+void look(int us) {
+  for (byte n = 0; n < 30; n++) { digitalWrite(10, HIGH); delayMicroseconds(us); digitalWrite(10, LOW); delay(17); }
+}
+void setup() {
+  Serial.begin(115200);
+  pinMode(10, OUTPUT);
+  put(0x29, 0x0A, 4); put(0x29, 0x01, 0xE8);
+  look(1500); Serial.println(range());
+  look(2400); Serial.println(range());
+  look(600); Serial.println(range());
+}
+void loop() {}";
+    let wiring = format!("{DRIVES}servo = 10\nparts.eye = {{ vl53l0x = 0x29, on_servo = true }}\n");
+    let Some(bench) = kit("eye", &wiring, &format!("{BUS}{REGISTERS}{sketch}")) else {
+        return;
+    };
+    into_world(&bench, WALLS);
+    let run = drive(&bench, &[]);
+    let read = said(&bench);
+    let read: Vec<f64> = read.iter().map(|line| line.parse().unwrap()).collect();
+    let [ahead, left, right] = read[..] else {
+        panic!("{read:?}{}", stderr(&run))
+    };
+    assert!((ahead - 800.0).abs() < 110.0, "{read:?}");
+    assert!((left - 500.0).abs() < 80.0, "{read:?}");
+    assert_eq!(right, 8190.0);
+}
+
 /// Prints where both compasses point, clockwise from north, before and after a turn on the spot.
 const COMPASSES: &str = "
 float azimuth(byte at, byte low, byte x, byte y) {

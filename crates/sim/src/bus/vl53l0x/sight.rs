@@ -6,6 +6,7 @@
 use crate::obstacle::cone_at;
 use rumbo_plant::cone::{self, Hearing};
 use rumbo_plant::contact::Pose;
+use rumbo_plant::rig::Mount;
 use rumbo_plant::world::World;
 
 const FIELD_RAD: f64 = 25.0 / 180.0 * std::f64::consts::PI;
@@ -18,6 +19,14 @@ const FARTHEST_M: f64 = 8.0;
 /// Nearer than that no more light comes back \[m\].
 const NEAREST_M: f64 = 0.01;
 
+/// Where a robot's sensors look from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Eyes {
+    pub(crate) pose: Pose,
+    /// Where its servo points: 0 ahead, positive to the left.
+    pub(crate) servo_rad: f64,
+}
+
 /// What the sensor sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sight {
@@ -28,18 +37,15 @@ pub(crate) struct Sight {
 }
 
 impl Sight {
-    /// What a sensor sees that is there on the robot and looks so.
-    pub(crate) fn of(
-        world: &World,
-        pose: &Pose,
-        (at_m, angle_rad): ([f64; 2], f64),
-        now_us: u64,
-    ) -> Self {
+    /// What a sensor sees that is mounted so.
+    pub(crate) fn of(world: &World, eyes: &Eyes, mount: &Mount, now_us: u64) -> Self {
+        let servo_rad = if mount.on_servo { eyes.servo_rad } else { 0.0 };
+        let (at_m, angle_rad) = ([mount.x_m, mount.y_m], mount.angle_rad + servo_rad);
         let slice_rad = FIELD_RAD / f64::from(SLICES);
         let (mut weights, mut sum) = (0.0, 0.0);
         for slice in 0..SLICES {
             let off_rad = (f64::from(slice) + 0.5) * slice_rad - 0.5 * FIELD_RAD;
-            let cone = cone_at(pose, at_m, angle_rad + off_rad, 0.5 * slice_rad);
+            let cone = cone_at(&eyes.pose, at_m, angle_rad + off_rad, 0.5 * slice_rad);
             let found = cone::nearest(world, now_us, &cone, &Hearing::geometric(FARTHEST_M));
             let Some(found) = found else { continue };
             let range_m = found.range_m.max(NEAREST_M);

@@ -1,6 +1,7 @@
 use super::*;
-use rumbo_plant::contact::Pose;
+use rumbo_plant::rig::Mount;
 use rumbo_plant::world::{Block, Wall, World};
+use sight::Eyes;
 
 fn set(sensor: &mut Vl53l0x, cycle: u64, register: u8, value: u8) {
     sensor.begin();
@@ -192,7 +193,7 @@ fn a_thing_before_a_wall_counts_by_the_share_of_the_field_that_it_fills() {
     };
     let seen = |blocks: &[Block]| {
         let world = World::new(&[wall], blocks).unwrap();
-        Sight::of(&world, &Pose::default(), ([0.0; 2], 0.0), 0)
+        Sight::of(&world, &Eyes::default(), &Mount::default(), 0)
     };
     let alone = seen(&[]);
     assert!(
