@@ -193,20 +193,29 @@ pub(super) fn usb_text(text: &str) -> Result<TimedText, Failure> {
     timed_text(text).map(|timed| TimedText { port, ..timed })
 }
 
-/// A part and when it is pressed, or put to a value: `start@2`, `speed=0.7@3`, `remote=ok@4`.
+/// A part and when it is pressed, or put to a value: `start@2`, `start@2-3.5`, `speed=0.7@3`, `remote=ok@4`, `remote=up@1-3`.
 pub(super) fn press(text: &str) -> Result<Vec<TimedText>, Failure> {
     let wrong = || {
         Failure::input(
-            "write it as NAME@SECONDS, or NAME=VALUE@SECONDS with a value from 0 to 1 or a key of a remote control",
+            "write it as NAME@SECONDS, or NAME=VALUE@SECONDS with a value from 0 to 1 or a key of a remote control; \
+             NAME@FROM-TO holds it",
         )
     };
-    let TimedText { at_s, text, .. } = timed_text(text).map_err(|_| wrong())?;
+    let (what, when) = text.rsplit_once('@').ok_or_else(wrong)?;
+    let (from, to) = when.split_once('-').unwrap_or((when, when));
+    let at = |time: &str| timed_text(&format!("{what}@{time}")).map_err(|_| wrong());
+    let TimedText { at_s, text, .. } = at(from)?;
+    let for_s = at(to)?.at_s - at_s;
+    let for_s = match (for_s > 0.0, from == to) {
+        (false, false) => return Err(wrong()),
+        (held, _) => held.then_some(for_s),
+    };
     let Some((name, value)) = text.split_once('=') else {
-        return Ok(pressed(&text, None, at_s));
+        return Ok(pressed(&text, None, at_s, for_s));
     };
     match (name.trim(), value.trim()) {
         ("", _) | (_, "") => Err(wrong()),
-        (name, value) => Ok(pressed(name, Some(value), at_s)),
+        (name, value) => Ok(pressed(name, Some(value), at_s, for_s)),
     }
 }
 

@@ -5,7 +5,7 @@ use crate::batch::TRUE;
 use crate::files::read::{Allowed, Placed, Source, Table};
 use crate::files::{
     FileError, Library, MetricBounds, Overrides, bounded, did_you_mean, near_or_all, read_bounds,
-    read_value,
+    read_press,
 };
 use rumbo_sim::mega::{ON_PINS, PARTS, USB};
 use rumbo_wire::LineEnding;
@@ -145,8 +145,8 @@ fn read_act(table: &Table<'_, '_>, key: &str) -> Option<Act> {
             Some(Act::Send(read_port(table), bytes))
         }
         "press" => {
-            let part = table.required_text(key, "the name of a part").value;
-            Some(Act::Press(part, read_value(table)))
+            table.require(key, "the name of a part");
+            Some(Act::Press(read_press(table, 0.0)))
         }
         "apply_v" => Some(Act::Apply(
             read_pin(table)?,

@@ -55,7 +55,7 @@ pub(crate) use scenario::read_bounds;
 pub use scenario::{Member, MetricBounds, NativeProgram, ScenarioFile, SeedSpread, StartPose};
 pub use setup::{Overrides, Setup, goal_seen_from};
 pub use start::fleet_around;
-pub(crate) use typed::read_value;
+pub(crate) use typed::read_press;
 pub use typed::{TimedText, TypedPort, check_line, placed, pressed};
 pub use word::WordError;
 pub use world::{Arena, WorldFile};
