@@ -519,8 +519,9 @@ class Sim:
         return {name: float(value) for name, value in zip(OBSERVED, self._batch.observe_rows()[0])}
 
     def truth(self) -> dict[str, float]:
-        """Ground truth now: see `Batch.truth_rows`."""
-        return {name: float(value) for name, value in zip(TRUE, self._batch.truth_rows()[0])}
+        """Ground truth now: see `Batch.truth_rows`; of an emulated robot the other sonars too, as ``range_rear_m``."""
+        known = {name: float(value) for name, value in zip(TRUE, self._batch.truth_rows()[0])}
+        return known | dict(_rumbo.other_ranges(self._batch._batch))
 
     def record(self) -> None:
         """Records the robot from now on: see `Batch.record`."""

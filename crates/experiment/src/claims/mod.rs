@@ -100,7 +100,7 @@ enum Act {
     Apply(String, Option<f64>),
     Level(String, bool, f64),
     Judge(Pulses),
-    Truth(usize, MetricBounds, f64),
+    Truth(String, MetricBounds, f64),
     Run(f64),
 }
 

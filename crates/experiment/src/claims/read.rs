@@ -192,14 +192,16 @@ fn read_truth(table: &Table<'_, '_>, key: &str) -> Option<Act> {
     if bounds == MetricBounds::default() {
         table.complain_here("has neither min nor max: write e.g. min = 0.5");
     }
-    let column = TRUE.iter().position(|known| *known == name.value);
-    if column.is_none() && !name.value.is_empty() {
+    // Which sonars there are the robot says.
+    let is_range = name.value.starts_with("range_") && name.value.ends_with("_m");
+    let is_known = is_range || TRUE.contains(&name.value.as_str());
+    if !is_known && !name.value.is_empty() {
         let remedy = did_you_mean(&near_or_all(&name.value, TRUE));
         table.complain(key, name.line, &name.value, &remedy);
     }
     // Without a time it is judged as it is.
     let within_s = table.number("within_s", WITHIN).unwrap_or(0.0);
-    column.map(|column| Act::Truth(column, bounds, within_s))
+    is_known.then_some(Act::Truth(name.value, bounds, within_s))
 }
 
 fn read_pin(table: &Table<'_, '_>) -> Option<String> {

@@ -60,6 +60,14 @@ impl Suite {
                         None => Some(unknown("part", name, known)),
                     }
                 }
+                Act::Truth(name, ..) => {
+                    let others = firmware.other_sonars().iter();
+                    let others: Vec<String> =
+                        others.map(|sonar| format!("range_{sonar}_m")).collect();
+                    let known = TRUE.into_iter().chain(others.iter().map(String::as_str));
+                    let is_known = known.clone().any(|own| own == name);
+                    (!is_known).then(|| unknown("truth", name, known))
+                }
                 Act::Expect(Port::Link, ..) | Act::Send(Port::Link, _)
                     if firmware.link_usart().is_none() =>
                 {
@@ -157,12 +165,12 @@ impl Under {
                 )
             }
             Act::Judge(judged) => self.judge(judged),
-            Act::Truth(column, bounds, within_s) => {
-                let value = |robot: &Robot| robot.true_values()[*column];
+            Act::Truth(name, bounds, within_s) => {
+                let value = |robot: &Robot| robot.true_value(name).unwrap_or(f64::NAN);
                 self.wait(
                     *within_s,
                     |robot| bounds.admit(value(robot)),
-                    |robot| format!("{} is {:.4}, not {bounds}", TRUE[*column], value(robot)),
+                    |robot| format!("{name} is {:.4}, not {bounds}", value(robot)),
                 )
             }
             Act::Run(s) => self.pass(*s),
