@@ -82,6 +82,7 @@ test('its file is kept, and its sketch drives it', async () => {
   await page.waitForSelector('body.own');
   await page.locator('#wire-dialog').waitFor({ state: 'hidden' });
   assert.equal(await page.locator('#program-name').textContent(), 'car');
+  assert.equal(await page.locator('#world').inputValue(), 'line_loop');
   await page.waitForFunction(() => {
     const last = (/** @type {string} */ name) => /** @type {any} */ (window).rumbo.series(name).y.at(-1);
     return last('true_left_rpm') > 20 && last('true_right_rpm') > 20;
