@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import copyreg
+import math
 import os
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal
@@ -35,8 +36,8 @@ OBSERVED: tuple[str, ...] = tuple(_rumbo.OBSERVED)
 TRUE: tuple[str, ...] = tuple(_rumbo.TRUE)
 
 Driver = Literal["scenario", "caller"] | Sequence[str]
-#: How long a button is pressed [s].
-PRESSED_S = 0.2
+#: How long a button is pressed, and a key of a remote control stays down; how often one that is held is pressed [s].
+PRESSED_S, AGAIN_S = 0.2, 0.1
 
 
 def _callers(driver: Driver, names: Sequence[str]) -> list[bool]:
@@ -456,11 +457,11 @@ class Sim:
         """
         return Pin(self._batch._batch, name)
 
-    def press(self, part: str, value: float | str | None = None) -> None:
-        """Presses a button of the robot's file for 0.2 s, or puts a switch or a potentiometer to a value, 0 to 1.
+    def press(self, part: str, value: float | str | None = None, *, for_s: float | None = None) -> None:
+        """Presses a button of the robot's file for a time, 0.2 s, or puts a switch or a potentiometer to a value, 0 to 1.
 
-        A key of a remote control is pressed by its name, ``press("remote", "ok")``, and repeats if it is pressed again
-        within 0.2 s.
+        A key of a remote control is pressed by its name, ``press("remote", "ok")``; it repeats while it is held,
+        ``for_s=2``, or if it is pressed again within 0.2 s.
 
         Raises:
             ValueError: There is no such part or key, with those that there are.
@@ -474,10 +475,15 @@ class Sim:
                 raise ValueError(f"{part} is a remote control, and {value!r} none of its keys: {', '.join(keys)}")
         elif value is not None and (isinstance(value, str) or not 0 <= value <= 1):
             raise ValueError(f"{part} = {value!r}: must be 0 to 1")
-        _rumbo.type_in(self._batch._batch, "parts", f"{part}={1.0 if value is None else value}\n".encode())
+        line = f"{part}={1.0 if value is None else value}\n".encode()
+        _rumbo.type_in(self._batch._batch, "parts", line)
         if value is None:
-            self.step(PRESSED_S)
+            self.step(PRESSED_S if for_s is None else for_s)
             _rumbo.type_in(self._batch._batch, "parts", f"{part}=0\n".encode())
+        elif for_s is not None:
+            for _ in range(math.ceil(max(for_s - PRESSED_S, 0) / AGAIN_S - 1e-9)):
+                self.step(AGAIN_S)
+                _rumbo.type_in(self._batch._batch, "parts", line)
 
     @property
     def ended(self) -> str | None:
@@ -513,8 +519,9 @@ class Sim:
         return {name: float(value) for name, value in zip(OBSERVED, self._batch.observe_rows()[0])}
 
     def truth(self) -> dict[str, float]:
-        """Ground truth now: see `Batch.truth_rows`."""
-        return {name: float(value) for name, value in zip(TRUE, self._batch.truth_rows()[0])}
+        """Ground truth now: see `Batch.truth_rows`; of an emulated robot the other sonars too, as ``range_rear_m``."""
+        known = {name: float(value) for name, value in zip(TRUE, self._batch.truth_rows()[0])}
+        return known | dict(_rumbo.other_ranges(self._batch._batch))
 
     def record(self) -> None:
         """Records the robot from now on: see `Batch.record`."""

@@ -29,8 +29,8 @@ mod _rumbo {
     use super::policy::{Policy, quantise};
     #[pymodule_export]
     use super::probe::{
-        apply, compile, edges, ended, is_high, parts, pin, probe, pulses, said, share_high,
-        type_in, vcd,
+        apply, compile, edges, ended, is_high, other_ranges, parts, pin, probe, pulses, said,
+        share_high, type_in, vcd,
     };
     #[pymodule_export]
     use super::run::run;

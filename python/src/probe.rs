@@ -84,6 +84,12 @@ pub(crate) fn parts(batch: &Batch) -> PyResult<BTreeMap<String, Vec<String>>> {
     })
 }
 
+/// The true ranges of the sonars besides left, right and front, by their names among what is true.
+#[pyfunction]
+pub(crate) fn other_ranges(batch: &Batch) -> PyResult<Vec<(String, f64)>> {
+    batch.with(0, |robot| robot.other_ranges().collect())
+}
+
 /// Whether a pin is high now.
 #[pyfunction]
 pub(crate) fn is_high(batch: &Batch, pin: u8) -> PyResult<bool> {

@@ -349,7 +349,8 @@ function receive(message) {
       alarm.show(state);
       stepFigures.show(panel.mode);
       if (simulated && !isEmbedded && !isOwn(state) && !state.replay && !document.body.classList.contains('viewer')) tour.offer();
-      tour.show(state);
+      if (isOwn(state)) tour.end();
+      else tour.show(state);
       program.show(state);
       code.show(state, message.run);
       wired?.show(state, message.orders);

@@ -36,7 +36,7 @@ export class Tour {
     const skip = create('button', { type: 'button', textContent: t('Skip') });
     this.#card.setAttribute('aria-label', t('First steps'));
     this.#card.append(this.#text, create('div', { className: 'row' }, this.#count, create('span', { className: 'spacer' }), skip, this.#next));
-    skip.addEventListener('click', () => this.#end());
+    skip.addEventListener('click', () => this.end());
     this.#next.addEventListener('click', () => this.#go(this.#step + 1));
     document.body.append(this.#card);
   }
@@ -63,7 +63,7 @@ export class Tour {
   /** @param {number} step */
   #go(step) {
     const { at, text } = this.#steps[step] ?? {};
-    if (!at || !text) return this.#end();
+    if (!at || !text) return this.end();
     this.#step = step;
     this.#before = null;
     this.#point(at);
@@ -81,7 +81,9 @@ export class Tour {
     target?.scrollIntoView({ block: 'center' });
   }
 
-  #end() {
+  /** Over, and seen; so it is where a program of the reader's drives, of whose buttons it knows nothing. */
+  end() {
+    if (this.#card.hidden) return;
     this.#card.hidden = true;
     this.#point(null);
     keep('tour', 'seen');

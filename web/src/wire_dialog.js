@@ -9,7 +9,8 @@ import { ask } from './key.js';
 import { base64 } from './program.js';
 import { plainName } from './source.js';
 import { said, t } from './text.js';
-import { addable, added, byPin, isSource, pinOf, request, rowsOf } from './wiring.js';
+import { OPTIONAL, addable, added, byPin, isSource, pinOf, request, rowsOf, sensorOf } from './wiring.js';
+import { SaidForm } from './said_form.js';
 
 /** @typedef {import('./wiring.js').Choices} Choices */
 /** @typedef {import('./wiring.js').Row} Row */
@@ -24,14 +25,15 @@ const PLACES = { left: 'left|wiring', right: 'right|wiring', front: 'front|wirin
 /** @type {Record<string, string>} */
 const PARTS = {
   enable: 'enable', forward: 'forward input', backward: 'backward input', encoder: 'encoder', encoder_b: 'encoder, output B', trigger: 'sonar, Trig', echo: 'sonar, Echo',
-  rx: 'the board receives', tx: 'the board sends', standby: 'standby', fault: 'fault, low', servo: 'servo', line: 'line sensor', obstacle: 'obstacle sensor', sharp: 'Sharp',
+  battery: 'divider of the battery', sonar: 'sonar', other_sonar: 'sonar of another name', link: 'Bluetooth', encoders: 'encoders', encoders_b: 'encoders, output B', faults: 'faults of the driver', rx: 'the board receives', tx: 'the board sends', standby: 'standby', fault: 'fault, low', servo: 'servo', line: 'line sensor', obstacle: 'obstacle sensor', sharp: 'Sharp',
   button: 'button', switch: 'switch|part', potentiometer: 'potentiometer', led: 'LED', buzzer: 'buzzer', infrared: 'infrared receiver', mpu6050: 'MPU-6050', vl53l0x: 'VL53L0X, distance by light', qmc5883l: 'compass QMC5883L', hmc5883l: 'compass HMC5883L', ssd1306: 'display SSD1306', hd44780: 'display HD44780',
 };
 
 /** What a signal, a part or another owner of a pin is, for people. @param {string} signal */
 function words(signal) {
-  const [, side = '', input = ''] = signal.match(/^(left|right|front|rear|link)_(.+)$/) ?? [];
-  if (side in PLACES && input in PARTS) return `${t(PLACES[side] ?? '')}, ${t(PARTS[input] ?? '')}`;
+  if (signal in PARTS) return t(PARTS[signal] ?? '');
+  const [, side = '', input = ''] = signal.match(/^(left|right|front|rear|link)_(.+)$/) ?? signal.match(/^(.+)_(trigger|echo)$/) ?? [];
+  if (input in PARTS) return `${side in PLACES ? t(PLACES[side] ?? '') : side}, ${t(PARTS[input] ?? '')}`;
   const [, kind = signal, number = ''] = signal.match(/^(.+?)_(\d+)$/) ?? [];
   return kind in PARTS ? `${t(PARTS[kind] ?? '')} ${number}`.trim() : signal;
 }
@@ -43,8 +45,7 @@ export class WireDialog {
   #name = create('input', { type: 'text', id: 'wire-name', value: 'my_car', maxLength: 40, autocomplete: 'off', spellcheck: false });
   #board = create('select', { id: 'wire-board' });
   #driver = create('select', { id: 'wire-driver' });
-  #wheels = create('input', { type: 'checkbox', id: 'wire-wheels' });
-  #battery = create('input', { type: 'number', id: 'wire-battery', min: '5.6', max: '12', step: '0.1', placeholder: '6' });
+  #said = new SaidForm(() => this.#changed());
   #rows = create('div', { id: 'wire-rows' });
   #add = create('select', { id: 'wire-add' });
   #drawing = create('ol', { id: 'wire-pins' });
@@ -79,19 +80,22 @@ export class WireDialog {
     folder.addEventListener('change', () => this.#read([...folder.files ?? []]));
     this.#dialog.body.append(
       create('p', { className: 'hint', textContent: t('Say where its wires go, by number or as A0; or drag a name onto the board. Then choose the sketch that drives it.') }),
-      create('div', { className: 'row' }, label(t('begin with'), this.#like), label(t('name'), this.#name), label(t('board'), this.#board), label(t('motor driver'), this.#driver), label(t('four wheels'), this.#wheels), label(t('battery [V]'), this.#battery)),
+      create('div', { className: 'row' }, label(t('begin with'), this.#like), label(t('name'), this.#name), label(t('board'), this.#board), label(t('motor driver'), this.#driver)),
+      this.#said.element,
       create('div', { id: 'wire-parts' }, create('div', { className: 'stack' }, this.#rows, label(t('add'), this.#add)), this.#drawing),
       this.#problem, this.#remarks,
       create('div', { className: 'row' }, open, fileButton(t('Files…'), '.ino,.cpp,.c,.h,.hpp,.S,.elf,.hex', (_, files) => this.#read(files), true), folder, this.#program, create('span', { className: 'spacer' }), this.#save, this.#drive),
       create('details', {}, create('summary', { textContent: t('The robot file') }), this.#text),
     );
     for (const field of [this.#like, this.#board, this.#driver]) field.addEventListener('change', () => this.#begin(field === this.#like));
-    for (const field of [this.#name, this.#wheels, this.#battery]) field.addEventListener('input', () => this.#changed());
+    this.#name.addEventListener('input', () => this.#changed());
     this.#add.addEventListener('change', () => {
-      this.#wired.push(added(this.#add.value, this.#wired));
+      const fresh = added(this.#add.value, this.#wired);
+      this.#wired.push(...fresh);
       this.#show();
-      this.#rows.querySelector('div:last-child input')?.scrollIntoView({ block: 'nearest' });
-      /** @type {HTMLInputElement | null} */ (this.#rows.querySelector('div:last-child input'))?.focus();
+      const first = document.getElementById(`wire-${fresh[0]?.signal}`);
+      first?.scrollIntoView({ block: 'nearest' });
+      first?.focus();
       this.#changed();
     });
     this.#save.addEventListener('click', () => saveFile(`${plainName(this.#name.value)}.toml`, new Blob([this.#answer.toml ?? ''], { type: 'application/toml' })));
@@ -125,7 +129,11 @@ export class WireDialog {
     const { known, boards, drivers } = this.#choices ?? { known: [], boards: [], drivers: [] };
     this.#like.replaceChildren(create('option', { value: '', textContent: t('my own wiring') }), ...known.map(option));
     this.#board.replaceChildren(...boards.map(option));
-    this.#driver.replaceChildren(...drivers.map(({ name, title, jumpers }) => option({ name, title: jumpers ? t('{}, enables on jumpers', title) : title })));
+    this.#driver.replaceChildren(...drivers.map(({ name, title, jumpers }) => {
+      const own = / /.test(title) ? said(title) : title;
+      return option({ name, title: jumpers ? t('{}, enables on jumpers', own) : own });
+    }));
+    this.#said.offer(this.#choices?.asked ?? []);
     this.#board.value = 'uno';
     this.#begin(false);
   }
@@ -147,7 +155,7 @@ export class WireDialog {
       this.#name.value = known.name.replace(/^kit_/, 'my_');
       this.#wired = Object.entries(known.pins).map(([signal, pin]) => ({ signal, pin }));
     }
-    for (const field of [this.#board, this.#driver, this.#wheels, this.#battery]) field.disabled = known !== undefined;
+    for (const field of [this.#board, this.#driver]) field.disabled = known !== undefined;
     const driver = this.#driverNow;
     if (driver && !known) this.#wired = rowsOf(driver, this.#wired);
     this.#show();
@@ -159,7 +167,7 @@ export class WireDialog {
     const pins = create('datalist', { id: 'wire-names' }, ...(this.#boardNow?.pins ?? []).map(({ name }) => create('option', { value: name })));
     this.#rows.replaceChildren(pins, ...this.#wired.map((row) => this.#row(row)));
     const isKnown = this.#like.value !== '';
-    const can = addable(this.#wired, this.#choices).filter((what) => !isKnown || /_/.test(what));
+    const can = addable(this.#wired, this.#choices).filter((what) => !isKnown || OPTIONAL.has(what));
     this.#add.replaceChildren(create('option', { value: '', textContent: '…', disabled: true, selected: true }), ...can.map((what) => create('option', { value: what, textContent: words(what) })));
   }
 
@@ -182,7 +190,21 @@ export class WireDialog {
       this.#show();
       this.#changed();
     });
-    return create('div', {}, label, input, remove);
+    return create('div', {}, label, input, remove, ...this.#place(row));
+  }
+
+  /** Where a sensor is, which has a usual place. @param {Row} row */
+  #place(row) {
+    const sensor = sensorOf(row);
+    if (sensor === null || this.#like.value !== '') return [];
+    const field = create('input', { type: 'text', value: row.place ?? '', size: 12, maxLength: 30, autocomplete: 'off', placeholder: this.#answer.places?.[sensor] ?? '' });
+    field.dataset['sensor'] = sensor;
+    field.title = t('Ahead of the wheels\' axis and to the left in m, and where it looks in degrees, positive to the left');
+    field.addEventListener('input', () => {
+      row.place = field.value;
+      this.#changed();
+    });
+    return [create('label', { className: 'wire-place' }, `${t('at x:y:angle')} `, field)];
   }
 
   #draw() {
@@ -218,20 +240,25 @@ export class WireDialog {
     if (!board || !driver) return;
     const asked = ++this.#asked;
     const open = this.#wired.filter(({ signal, pin }) => driver.needed.includes(signal) && pin.trim() === '').map(({ signal }) => words(signal));
-    const about = { name: this.#name.value, like: this.#like.value || null, board: board.name, driver: driver.name, four_wheels: this.#wheels.checked, battery_v: this.#battery.valueAsNumber || null };
+    const about = { name: this.#name.value, like: this.#like.value || null, board: board.name, driver: driver.name, said: this.#said.said };
     const wrong = this.#wired.find(({ pin, kind }) => !kind && pin.trim() !== '' && !/^m\d$/i.test(pin.trim()) && pinOf(board, pin) === null);
     const local = open.length > 0 ? t('still without a pin: {}', open.join('; ')) : wrong ? t('{}: the {} has no pin {}', words(wrong.signal), board.title, wrong.pin) : null;
     /** @type {Answer} */
     let answer = {};
-    if (local === null) {
-      try {
-        answer = JSON.parse(await ask('robot', 'POST', JSON.stringify(request(about, this.#wired))));
-      } catch (error) {
-        answer = { problem: wordsOf(error) };
-      }
-      if (asked !== this.#asked) return;
+    try {
+      answer = JSON.parse(await ask('robot', 'POST', JSON.stringify(request(about, this.#wired))));
+    } catch (error) {
+      answer = { problem: wordsOf(error) };
     }
+    if (asked !== this.#asked) return;
+    if (local !== null) delete answer.toml;
     this.#answer = answer;
+    // What is refused as a whole leaves the fields as they were, to be mended.
+    if (answer.asked || about.like !== null) this.#said.show(answer.asked ?? {});
+    for (const field of this.#rows.querySelectorAll('input')) {
+      const { sensor } = field.dataset;
+      if (sensor) field.placeholder = answer.places?.[sensor] ?? '';
+    }
     const { problem, remarks = [], alike, toml } = answer;
     setText(this.#problem, local ?? said(problem ?? ''));
     // Nothing is wrong yet.

@@ -4,12 +4,26 @@
 /** @typedef {{name: string, title: string, pins: {name: string, pwm: boolean}[]}} Board */
 /** @typedef {{name: string, title: string, jumpers: boolean, needed: string[], standby: boolean}} Driver */
 /** A robot to begin with. @typedef {{name: string, title: string, board: string, driver: string, pins: Record<string, string>}} Known */
-/** @typedef {{boards: Board[], drivers: Driver[], known: Known[], parts: string[]}} Choices */
-/** Something that has a pin: a signal, or a part of a kind. @typedef {{signal: string, kind?: string, pin: string}} Row */
-/** What the station says of a plan. @typedef {{problem?: string, toml?: string, remarks?: string[], alike?: {robot: string, same: number, of: number, others: [string, string][]} | null, on?: Record<string, string>}} Answer */
+/** What may be said of a robot: a choice, or a number within a range, of a unit. @typedef {{key: string, label: string, about: string, choices: [string, string][], range: [number, number, string] | null}} Asked */
+/** @typedef {{boards: Board[], drivers: Driver[], known: Known[], parts: string[], asked: Asked[]}} Choices */
+/** Something that has a pin: a signal, or a part of a kind; of a sensor also where it is, `x:y:angle`, in m and degrees. @typedef {{signal: string, kind?: string, pin: string, place?: string}} Row */
+/** What the station says of a plan. @typedef {{problem?: string, toml?: string, remarks?: string[], alike?: {robot: string, same: number, of: number, others: [string, string][]} | null, on?: Record<string, string>, asked?: Record<string, string>, places?: Record<string, string>}} Answer */
 
-/** Signals that a robot need not have. */
-export const OPTIONAL = ['left_encoder', 'left_encoder_b', 'right_encoder', 'right_encoder_b', 'servo', 'front_trigger', 'front_echo', 'left_trigger', 'left_echo', 'right_trigger', 'right_echo', 'rear_trigger', 'rear_echo', 'left_fault', 'right_fault', 'link_rx', 'link_tx'];
+/** @param {string} name @returns {[string, string[]]} */
+const sonar = (name) => [`${name}_sonar`, [`${name}_trigger`, `${name}_echo`]];
+/** What a robot need not have, and the signals of its wires. @type {Map<string, string[]>} */
+export const OPTIONAL = new Map([
+  ['servo', ['servo']],
+  ...['front', 'left', 'right', 'rear'].map(sonar),
+  ['link', ['link_rx', 'link_tx']],
+  ['encoders', ['left_encoder', 'right_encoder']],
+  ['encoders_b', ['left_encoder_b', 'right_encoder_b']],
+  ['battery', ['battery']],
+  ['faults', ['left_fault', 'right_fault']],
+]);
+/** A sonar of another name is ahead until somebody says where. */
+const SONAR = 'other_sonar';
+const AHEAD = '0.11:0:0';
 /** Sensors of which there may be several, from left to right. */
 export const SENSORS = ['line', 'obstacle', 'sharp'];
 /** Where a device on the two-wire bus usually is. @type {Record<string, string>} */
@@ -24,20 +38,30 @@ export function rowsOf(driver, before) {
 }
 
 /** What can be added. @param {Row[]} rows @param {Choices} choices */
-export const addable = (rows, { parts }) => [...OPTIONAL.filter((signal) => !rows.some((row) => row.signal === signal)), ...SENSORS, ...parts];
+export const addable = (rows, { parts }) => [...[...OPTIONAL].filter(([, signals]) => signals.some((own) => !rows.some(({ signal }) => signal === own))).map(([what]) => what), SONAR, ...SENSORS, ...parts];
 
-/** A new row of what can be added: sensors and parts are numbered. @param {string} what @param {Row[]} rows @returns {Row} */
+/** New rows of what can be added: sensors and parts are numbered. @param {string} what @param {Row[]} rows @returns {Row[]} */
 export function added(what, rows) {
-  if (OPTIONAL.includes(what)) return { signal: what, pin: '' };
+  const has = (/** @type {string} */ own) => rows.some(({ signal }) => signal === own);
+  const signals = OPTIONAL.get(what);
+  if (signals) return signals.filter((signal) => !has(signal)).map((signal) => ({ signal, pin: '' }));
   let number = 1;
-  while (rows.some(({ signal }) => signal === `${what}_${number}`)) number++;
-  const signal = `${what}_${number}`;
-  return SENSORS.includes(what) ? { signal, pin: '' } : { signal, kind: what, pin: ADDRESSES[what] ?? '' };
+  const name = what === SONAR ? 'sonar' : what;
+  while (has(`${name}_${number}`) || has(`${name}_${number}_trigger`)) number++;
+  const signal = `${name}_${number}`;
+  if (what === SONAR) return [{ signal: `${signal}_trigger`, pin: '', place: AHEAD }, { signal: `${signal}_echo`, pin: '' }];
+  return [SENSORS.includes(what) ? { signal, pin: '' } : { signal, kind: what, pin: ADDRESSES[what] ?? '' }];
+}
+
+/** The sensor that a row's place is of, null where it has none. @param {Row} row */
+export function sensorOf({ signal, kind }) {
+  if (kind) return null;
+  return /^(?:line|obstacle|sharp)_/.test(signal) ? signal : signal.match(/^(.+)_trigger$/)?.[1] ?? null;
 }
 
 /**
  * What the station is asked.
- * @param {{name: string, like: string | null, board: string, driver: string, four_wheels: boolean, battery_v: number | null}} about
+ * @param {{name: string, like: string | null, board: string, driver: string, said: Record<string, string>}} about
  * @param {Row[]} rows
  */
 export function request(about, rows) {
@@ -46,6 +70,7 @@ export function request(about, rows) {
     plan: {
       ...about,
       pins: given.filter(({ kind }) => !kind).map(({ signal, pin }) => [signal, pin]),
+      places: given.flatMap((row) => (row.place?.trim() ? [`${sensorOf(row)}=${row.place.replace(/,/g, '.')}`] : [])),
       parts: given.flatMap(({ signal, kind, pin }) => (kind ? [[signal, kind, pin]] : [])),
     },
   };

@@ -108,6 +108,9 @@ test('what is said of a program at the pins, its end, the debugger and the speed
 /** Parts of such messages, which have their Spanish with the rest of the sentence, or need none. */
 const WITHIN = ['not valid TOML: {}{}', '; write decimals with a point', 'must be a number{}, without quotes', ' in {}', ' or ', 'turn rate', ', or '];
 
+/** The same of robots: the end of a sentence that has its Spanish as a whole, with and without it. */
+const PART_OF_ROBOT = [', or "high" or "low" where a jumper holds it', 'must be a pin of the {}, 0 to {}, such as 5 or "A0"{}'];
+
 test('what is wrong with a scenario, a world or an image', () => {
   const files = ['read', 'value', 'word', 'near', 'scenario/mod', 'scenario/read', 'scenario/fleet', 'commands', 'mover', 'route', 'world', 'fit', 'start'].map((name) => `experiment/src/files/${name}`);
   const texts = [...files, 'sim/src/fleet', 'lab/src/robots', 'emulator/src/image/error', 'emulator/src/image/hex'].flatMap((name) => {
@@ -116,6 +119,17 @@ test('what is wrong with a scenario, a world or an image', () => {
   });
   assert.ok(texts.length > 150, String(texts.length));
   allSpanish(texts.filter((text) => / /.test(text) && hasWords(text) && !text.includes('[[fleet]]') && !WITHIN.includes(text)));
+});
+
+test('what is asked of one\'s own robot, and what is odd or wrong about it', () => {
+  const sources = ['new_asked', 'new_robot', 'robot', 'sonars', 'pin', 'parts', 'line', 'obstacle'].map((name) => (read(`../../crates/experiment/src/files/${name}.rs`).split('#[cfg(test)]')[0] ?? '').replace(/^\s*\/\/.*$/gm, ''));
+  const [asked = '', made = '', ...files] = sources;
+  const fields = [...asked.matchAll(/(?:label|about):\s*"((?:[^"\\]|\\.)*)"|\("\w+", "([^"]+)"\)/g)].map((found) => found[1] ?? found[2] ?? '');
+  assert.ok(fields.length > 40, String(fields.length));
+  const remarks = made.match(/\npub fn remarks[^]*?\n}/)?.[0] ?? '';
+  const texts = [...[remarks, ...files].join('\n').matchAll(/"((?:[^"\\]|\\.)*)"/g)].map((found) => unescaped((found[1] ?? '').replaceAll('{{', '').replace(/\{[^}]*\}+/g, '{}')));
+  assert.ok(texts.length > 100, String(texts.length));
+  allSpanish([...fields.filter(hasWords), ...texts.filter((text) => / /.test(text) && hasWords(text) && !WITHIN.includes(text) && !PART_OF_ROBOT.includes(text))]);
 });
 
 test('titles and groups of the built-in scenarios', () => {

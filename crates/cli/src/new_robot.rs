@@ -1,13 +1,13 @@
 //! `rumbo new robot`: a robot file from a board, a driver and pins, asked for at a terminal.
 
-use crate::args::{NewArgs, driver_named, driver_names};
+use crate::args::{Answers, NewArgs, driver_named, driver_names};
 use crate::by_option::said_of_options;
 use crate::failure::Failure;
 use crate::output;
 use crate::place;
 use rumbo_experiment::files::new_robot::{
-    JUMPERS, LINE, Measured, NewRobot, OBSTACLE, SHARP, counted, has_place, looks_like, meaning,
-    needed, remarks,
+    ASKED, Asked, JUMPERS, LINE, Measured, NewRobot, OBSTACLE, SHARP, counted, has_place,
+    looks_like, meaning, needed, remarks,
 };
 use rumbo_experiment::files::{Kind, Library};
 use rumbo_sim::boards::{BOARDS, Board};
@@ -61,6 +61,9 @@ pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
             if let Some(counted) = counted(&robot) {
                 output::line(&counted)?;
             }
+            if !args.pins.is_empty() {
+                output::line(&assumed(&made, &args.answers))?;
+            }
             match looks_like(&library, wiring)? {
                 Some(alike) => {
                     let others = alike
@@ -88,6 +91,18 @@ pub(crate) fn begin(args: &NewArgs) -> Result<(), Failure> {
     output::line(&format!(
         "{shown}: measure and change it, then `rumbo run free --robot {quoted} --sketch FOLDER`"
     ))
+}
+
+/// What is taken as nobody has said it.
+fn assumed(robot: &NewRobot, answers: &Answers) -> String {
+    let said = |key: &str| answers.0.iter().any(|(asked, _)| asked.key == key);
+    let asked = robot.asked().into_iter();
+    let unsaid = asked.filter(|(asked, _)| asked.is_option() && !said(asked.key));
+    let taken = unsaid.map(|(Asked { key, .. }, usual)| format!("--{key} {usual}"));
+    format!(
+        "what no option says is as with {}",
+        taken.collect::<Vec<_>>().join(" ")
+    )
 }
 
 /// An existing file may be somebody's work.
@@ -180,30 +195,68 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
             }
         }
     }
-    if let (Direction::Pulse, Some(motor)) = (driver.direction, args.motor) {
-        return Err(Failure::Input(format!(
-            "--motor {}: {} are motors themselves; leave it out",
-            motor.name, driver.title
-        )));
-    }
-    let sensors = sensors(args, &pins)?;
-    Ok(NewRobot {
+    let mut robot = NewRobot {
         name,
         board,
         driver,
         jumpers,
+        sensors: sensors(args, &pins)?,
         pins,
-        four_wheels: args.wheels == 4,
-        sensors,
-        measured: Measured {
-            motor: args.motor,
-            battery_v: args.battery,
-            base_m: args.base,
-            wheel_m: args.wheel,
-            edges: args.edges,
-        },
+        measured: Measured::default(),
         parts: args.parts.clone(),
-    })
+    };
+    for (asked, text) in &args.answers.0 {
+        if *asked.key == *"motor" && driver.direction == Direction::Pulse {
+            return Err(Failure::Input(format!(
+                "--motor {text}: {} are motors themselves; leave it out",
+                driver.title
+            )));
+        }
+        robot.say(asked, text).map_err(Failure::Input)?;
+    }
+    if args.pins.is_empty() {
+        ask_more(&mut robot, &args.answers)?;
+    }
+    Ok(robot)
+}
+
+/// Asks what matters for such a robot and no option has said; an empty answer is the usual one.
+fn ask_more(robot: &mut NewRobot, answers: &Answers) -> Result<(), Failure> {
+    output::line("what you know of it; nothing where the usual in brackets will do")?;
+    for Asked { key, .. } in ASKED.iter() {
+        let known = answers.0.iter().any(|(asked, _)| asked.key == *key);
+        // What was answered before may change what is usual.
+        let Some((asked, usual)) = robot
+            .asked()
+            .into_iter()
+            .find(|(asked, _)| asked.key == *key)
+        else {
+            continue;
+        };
+        if known {
+            continue;
+        }
+        let choices = asked.choices().iter();
+        let choices = choices.map(|(name, title)| format!("{name} is {title}"));
+        let question = match asked.range() {
+            Some((.., "count" | "1")) => asked.about.to_owned(),
+            Some((.., unit)) => format!("{}, in {unit}", asked.about),
+            None => format!(
+                "{}: {}",
+                asked.label,
+                choices.collect::<Vec<_>>().join(", ")
+            ),
+        };
+        let question = format!("{question} [{usual}]");
+        let said = ask_until(&question, |text| match text {
+            "" => Ok(None),
+            text => asked.check(text).map(|()| Some(text.to_owned())),
+        })?;
+        if let Some(text) = said {
+            robot.say(asked, &text).map_err(Failure::Input)?;
+        }
+    }
+    Ok(())
 }
 
 /// What a pin is asked for by: its signal, and what that is.

@@ -1,8 +1,8 @@
 //! The robot that a page of the lab wires: what there is to choose from, and the file that its choices make, checked.
 
-use crate::args::{driver_named, drivers, pin};
+use crate::args::{driver_named, drivers, pin, sensor};
 use rumbo_experiment::files::new_robot::{
-    JUMPERS, Measured, NewRobot, looks_like, needed, remarks,
+    ASKED, Asked, JUMPERS, Measured, NewRobot, find, looks_like, needed, remarks,
 };
 use rumbo_experiment::files::{FileError, Kind, Library, RobotFile};
 use rumbo_sim::boards::{BOARDS, Board};
@@ -28,13 +28,16 @@ struct Plan {
     like: Option<String>,
     board: String,
     driver: String,
-    four_wheels: bool,
-    battery_v: Option<f64>,
     pins: Vec<(String, String)>,
+    /// What is said besides wires, by the names of [`ASKED`].
+    said: BTreeMap<String, String>,
+    /// Where sensors are, as `--sensors` takes it.
+    places: Vec<String>,
     parts: Vec<[String; 3]>,
 }
 
-/// Answers a page: `{"choices": …}`, or `{"toml": …, "remarks": […], "alike": …, "on": …}` of its plan, or `{"problem": …}`.
+/// Answers a page: `{"choices": …}`, or `{"toml": …, "remarks": […], "alike": …, "on": …}` of its plan, or `{"problem": …}`;
+/// both with what may be said of such a robot and where its sensors are, `{"asked": …, "places": …}`.
 pub(crate) fn answer(request: &Value) -> Value {
     let library = Library::new();
     let answer = match Request::deserialize(request) {
@@ -68,6 +71,7 @@ fn choices(library: &Library) -> Result<Value, FileError> {
         "drivers": drivers,
         "known": known.into_iter().flatten().collect::<Vec<_>>(),
         "parts": parts.chain(devices).collect::<Vec<_>>(),
+        "asked": ASKED.iter().map(asked).collect::<Vec<_>>(),
     } }))
 }
 
@@ -81,6 +85,16 @@ fn board(board: &Board) -> Value {
         })
         .collect();
     json!({ "name": board.name, "title": board.title, "pins": pins })
+}
+
+fn asked(asked: &Asked) -> Value {
+    json!({
+        "key": asked.key,
+        "label": asked.label,
+        "about": asked.about,
+        "choices": asked.choices(),
+        "range": asked.range(),
+    })
 }
 
 /// A known robot to begin with; none where it has no wiring, or several.
@@ -122,14 +136,33 @@ fn signals(wiring: &Wiring) -> BTreeMap<String, String> {
 }
 
 fn made(library: &Library, plan: Plan) -> Result<Value, String> {
-    let say = |error: FileError| error.to_string();
-    let (text, robot) = match &plan.like {
-        Some(like) => rewired(library, like, &plan.pins)?,
-        None => new(plan)?.checked().map_err(say)?,
-    };
+    if let Some(like) = &plan.like {
+        let (text, robot) = rewired(library, like, &plan.pins)?;
+        return drawn(library, &text, &robot);
+    }
+    let robot = new(plan)?;
+    let asked: BTreeMap<&str, String> = robot
+        .asked()
+        .into_iter()
+        .map(|(asked, usual)| (asked.key, usual))
+        .collect();
+    let places = robot.places().into_iter();
+    let places: BTreeMap<String, String> = places
+        .map(|(sensor, place)| (sensor, place.map(|number| number.to_string()).join(":")))
+        .collect();
+    let checked = robot.checked().map_err(|error| error.to_string());
+    let drawn = checked.and_then(|(text, robot)| drawn(library, &text, &robot));
+    let mut answer = drawn.unwrap_or_else(|problem| json!({ "problem": problem }));
+    answer["asked"] = json!(asked);
+    answer["places"] = json!(places);
+    Ok(answer)
+}
+
+/// What a page shows of a robot's file.
+fn drawn(library: &Library, text: &str, robot: &RobotFile) -> Result<Value, String> {
     let wiring = robot.wirings.values().next();
     let wiring = wiring.ok_or("a robot needs pins")?;
-    let alike = looks_like(library, wiring).map_err(say)?;
+    let alike = looks_like(library, wiring).map_err(|error| error.to_string())?;
     let on: BTreeMap<String, &str> = (0..=wiring.board.last_pin())
         .filter_map(|pin| Some((wiring.board.shown(pin), wiring.owner_of(pin)?)))
         .collect();
@@ -153,20 +186,22 @@ fn new(plan: Plan) -> Result<NewRobot, String> {
     for (signal, place) in &plan.pins {
         pin(&format!("{signal}={place}"))?;
     }
-    Ok(NewRobot {
+    let places = plan.places.iter().map(|place| sensor(place));
+    let mut robot = NewRobot {
         name: plan.name,
         board: board.ok_or_else(|| format!("no board {}", plan.board))?,
         driver,
         jumpers,
         pins: plan.pins,
-        four_wheels: plan.four_wheels,
-        sensors: Vec::new(),
-        measured: Measured {
-            battery_v: plan.battery_v,
-            ..Measured::default()
-        },
+        sensors: places.collect::<Result<_, _>>()?,
+        measured: Measured::default(),
         parts: plan.parts,
-    })
+    };
+    for (key, text) in &plan.said {
+        let asked = find(key).ok_or_else(|| format!("nobody asks for {key}"))?;
+        robot.say(asked, text)?;
+    }
+    Ok(robot)
 }
 
 /// The file of a known robot, as it is where its signals stay, else with these in their places.
@@ -212,8 +247,7 @@ mod tests {
 
     fn plan(changes: Value) -> Value {
         let mut plan = json!({
-            "name": "my car", "like": null, "board": "uno", "driver": "l298n-jumpers", "four_wheels": false, "parts": [],
-            "battery_v": null,
+            "name": "my car", "like": null, "board": "uno", "driver": "l298n-jumpers", "said": {}, "places": [], "parts": [],
             "pins": [["left_forward", "5"], ["left_backward", "6"], ["right_forward", "9"], ["right_backward", "10"]],
         });
         let (plan_fields, changes) = (plan.as_object_mut().unwrap(), changes.as_object().unwrap());
@@ -229,7 +263,7 @@ mod tests {
             "{good}"
         );
         assert_eq!(good["on"]["10"], "right_backward");
-        let charged = plan(json!({ "battery_v": 7.4 }));
+        let charged = plan(json!({ "said": { "battery": "7.4" } }));
         assert!(
             charged["toml"]
                 .as_str()
@@ -249,7 +283,12 @@ mod tests {
                 json!({ "parts": [["go", "button", "5"]] }),
                 "left_forward is on that pin",
             ),
-            (json!({ "battery_v": 40 }), "open_circuit_v = 40"),
+            (
+                json!({ "said": { "battery": "40" } }),
+                "battery = 40: must be within 5.6..12 V",
+            ),
+            (json!({ "said": { "top-speed": "3" } }), "gears reach"),
+            (json!({ "places": ["line_1=here"] }), "write it as"),
             (json!({ "extra": 1 }), "unknown field"),
         ] {
             let problem = plan(wrong.clone());

@@ -59,10 +59,18 @@ test('pins are typed or dragged onto the board, and checked at once', async () =
 
 test('its file is kept, and its sketch drives it', async () => {
   await page.locator('#wire-dialog input[accept]').setInputFiles({ name: 'car.ino', mimeType: 'text/plain', buffer: Buffer.from(SKETCH) });
+  await page.locator('#wire-said-motor').selectOption('n20');
+  await page.locator('#wire-said-top-speed').fill('9');
+  await problem().filter({ hasText: 'top-speed = 9: must be within 0.02..3 m/s' }).waitFor();
+  await page.locator('#wire-said-top-speed').fill('0.3');
+  await page.locator('#wire-add').selectOption('line');
+  await field('line_1').fill('A0');
+  await page.locator('input[data-sensor="line_1"]').fill('0.05:0.01');
+  await page.locator('#wire-text', { hasText: 'left_forward = 5' }).and(page.locator('#wire-text', { hasText: 'x_m = 0.05, y_m = 0.0100' })).waitFor({ state: 'attached' });
   const saved = page.waitForEvent('download');
   await page.locator('#wire-dialog').getByRole('button', { name: 'Save file' }).click();
   const file = readFileSync(await (await saved).path(), 'utf8');
-  assert.match(file, /board = "uno"[^]*left_enable = "high"[^]*left_forward = 5 [^]*parts.button_1 = { button = 2 }/);
+  assert.match(file, /board = "uno"[^]*left_enable = "high"[^]*left_forward = 5 [^]*parts.button_1 = { button = 2 }[^]*drive 0.3 m\/s at full PWM[^]*N20 gear motors/);
   const picture = process.env['SCREENSHOT_WIRE'];
   if (picture) await page.screenshot({ path: picture });
   const choose = (/** @type {string} */ text) => page.locator('#wire-dialog input[accept]').setInputFiles({ name: 'car.ino', mimeType: 'text/plain', buffer: Buffer.from(text) });
@@ -74,6 +82,7 @@ test('its file is kept, and its sketch drives it', async () => {
   await page.waitForSelector('body.own');
   await page.locator('#wire-dialog').waitFor({ state: 'hidden' });
   assert.equal(await page.locator('#program-name').textContent(), 'car');
+  assert.equal(await page.locator('#world').inputValue(), 'line_loop');
   await page.waitForFunction(() => {
     const last = (/** @type {string} */ name) => /** @type {any} */ (window).rumbo.series(name).y.at(-1);
     return last('true_left_rpm') > 20 && last('true_right_rpm') > 20;

@@ -1,5 +1,6 @@
 //! The command line: subcommands, options, and the examples that each `--help` shows. Each file here is one group of subcommands.
 
+mod asked;
 mod groups;
 mod live;
 mod logs;
@@ -7,6 +8,7 @@ mod runs;
 mod studies;
 mod values;
 
+pub(crate) use asked::Answers;
 pub(crate) use groups::{OverwriteArgs, ServeArgs, board};
 pub(crate) use live::{ConnectArgs, DebugArgs, FlashArgs, LabArgs};
 pub(crate) use logs::{
@@ -17,12 +19,11 @@ pub(crate) use runs::{
 };
 
 pub(crate) use studies::{SweepArgs, TuneArgs};
-pub(crate) use values::{driver_named, driver_names, drivers, pin};
+pub(crate) use values::{driver_named, driver_names, drivers, pin, sensor};
 
 use crate::failure::Failure;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
-use rumbo_experiment::files::new_robot::GearMotor;
 use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::Driver;
 use std::path::PathBuf;
@@ -128,10 +129,7 @@ pub(crate) struct ExportPolicyArgs {
 }
 
 /// What a robot that is like another one has from it.
-const OF_NEW_ROBOTS: [&str; 11] = [
-    "board", "driver", "pins", "parts", "wheels", "motor", "battery", "base", "wheel", "edges",
-    "sensors",
-];
+const OF_NEW_ROBOTS: [&str; 5] = ["board", "driver", "pins", "parts", "sensors"];
 
 /// Options of `rumbo new`.
 #[derive(Args, Debug)]
@@ -166,24 +164,8 @@ pub(crate) struct NewArgs {
     /// link_baud=38400 is the rate of a Bluetooth module; battery=A0,battery_ratio=4 a divider for the battery's voltage
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,
-    /// Wheels, 2, or 4, the two of a side driven alike; tracks are 4
-    #[arg(long, value_name = "COUNT", default_value_t = 2, value_parser = values::wheels)]
-    pub(crate) wheels: u8,
-    /// Its motors: tt, the yellow ones; with gears of metal and for encoders n20, 6 V, and 25d, 12 V [default: tt; of servos theirs]
-    #[arg(long, value_name = "MOTOR", value_parser = values::motor)]
-    pub(crate) motor: Option<&'static GearMotor>,
-    /// Voltage of the battery, 5.6 to 12: 6 of four AA cells, 7.4 or 11.1 of Li-ion ones [default: 6; of four wheels 7.4, of 25d 12]
-    #[arg(long, value_name = "V", value_parser = values::battery)]
-    pub(crate) battery: Option<f64>,
-    /// Between the middles of the tyres, in m [default: 0.13; of servos 0.105]
-    #[arg(long, value_name = "M")]
-    pub(crate) base: Option<f64>,
-    /// Diameter of the wheels, in m [default: 0.065]
-    #[arg(long, value_name = "M")]
-    pub(crate) wheel: Option<f64>,
-    /// Edges of an encoder's output in a turn of the wheel, half of them rising: 748 of 11 pulses behind gears of 34:1 [default: 40]
-    #[arg(long, value_name = "COUNT", value_parser = values::edges)]
-    pub(crate) edges: Option<u16>,
+    #[command(flatten)]
+    pub(crate) answers: Answers,
     /// Where sensors sit, x and y in m, and look, in degrees: left=0.08:0.07:90,right=-0.02:0.07:90 are two sonars on the left
     /// side, line_rear=-0.05:0 is a line sensor behind the wheels, obstacle_rear=-0.1:0:180 looks back
     #[arg(long, alias = "sonars", value_name = "SENSOR=X:Y:DEG", value_delimiter = ',', value_parser = values::sensor)]

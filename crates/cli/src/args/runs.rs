@@ -40,8 +40,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "TEXT@SECONDS", value_parser = usb_text, requires = "image")]
     pub(crate) usb: Vec<TimedText>,
     /// Button pressed at a time, switch or potentiometer put to a value from 0 to 1, or key of a remote control pressed,
-    /// e.g. 'start@2', 'speed=0.7@3', 'remote=ok@4'; may be
-    /// repeated
+    /// e.g. 'start@2', 'speed=0.7@3', 'remote=ok@4'; held 'start@2-3.5', 'remote=up@1-3'; may be repeated
     #[arg(long, value_name = "NAME@SECONDS", value_parser = press, requires = "image")]
     pub(crate) press: Vec<Vec<TimedText>>,
     /// Where a hand puts the robot at a time, x and y in m, heading in degrees, e.g. '0.2,0.1,90@3'; may be repeated

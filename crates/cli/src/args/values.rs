@@ -3,8 +3,7 @@
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
 use rumbo_experiment::files::new_robot::{
-    BATTERY, GearMotor, JUMPERS, LINE, LINK_BAUD, MOTORS, OBSTACLE, SERVO_AHEAD, SERVO_REVERSED,
-    SHARP, is_of_sonar,
+    ASKED, BATTERY, JUMPERS, LINE, OBSTACLE, SHARP, find, is_of_sonar,
 };
 use rumbo_experiment::files::{TimedText, TypedPort, check_line, parameters, placed, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
@@ -59,47 +58,25 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
     };
     let named = [LINE, OBSTACLE, SHARP];
     let is_named = named.iter().any(|begin| signal.starts_with(begin));
-    let said = [
-        LINK_BAUD,
-        SERVO_AHEAD,
-        SERVO_REVERSED,
-        BATTERY[0],
-        BATTERY[1],
-    ];
-    if !SIGNALS.contains(&signal) && !is_named && !said.contains(&signal) && !is_of_sonar(signal) {
-        return Err(format!(
-            "no signal `{signal}`; there are {}, {}, and with a name of yours {LINE}NAME, {OBSTACLE}NAME, {SHARP}NAME, \
-             NAME_trigger and NAME_echo of a sonar",
-            SIGNALS.join(", "),
-            said.join(", ")
-        ));
-    }
-    if signal == SERVO_AHEAD
-        && !pin
-            .parse()
-            .is_ok_and(|deg: f64| (0.0..=180.0).contains(&deg))
-    {
-        return Err(format!(
-            "{SERVO_AHEAD} = {pin}: must be an angle of servo.write(), 0 to 180"
-        ));
+    let asked = find(signal).filter(|asked| !asked.is_option());
+    let is_pin = SIGNALS.contains(&signal) || signal == BATTERY || is_named || is_of_sonar(signal);
+    match asked {
+        Some(asked) => asked
+            .check(pin)
+            .map_err(|why| format!("{signal} = {pin}: {why}"))?,
+        None if is_pin => {}
+        None => {
+            let said = ASKED.iter().filter(|asked| !asked.is_option());
+            let said: Vec<&str> = said.map(|asked| asked.key).collect();
+            return Err(format!(
+                "no signal `{signal}`; there are {}, {}, and with a name of yours {LINE}NAME, {OBSTACLE}NAME, {SHARP}NAME, \
+                 NAME_trigger and NAME_echo of a sonar",
+                SIGNALS.join(", "),
+                said.join(", ")
+            ));
+        }
     }
     Ok((signal.to_owned(), pin.to_owned()))
-}
-
-/// The motors of a robot by their name.
-pub(super) fn motor(text: &str) -> Result<&'static GearMotor, String> {
-    let found = MOTORS.into_iter().find(|motor| motor.name == text);
-    let known = || MOTORS.map(|motor| motor.name).join(", ");
-    found.ok_or_else(|| format!("no such motor; there are {}", known()))
-}
-
-/// The voltage of a robot's battery.
-pub(super) fn battery(text: &str) -> Result<f64, &'static str> {
-    let volts = text
-        .parse()
-        .ok()
-        .filter(|volts| (5.6..=12.0).contains(volts));
-    volts.ok_or("must be 5.6 to 12 V")
 }
 
 /// The voltage of a battery at rest, as the plant can have it.
@@ -112,7 +89,7 @@ pub(super) fn at_rest(text: &str) -> Result<f64, &'static str> {
 }
 
 /// Where a sensor sits and looks: `left=0.05:0.07:90`, ahead without a direction.
-pub(super) fn sensor(text: &str) -> Result<(String, [f64; 3]), &'static str> {
+pub(crate) fn sensor(text: &str) -> Result<(String, [f64; 3]), &'static str> {
     let read = text.split_once('=').and_then(|(name, place)| {
         let numbers = place.split(':').map(|number| number.trim().parse().ok());
         let numbers: Option<Vec<f64>> = numbers.collect();
@@ -127,24 +104,6 @@ pub(super) fn sensor(text: &str) -> Result<(String, [f64; 3]), &'static str> {
         "write it as left=0.05:0.07:90 or line_rear=-0.05:0, x and y in m and the direction in degrees; of a sonar by its name, and \
          of line_NAME, obstacle_NAME, sharp_NAME",
     )
-}
-
-/// What an output of an encoder gives in a turn of the wheel: it falls as often as it rises.
-pub(super) fn edges(text: &str) -> Result<u16, &'static str> {
-    let edges = text
-        .parse()
-        .ok()
-        .filter(|edges: &u16| *edges > 0 && edges.is_multiple_of(2));
-    edges.ok_or("must be an even number")
-}
-
-/// How many wheels a robot has.
-pub(super) fn wheels(text: &str) -> Result<u8, &'static str> {
-    match text {
-        "2" => Ok(2),
-        "4" => Ok(4),
-        _ => Err("must be 2, with a castor, or 4"),
-    }
 }
 
 /// A part of a robot with its kind and its place, and what else it says of itself: `start=button:8:5v`.
@@ -193,20 +152,29 @@ pub(super) fn usb_text(text: &str) -> Result<TimedText, Failure> {
     timed_text(text).map(|timed| TimedText { port, ..timed })
 }
 
-/// A part and when it is pressed, or put to a value: `start@2`, `speed=0.7@3`, `remote=ok@4`.
+/// A part and when it is pressed, or put to a value: `start@2`, `start@2-3.5`, `speed=0.7@3`, `remote=ok@4`, `remote=up@1-3`.
 pub(super) fn press(text: &str) -> Result<Vec<TimedText>, Failure> {
     let wrong = || {
         Failure::input(
-            "write it as NAME@SECONDS, or NAME=VALUE@SECONDS with a value from 0 to 1 or a key of a remote control",
+            "write it as NAME@SECONDS, or NAME=VALUE@SECONDS with a value from 0 to 1 or a key of a remote control; \
+             NAME@FROM-TO holds it",
         )
     };
-    let TimedText { at_s, text, .. } = timed_text(text).map_err(|_| wrong())?;
+    let (what, when) = text.rsplit_once('@').ok_or_else(wrong)?;
+    let (from, to) = when.split_once('-').unwrap_or((when, when));
+    let at = |time: &str| timed_text(&format!("{what}@{time}")).map_err(|_| wrong());
+    let TimedText { at_s, text, .. } = at(from)?;
+    let for_s = at(to)?.at_s - at_s;
+    let for_s = match (for_s > 0.0, from == to) {
+        (false, false) => return Err(wrong()),
+        (held, _) => held.then_some(for_s),
+    };
     let Some((name, value)) = text.split_once('=') else {
-        return Ok(pressed(&text, None, at_s));
+        return Ok(pressed(&text, None, at_s, for_s));
     };
     match (name.trim(), value.trim()) {
         ("", _) | (_, "") => Err(wrong()),
-        (name, value) => Ok(pressed(name, Some(value), at_s)),
+        (name, value) => Ok(pressed(name, Some(value), at_s, for_s)),
     }
 }
 

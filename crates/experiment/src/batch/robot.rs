@@ -10,6 +10,7 @@ use rumbo_plant::world::World;
 use rumbo_sim::Sim;
 use rumbo_sim::mega::{CONSOLES, ON_PINS};
 use rumbo_sim::trace::Trace;
+use rumbo_sim::wiring::SONARS;
 use rumbo_wire::{Command, Refusal};
 use std::sync::{Arc, OnceLock};
 
@@ -275,6 +276,24 @@ impl Robot {
     /// What its program knows after its last tick: see [`super::OBSERVED`].
     pub fn observed(&self) -> Observation {
         self.pilot.observed(&self.sim)
+    }
+
+    /// The true ranges of the sonars that an emulated robot has besides left, right and front, by name, `range_rear_m`: infinite
+    /// where nothing is within reach, not a number without such a sonar in the rig.
+    pub fn other_ranges(&self) -> impl Iterator<Item = (String, f64)> {
+        let names = self.sim.mega().map(|mega| mega.firmware().other_sonars());
+        let ranges_m = self.sim.truth().range_m.into_iter().skip(SONARS.len());
+        let named = names.unwrap_or_default().iter().zip(ranges_m);
+        named.map(|(name, range_m)| (format!("range_{name}_m"), range_m.unwrap_or(f64::NAN)))
+    }
+
+    /// What is true by its name: one of [`TRUE`] or of the other ranges.
+    pub fn true_value(&self, name: &str) -> Option<f64> {
+        let column = TRUE.iter().position(|own| *own == name);
+        let other = || self.other_ranges().find(|(own, _)| own == name);
+        column
+            .map(|column| self.true_values()[column])
+            .or_else(|| other().map(|(_, range_m)| range_m))
     }
 
     /// Ground truth now: see [`TRUE`].

@@ -35,7 +35,7 @@
 mod read;
 mod steps;
 
-use crate::files::{FileError, Library, MetricBounds, Overrides, Setup};
+use crate::files::{FileError, Library, MetricBounds, Overrides, Setup, TimedText};
 use std::path::PathBuf;
 pub use steps::{Broken, TestVerdict};
 
@@ -95,11 +95,12 @@ enum Port {
 enum Act {
     Expect(Port, String, f64),
     Send(Port, Vec<u8>),
-    Press(String, Option<String>),
+    /// Lines to the parts of a robot, by the time from the step's begin.
+    Press(Vec<TimedText>),
     Apply(String, Option<f64>),
     Level(String, bool, f64),
     Judge(Pulses),
-    Truth(usize, MetricBounds, f64),
+    Truth(String, MetricBounds, f64),
     Run(f64),
 }
 

@@ -5,7 +5,7 @@ use crate::batch::TRUE;
 use crate::files::read::{Allowed, Placed, Source, Table};
 use crate::files::{
     FileError, Library, MetricBounds, Overrides, bounded, did_you_mean, near_or_all, read_bounds,
-    read_value,
+    read_press,
 };
 use rumbo_sim::mega::{ON_PINS, PARTS, USB};
 use rumbo_wire::LineEnding;
@@ -145,8 +145,8 @@ fn read_act(table: &Table<'_, '_>, key: &str) -> Option<Act> {
             Some(Act::Send(read_port(table), bytes))
         }
         "press" => {
-            let part = table.required_text(key, "the name of a part").value;
-            Some(Act::Press(part, read_value(table)))
+            table.require(key, "the name of a part");
+            Some(Act::Press(read_press(table, 0.0)))
         }
         "apply_v" => Some(Act::Apply(
             read_pin(table)?,
@@ -192,14 +192,16 @@ fn read_truth(table: &Table<'_, '_>, key: &str) -> Option<Act> {
     if bounds == MetricBounds::default() {
         table.complain_here("has neither min nor max: write e.g. min = 0.5");
     }
-    let column = TRUE.iter().position(|known| *known == name.value);
-    if column.is_none() && !name.value.is_empty() {
+    // Which sonars there are the robot says.
+    let is_range = name.value.starts_with("range_") && name.value.ends_with("_m");
+    let is_known = is_range || TRUE.contains(&name.value.as_str());
+    if !is_known && !name.value.is_empty() {
         let remedy = did_you_mean(&near_or_all(&name.value, TRUE));
         table.complain(key, name.line, &name.value, &remedy);
     }
     // Without a time it is judged as it is.
     let within_s = table.number("within_s", WITHIN).unwrap_or(0.0);
-    column.map(|column| Act::Truth(column, bounds, within_s))
+    is_known.then_some(Act::Truth(name.value, bounds, within_s))
 }
 
 fn read_pin(table: &Table<'_, '_>) -> Option<String> {

@@ -2,7 +2,7 @@
 
 use super::{Act, Port, Pulses, Suite, Test, TestStep};
 use crate::batch::{DrivenBy, Pulse, Robot, TRUE};
-use crate::files::{FileError, MetricBounds, Setup, takes, unknown};
+use crate::files::{FileError, MetricBounds, Setup, TimedText, takes, unknown};
 use rumbo_emulator::devices::ports::Pin;
 use rumbo_sim::mega::firmware::Firmware;
 use rumbo_sim::mega::{CONSOLES, ON_PINS, PARTS};
@@ -10,8 +10,6 @@ use std::sync::Arc;
 
 /// Ticks of 10 ms in a second: what waits looks at each.
 const TICKS_PER_S: f64 = 100.0;
-/// How long a part is pressed [s].
-const PRESSED_S: f64 = 0.2;
 /// Of a port's output so much is shown [characters].
 const SHOWN: usize = 300;
 
@@ -51,16 +49,24 @@ impl Suite {
                     let none = firmware.find(pin).is_none();
                     none.then(|| unknown("pin", pin, known))
                 }
-                Act::Press(name, value) => {
+                Act::Press(lines) => {
+                    let line = lines.first().and_then(|line| line.text.split_once('='));
+                    let (name, value) = line.unwrap_or_default();
                     let worked = firmware.parts().iter().filter(|part| part.kind.is_worked());
                     let known: Vec<&str> = worked.map(|part| part.name.as_str()).collect();
-                    let part = firmware.parts().iter().find(|part| part.name == *name);
+                    let part = firmware.parts().iter().find(|part| part.name == name);
                     match part.filter(|part| part.kind.is_worked()) {
-                        Some(part) => takes(part, value.as_deref().unwrap_or("on"))
-                            .err()
-                            .map(FileError::Setting),
+                        Some(part) => takes(part, value).err().map(FileError::Setting),
                         None => Some(unknown("part", name, known)),
                     }
+                }
+                Act::Truth(name, ..) => {
+                    let others = firmware.other_sonars().iter();
+                    let others: Vec<String> =
+                        others.map(|sonar| format!("range_{sonar}_m")).collect();
+                    let known = TRUE.into_iter().chain(others.iter().map(String::as_str));
+                    let is_known = known.clone().any(|own| own == name);
+                    (!is_known).then(|| unknown("truth", name, known))
                 }
                 Act::Expect(Port::Link, ..) | Act::Send(Port::Link, _)
                     if firmware.link_usart().is_none() =>
@@ -129,14 +135,11 @@ impl Under {
                 self.robot.type_in(port, bytes);
                 Ok(())
             }
-            Act::Press(part, value) => {
-                let put = |robot: &mut Robot, value: &str| {
-                    robot.type_in(PARTS, format!("{part}={value}\n").as_bytes());
-                };
-                put(&mut self.robot, value.as_deref().unwrap_or("on"));
-                if value.is_none() {
-                    self.pass(PRESSED_S)?;
-                    put(&mut self.robot, "off");
+            Act::Press(lines) => {
+                let begin_s = self.now_s();
+                for TimedText { at_s, text, .. } in lines {
+                    self.pass(begin_s + at_s - self.now_s())?;
+                    self.robot.type_in(PARTS, format!("{text}\n").as_bytes());
                 }
                 Ok(())
             }
@@ -162,12 +165,12 @@ impl Under {
                 )
             }
             Act::Judge(judged) => self.judge(judged),
-            Act::Truth(column, bounds, within_s) => {
-                let value = |robot: &Robot| robot.true_values()[*column];
+            Act::Truth(name, bounds, within_s) => {
+                let value = |robot: &Robot| robot.true_value(name).unwrap_or(f64::NAN);
                 self.wait(
                     *within_s,
                     |robot| bounds.admit(value(robot)),
-                    |robot| format!("{} is {:.4}, not {bounds}", TRUE[*column], value(robot)),
+                    |robot| format!("{name} is {:.4}, not {bounds}", value(robot)),
                 )
             }
             Act::Run(s) => self.pass(*s),

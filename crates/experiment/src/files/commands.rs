@@ -216,7 +216,7 @@ fn complain_of_actions(table: &Table<'_, '_>, given: &[&str]) {
         &COMPANIONS,
         &route::COMPANIONS,
         &typed::PORTS.map(|(key, _)| key),
-        &[typed::ENDING, typed::PRESS, typed::VALUE],
+        &[typed::ENDING, typed::PRESS, typed::VALUE, typed::HELD],
     ]
     .concat();
     for key in &known {

@@ -26,7 +26,7 @@ const WIDTH: Allowed = Allowed::new(0.002, 0.2, "m");
 /// Position of a sensor on the body.
 pub(super) const MOUNT: Allowed = Allowed::new(-0.5, 0.5, "m");
 /// Voltages at a pin.
-const SUPPLY: Allowed = Allowed::new(0.0, 5.0, "V");
+pub(super) const SUPPLY: Allowed = Allowed::new(0.0, 5.0, "V");
 /// That of usual tape.
 const TAPE_M: f64 = 0.019;
 

@@ -5,6 +5,8 @@
 //! `i^2 R^2 - (2 V i + T w/e) R + V^2 = 0`. The friction is `e k i`; a second speed at a lower voltage tells dry from viscous.
 
 use super::RobotFile;
+use super::new_asked::{EDGES, MOTOR, TOP_SPEED, WHEELS};
+use rumbo_plant::params::Params;
 use rumbo_sim::drivers::{Direction, Driver};
 use rumbo_sim::wiring::Wiring;
 use std::f64::consts::PI;
@@ -15,10 +17,10 @@ const KG_CM: f64 = 0.0980665;
 const EFFICIENCY: f64 = 0.7;
 
 /// A gear motor by its figures.
-#[derive(Debug)]
-pub struct GearMotor {
+#[derive(Clone, Debug)]
+pub(super) struct GearMotor {
     /// As `new robot` names it.
-    pub name: &'static str,
+    name: &'static str,
     title: &'static str,
     figures: &'static str,
     /// Voltage, and without a load speed \[rpm\] and current \[A\]; the torque that stalls it \[N m\].
@@ -79,7 +81,7 @@ static MM25: GearMotor = GearMotor {
 };
 
 /// The motors that a new robot may have.
-pub static MOTORS: [&GearMotor; 3] = [&TT, &N20, &MM25];
+pub(super) static MOTORS: [&GearMotor; 3] = [&TT, &N20, &MM25];
 
 /// The servo of the Boe-Bot and its kind.
 static SERVO: GearMotor = GearMotor {
@@ -97,6 +99,18 @@ static SERVO: GearMotor = GearMotor {
 };
 
 impl GearMotor {
+    /// The same motor behind gears that make the wheel so many times faster, with as much power.
+    fn geared(&self, faster: f64) -> Self {
+        Self {
+            rpm: faster * self.rpm,
+            stall_n_m: self.stall_n_m / faster,
+            slow: self.slow.map(|(volts, rpm)| (volts, faster * rpm)),
+            inertia_kg_m2: (1e6 * self.inertia_kg_m2 / (faster * faster)).round() / 1e6,
+            gear_ratio: self.gear_ratio / faster,
+            ..*self
+        }
+    }
+
     /// Resistance, constant, and dry and viscous friction of a wheel.
     fn derived(&self) -> [f64; 4] {
         let speed = |rpm: f64| rpm * PI / 30.0;
@@ -119,40 +133,102 @@ impl GearMotor {
 }
 
 /// What somebody measured or knows of a robot, in place of the usual.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Measured {
+    /// It has four wheels, the two of a side driven alike.
+    four_wheels: bool,
     /// Its motors.
-    pub motor: Option<&'static GearMotor>,
+    pub(super) motor: Option<&'static GearMotor>,
     /// Voltage of its battery \[V\].
-    pub battery_v: Option<f64>,
+    battery_v: Option<f64>,
     /// Between the middles of its tyres, of four wheels those of an axle \[m\].
-    pub base_m: Option<f64>,
+    base_m: Option<f64>,
     /// Diameter of its wheels \[m\].
-    pub wheel_m: Option<f64>,
+    wheel_m: Option<f64>,
     /// What an output of an encoder gives in a turn of the wheel \[edges\].
-    pub edges: Option<u16>,
+    edges: Option<f64>,
+    /// Its speed on the floor at full PWM \[m/s\].
+    pub(super) top_speed_m_s: Option<f64>,
 }
 
-/// The plant of a robot on two wheels and a castor, at 6 V, the voltage of its motors' figures, or on four wheels.
-pub(super) fn plant(driver: &Driver, four_wheels: bool, measured: &Measured) -> String {
+impl Measured {
+    /// Takes an answer that has been checked to what is asked of a body.
+    pub(super) fn say(&mut self, key: &str, text: &str) {
+        let number = text.parse().ok();
+        match key {
+            WHEELS => self.four_wheels = text == "4",
+            MOTOR => self.motor = MOTORS.into_iter().find(|motor| motor.name == text),
+            "battery" => self.battery_v = number,
+            "base" => self.base_m = number,
+            "wheel" => self.wheel_m = number,
+            EDGES => self.edges = number,
+            TOP_SPEED => self.top_speed_m_s = number,
+            _ => {}
+        }
+    }
+
+    /// What is taken where nobody says it, as an answer; none of what else is asked.
+    pub(super) fn usual(&self, key: &str, driver: &Driver) -> Option<String> {
+        let usual = match key {
+            WHEELS => return Some("2".to_owned()),
+            MOTOR => return Some(TT.name.to_owned()),
+            "battery" => {
+                let nominal = Params::default().battery.open_circuit_v;
+                self.usual_battery_v(driver).unwrap_or(nominal)
+            }
+            "base" => self.usual_base_m(driver),
+            "wheel" => 2.0 * RADIUS_M,
+            EDGES => 2.0 * f64::from(SLOTS),
+            _ => return None,
+        };
+        Some(usual.to_string())
+    }
+
+    /// The motors, behind their own gears.
+    fn motor(&self, driver: &Driver) -> &'static GearMotor {
+        let servos = driver.direction == Direction::Pulse;
+        self.motor.unwrap_or(if servos { &SERVO } else { &TT })
+    }
+
+    fn usual_base_m(&self, driver: &Driver) -> f64 {
+        let servos = driver.direction == Direction::Pulse;
+        if servos && !self.four_wheels {
+            0.105
+        } else {
+            TRACK_M
+        }
+    }
+
+    /// Of the motors' figures; none where the plant's nominal one is meant.
+    fn usual_battery_v(&self, driver: &Driver) -> Option<f64> {
+        let motor = self.motor(driver);
+        (!std::ptr::eq(motor, &TT) || !self.four_wheels).then_some(motor.volts)
+    }
+}
+
+/// The plant of a robot on two wheels and a castor, at 6 V, the voltage of its motors' figures, or on four wheels; its gears make
+/// the wheels so many times faster than the motor's own.
+pub(super) fn plant(driver: &Driver, measured: &Measured, faster: f64) -> String {
     let radius_m = measured.wheel_m.map_or(RADIUS_M, |diameter| diameter / 2.0);
-    let base_m = |usual: f64| measured.base_m.unwrap_or(usual);
-    let servos = driver.direction == Direction::Pulse;
-    let usual = if servos { &SERVO } else { &TT };
-    let motor = measured.motor.unwrap_or(usual);
-    let is_tt = std::ptr::eq(motor, &TT);
-    let track_m = if servos && !four_wheels {
-        0.105
-    } else {
-        TRACK_M
+    let base_m = measured
+        .base_m
+        .unwrap_or_else(|| measured.usual_base_m(driver));
+    let motor = measured.motor(driver);
+    let geared = motor.geared(faster);
+    let mut body = match measured.four_wheels {
+        true if std::ptr::eq(motor, &TT) && faster == 1.0 => {
+            four_wheels(&tt_pair(), base_m, radius_m)
+        }
+        true => four_wheels(&pair(&geared), base_m, radius_m),
+        false => two_wheels(&geared, base_m, radius_m),
     };
-    let body = match four_wheels {
-        true => self::four_wheels(&pair(motor), base_m(track_m), radius_m),
-        false => two_wheels(motor, base_m(track_m), radius_m),
-    };
-    let battery_v = measured
-        .battery_v
-        .or((!is_tt || !four_wheels).then_some(motor.volts));
+    if let Some(speed_m_s) = measured.top_speed_m_s {
+        body = format!(
+            "\n# Gears of 1:{:.0} in place of 1:{} drive {speed_m_s} m/s at full PWM, as was measured.{body}",
+            geared.gear_ratio, motor.gear_ratio
+        );
+    }
+    let battery_v = measured.battery_v.or(measured.usual_battery_v(driver));
     body + &battery_v.map(battery).unwrap_or_default()
 }
 
@@ -161,11 +237,11 @@ pub(super) fn encoder(measured: &Measured) -> String {
     let (about, slots) = match measured.edges {
         Some(edges) => (
             "As many slots as each output rises in a turn of the wheel.",
-            edges / 2,
+            edges / 2.0,
         ),
         None => (
             "A disc on the wheel; of a sensor on the motor's shaft edges_per_motor_turn, and gear_ratio in [plant.motor].",
-            20,
+            f64::from(SLOTS),
         ),
     };
     format!("\n# {about}\n[plant.encoder]\nslots = {slots}\n")
@@ -247,16 +323,19 @@ const AXLES_M: f64 = 0.115;
 const MASS_KG: f64 = 1.1;
 const RADIUS_M: f64 = 0.0325;
 const FRICTION: f64 = 0.6;
+/// The usual disc of an encoder.
+const SLOTS: u8 = 20;
 
-/// The motors of a side as one: the lines of its table, and its wheel's friction.
+/// The usual motors of a side as one: the lines of their table, and their wheel's friction.
+fn tt_pair() -> [String; 2] {
+    [
+        "resistance_ohm = 2.0\ninductance_h = 0.00075\ninertia_kg_m2 = 0.0028".into(),
+        "coulomb_forward_n_m = 0.016\ncoulomb_backward_n_m = 0.016\nviscous_n_m_s = 0.003".into(),
+    ]
+}
+
+/// The same of other motors.
 fn pair(motor: &GearMotor) -> [String; 2] {
-    if std::ptr::eq(motor, &TT) {
-        return [
-            "resistance_ohm = 2.0\ninductance_h = 0.00075\ninertia_kg_m2 = 0.0028".into(),
-            "coulomb_forward_n_m = 0.016\ncoulomb_backward_n_m = 0.016\nviscous_n_m_s = 0.003"
-                .into(),
-        ];
-    }
     let [ohm, back_emf, dry, viscous] = motor.derived();
     [
         format!(

@@ -1,19 +1,24 @@
 //! A robot file to start from: a board, a driver and pins as text with comments, and which known robot that looks like.
 
 use super::error::FileError;
+use super::new_asked::{
+    BATTERY_RATIO, LINK_BAUD, SERVO_AHEAD, SERVO_REVERSED, TOP_SPEED, USUAL_RATIO,
+};
 use super::new_parts::part_of;
 use super::new_plant::{encoder, plant};
 use super::new_sensors::{
     line_sensors, obstacle_sensors, place_of, quoted, signals, sonars, usual_place,
 };
+use super::new_speed::gears;
 use super::{Kind, Library, RobotFile};
 use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::{Direction, Driver};
 use rumbo_sim::wiring::{Wiring, is_driver_input};
 
+pub use super::new_asked::{ASKED, Asked, BATTERY, LINE, OBSTACLE, find};
 pub use super::new_parts::has_place;
-pub use super::new_plant::{GearMotor, MOTORS, Measured, counted};
-pub use super::new_sensors::{LINE, OBSTACLE, SHARP};
+pub use super::new_plant::{Measured, counted};
+pub use super::new_sensors::SHARP;
 pub use super::sonars::is_of_sonar;
 
 /// A driver that is chosen with its enables held by jumpers.
@@ -22,16 +27,6 @@ pub const JUMPERS: &str = "-jumpers";
 const ALIKE: f64 = 0.5;
 /// Name of the wiring and the rig.
 const OWN: &str = "own";
-
-/// Rate of the Bluetooth module in place of a pin \[baud\].
-pub const LINK_BAUD: &str = "link_baud";
-/// In place of a pin, the angle of `servo.write()` at which the servo looks ahead, where that is not 90 \[deg\].
-pub const SERVO_AHEAD: &str = "servo_ahead";
-/// In place of a pin, `true` where a servo is mounted the other way round and looks to the left at 0.
-pub const SERVO_REVERSED: &str = "servo_reversed";
-
-/// The analogue input with the battery's divider, and what the divider divides by, among the pins.
-pub const BATTERY: [&str; 2] = ["battery", "battery_ratio"];
 
 /// What a robot is made of.
 #[derive(Clone, Debug)]
@@ -46,8 +41,6 @@ pub struct NewRobot {
     pub jumpers: bool,
     /// Signals and their pins, as they were given: numbers or names.
     pub pins: Vec<(String, String)>,
-    /// It has four wheels, the two of a side driven alike.
-    pub four_wheels: bool,
     /// Where sensors sit and look, where that is not the usual place: x and y \[m\], and the direction \[deg\].
     pub sensors: Vec<(String, [f64; 3])>,
     /// What is known of its body.
@@ -179,8 +172,8 @@ impl NewRobot {
                 put(format!("{:23} # {about}", format!("{key} = {value}")));
             }
         }
-        if let [Some(pin), ratio] = BATTERY.map(|signal| self.said(signal)) {
-            let ratio = ratio.unwrap_or("2");
+        if let [Some(pin), ratio] = [BATTERY, BATTERY_RATIO].map(|key| self.said(key)) {
+            let ratio = ratio.unwrap_or(USUAL_RATIO);
             put(format!(
                 "battery = {{ pin = {}, ratio = {ratio} }}  # the battery's voltage, divided by that",
                 quoted(pin)
@@ -191,7 +184,8 @@ impl NewRobot {
         }
         text.push_str(&line_sensors(OWN, &self.pins, &self.sensors));
         text.push_str(&obstacle_sensors(OWN, &self.pins, &self.sensors));
-        text.push_str(&plant(driver, self.four_wheels, &self.measured));
+        let faster = gears(driver, &self.measured).unwrap_or(1.0);
+        text.push_str(&plant(driver, &self.measured, faster));
         if given("left_encoder") || given("right_encoder") {
             text.push_str(&encoder(&self.measured));
         }
@@ -232,6 +226,10 @@ impl NewRobot {
                  {sonar}=0.1:0.03:20, x and y in m, and where it looks in degrees, positive to the left"
             )));
         }
+        gears(self.driver, &self.measured).map_err(|remedy| {
+            let speed_m_s = self.measured.top_speed_m_s.unwrap_or_default();
+            FileError::Setting(format!("{TOP_SPEED} {speed_m_s}: {remedy}"))
+        })?;
         let text = self.text();
         let file = RobotFile::parse(&self.name, &format!("{}.toml", self.name), &text)?;
         Ok((text, file))

@@ -1,26 +1,13 @@
 //! The sensors of a robot file to start from: sonars at the place that their names say; what looks down or for obstacles in
 //! a row from left to right, as it was given; or where somebody says that they are.
 
+use super::new_asked::{self, LINE, OBSTACLE};
 use super::sonars::{self, is_of_sonar};
 use rumbo_sim::wiring::SONARS;
 use std::fmt::Write;
 
-/// How the name of a line sensor begins among the pins, before a name of its own.
-pub const LINE: &str = "line_";
-/// How the name of an infrared switch for obstacles begins.
-pub const OBSTACLE: &str = "obstacle_";
 /// How that of a Sharp begins, which gives a voltage.
 pub const SHARP: &str = "sharp_";
-
-/// What may be said of all sensors of a kind in place of one, and the key that says it: `line_dark=low`.
-const OF_LINES: [(&str, &str); 4] = [
-    ("line_dark", "dark"),
-    ("line_rc", "rc"),
-    ("line_light_v", "light_v"),
-    ("line_dark_v", "dark_v"),
-];
-const OF_OBSTACLES: [(&str, &str); 2] =
-    [("obstacle_seen", "seen"), ("obstacle_reach_m", "reach_m")];
 
 /// Line sensors are so far ahead, and so far apart \[m\]; two stand beside the tape, one on each side.
 const LINE_AHEAD_M: f64 = 0.09;
@@ -88,9 +75,7 @@ pub(super) fn usual_place(sonar: &str) -> Option<[f64; 3]> {
 /// The table of the line sensors, empty without any.
 pub(super) fn line_sensors(wiring: &str, pins: &Pins, places: &Places) -> String {
     let rc = pins.iter().any(|(signal, _)| signal == "line_rc");
-    let sensors = of_kind(pins, &OF_LINES, |signal| signal.starts_with(LINE));
-    let row = in_row(&sensors, places);
-    let pitch_m = if row.len() == 2 { ASTRIDE_M } else { PITCH_M };
+    let sensors = lines(pins, places);
     let mut text = String::new();
     if !sensors.is_empty() {
         let _ = write!(
@@ -99,13 +84,11 @@ pub(super) fn line_sensors(wiring: &str, pins: &Pins, places: &Places) -> String
              # dark = \"low\".\n[wiring.{wiring}.line]\n"
         );
     }
-    for (signal, pin) in sensors {
-        let usual = || [LINE_AHEAD_M, pitch_m * aside(signal, &row), 0.0];
-        let [x_m, y_m, _] = place_of(places, signal).unwrap_or_else(usual);
+    for (signal, pin, [x_m, y_m, _]) in sensors {
         let analogue = pin.parse::<u8>().is_err() && !rc;
         let kind = if analogue { ", analogue = true" } else { "" };
         // Voltages are those of the analogue ones.
-        let said = said(pins, &OF_LINES, |key| analogue || !key.ends_with("_v"));
+        let said = said(pins, LINE, |key| analogue || !key.ends_with("_v"));
         let (name, pin) = (&signal[LINE.len()..], quoted(pin));
         let _ = writeln!(
             text,
@@ -117,10 +100,7 @@ pub(super) fn line_sensors(wiring: &str, pins: &Pins, places: &Places) -> String
 
 /// The table of the infrared sensors for obstacles, empty without any.
 pub(super) fn obstacle_sensors(wiring: &str, pins: &Pins, places: &Places) -> String {
-    let sensors = of_kind(pins, &OF_OBSTACLES, |signal| {
-        signal.starts_with(OBSTACLE) || signal.starts_with(SHARP)
-    });
-    let row = in_row(&sensors, places);
+    let sensors = obstacles(pins, places);
     let mut text = String::new();
     if !sensors.is_empty() {
         let _ = write!(
@@ -129,16 +109,10 @@ pub(super) fn obstacle_sensors(wiring: &str, pins: &Pins, places: &Places) -> St
              # nearer than reach_m = 0.15, unless seen = \"high\"; an analogue one is a Sharp GP2Y0A21YK.\n[wiring.{wiring}.obstacle]\n"
         );
     }
-    for (signal, pin) in sensors {
-        let aside = aside(signal, &row);
-        let usual = [AHEAD_M, APART_M * aside, APART_DEG * aside];
-        let [x_m, y_m, angle_deg] = place_of(places, signal).unwrap_or(usual);
+    for (signal, pin, [x_m, y_m, angle_deg]) in sensors {
         let (name, more) = match signal.strip_prefix(SHARP) {
             Some(name) => (name, ", analogue = true".to_owned()),
-            None => (
-                &signal[OBSTACLE.len()..],
-                said(pins, &OF_OBSTACLES, |_| true),
-            ),
+            None => (&signal[OBSTACLE.len()..], said(pins, OBSTACLE, |_| true)),
         };
         let pin = quoted(pin);
         let _ = writeln!(
@@ -149,46 +123,77 @@ pub(super) fn obstacle_sensors(wiring: &str, pins: &Pins, places: &Places) -> St
     text
 }
 
-/// Sensors of a kind, without what is said of all of them.
-fn of_kind<'a>(
-    pins: &'a Pins,
-    of_all: &[(&str, &str)],
-    is_kind: impl Fn(&str) -> bool,
-) -> Vec<(&'a str, &'a str)> {
-    let signals = pins.iter().map(|(signal, pin)| (&signal[..], &pin[..]));
-    let own = signals
-        .filter(|(signal, _)| is_kind(signal) && of_all.iter().all(|(all, _)| all != signal));
-    own.collect()
-}
-
-/// The signals whose place is that in a row, as nobody said another.
-fn in_row<'a>(sensors: &[(&'a str, &str)], places: &Places) -> Vec<&'a str> {
-    let signals = sensors.iter().map(|(signal, _)| *signal);
-    signals
-        .filter(|signal| place_of(places, signal).is_none())
+/// Where each sensor is whose place is that of its row or of its name, or was said.
+pub(super) fn places(pins: &Pins, places: &Places) -> Vec<(String, [f64; 3])> {
+    let sonars = sonars(pins).into_iter().filter_map(|sonar| {
+        let place = place_of(places, sonar).or_else(|| usual_place(sonar))?;
+        Some((sonar, place))
+    });
+    let rows = [lines(pins, places), obstacles(pins, places)].concat();
+    let rows = rows.into_iter().map(|(signal, _, place)| (signal, place));
+    let all = sonars.chain(rows);
+    all.map(|(sensor, place)| (sensor.to_owned(), place))
         .collect()
 }
 
-/// Where a signal is in a row, from the middle to the left, in steps from one to the next.
-fn aside(signal: &str, row: &[&str]) -> f64 {
-    let index = row
+/// A sensor's signal, its pin, and where it is.
+type Placed<'a> = (&'a str, &'a str, [f64; 3]);
+
+fn lines<'a>(pins: &'a Pins, places: &Places) -> Vec<Placed<'a>> {
+    let is_line = |signal: &str| signal.starts_with(LINE);
+    in_row(pins, places, is_line, |count| {
+        let pitch_m = if count == 2 { ASTRIDE_M } else { PITCH_M };
+        ([LINE_AHEAD_M, 0.0, 0.0], [0.0, pitch_m, 0.0])
+    })
+}
+
+fn obstacles<'a>(pins: &'a Pins, places: &Places) -> Vec<Placed<'a>> {
+    let is_obstacle = |signal: &str| signal.starts_with(OBSTACLE) || signal.starts_with(SHARP);
+    in_row(pins, places, is_obstacle, |_| {
+        ([AHEAD_M, 0.0, 0.0], [0.0, APART_M, APART_DEG])
+    })
+}
+
+/// Sensors of a kind where somebody says that they are, the others in a row: its middle and the step to the left, by its length.
+fn in_row<'a>(
+    pins: &'a Pins,
+    places: &Places,
+    is_kind: impl Fn(&str) -> bool,
+    row: impl Fn(usize) -> ([f64; 3], [f64; 3]),
+) -> Vec<Placed<'a>> {
+    let signals = pins.iter().map(|(signal, pin)| (&signal[..], &pin[..]));
+    let own: Vec<_> = signals
+        .filter(|(signal, _)| is_kind(signal) && new_asked::find(signal).is_none())
+        .collect();
+    let elsewhere = |signal: &str| place_of(places, signal);
+    let count = own
         .iter()
-        .position(|own| *own == signal)
-        .unwrap_or_default();
-    0.5 * (row.len() as f64 - 1.0) - index as f64
+        .filter(|(signal, _)| elsewhere(signal).is_none())
+        .count();
+    let (middle, step) = row(count);
+    let mut steps = 0.5 * (count as f64 - 1.0);
+    let placed = own.into_iter().map(|(signal, pin)| {
+        let place = elsewhere(signal).unwrap_or_else(|| {
+            let place = [0, 1, 2].map(|axis| middle[axis] + steps * step[axis]);
+            steps -= 1.0;
+            place
+        });
+        (signal, pin, place)
+    });
+    placed.collect()
 }
 
 /// What is said of all sensors of a kind, as keys of one.
-fn said(pins: &Pins, of_all: &[(&str, &str)], has: impl Fn(&str) -> bool) -> String {
+fn said(pins: &Pins, kind: &str, has: impl Fn(&str) -> bool) -> String {
     let said = pins.iter().filter_map(|(signal, value)| {
-        let (_, key) = of_all.iter().find(|(own, _)| own == signal)?;
-        let is_plain = value == "true" || value.parse::<f64>().is_ok();
+        let key = signal.strip_prefix(kind)?;
+        let is_plain = value.parse::<bool>().is_ok() || value.parse::<f64>().is_ok();
         let value = if is_plain {
             value.clone()
         } else {
             format!("{value:?}")
         };
-        has(key).then(|| format!(", {key} = {value}"))
+        (has(key) && new_asked::find(signal).is_some()).then(|| format!(", {key} = {value}"))
     });
     said.collect()
 }

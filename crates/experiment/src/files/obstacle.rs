@@ -15,9 +15,9 @@ use rumbo_sim::wiring::Wiring;
 /// Where a sensor may look.
 const ANGLE: Allowed = Allowed::new(-180.0, 180.0, "deg");
 /// What the potentiometer of a switch sets.
-const REACH: Allowed = Allowed::new(0.02, 0.8, "m");
+pub(super) const REACH: Allowed = Allowed::new(0.02, 0.8, "m");
 /// Where it usually stands \[m\].
-const REACH_M: f64 = 0.15;
+pub(super) const REACH_M: f64 = 0.15;
 
 /// Reads the sensors into a wiring.
 pub(super) fn read_obstacle_sensors(table: &Table<'_, '_>, wiring: &mut Wiring) {

@@ -34,9 +34,9 @@ use rumbo_sim::wiring::{Divider, Motor, Wiring, is_driver_input};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Ratio of a divider.
-const RATIO: Allowed = Allowed::new(1.0, 20.0, "1");
+pub(super) const RATIO: Allowed = Allowed::new(1.0, 20.0, "1");
 /// Rates of a Bluetooth module.
-const BAUD: Allowed = Allowed::new(1200.0, 1_382_400.0, "count");
+pub(super) const BAUD: Allowed = Allowed::new(1200.0, 1_382_400.0, "count");
 /// Flash and SRAM of an ATmega2560.
 const FLASH: Allowed = Allowed::new(1.0, 256.0 * 1024.0, "count");
 const SRAM: Allowed = Allowed::new(1.0, 8.0 * 1024.0, "count");

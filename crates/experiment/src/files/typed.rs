@@ -37,10 +37,15 @@ pub(super) const PORTS: [(&str, TypedPort); 2] =
 /// The key that works a part, and that for its value: pressed for a moment without one.
 pub(super) const PRESS: &str = "press";
 pub(super) const VALUE: &str = "to";
+/// How long it is held \[s\].
+pub(super) const HELD: &str = "for_s";
+const HOLD: Allowed = Allowed::new(0.01, 3600.0, "s");
 /// The key of where a hand puts the robot.
 pub(super) const PLACE: &str = "place";
-/// How long a button is pressed [s].
+/// How long a button is pressed, and a key of a remote control stays down [s].
 const PRESSED_S: f64 = 0.2;
+/// A key that is held is pressed again so often, as the page does [s].
+const AGAIN_S: f64 = 0.1;
 /// The key that goes with them.
 pub(super) const ENDING: &str = "line_ending";
 
@@ -76,18 +81,25 @@ pub fn check_line(text: &str) -> Result<(), &'static str> {
     }
 }
 
-/// What is done with a part: pressed for a moment, or put to a value, a number from 0 to 1 or the key of a remote control.
+/// What is done with a part: pressed for a time, a moment if none is said, or put to a value, a number from 0 to 1 or the key of a
+/// remote control, which is held for that time.
 #[must_use]
-pub fn pressed(name: &str, value: Option<&str>, at_s: f64) -> Vec<TimedText> {
+pub fn pressed(name: &str, value: Option<&str>, at_s: f64, for_s: Option<f64>) -> Vec<TimedText> {
     let put = |at_s: f64, value: &str| TimedText {
         at_s,
         text: format!("{name}={value}"),
         ending: LineEnding::None,
         port: TypedPort::Parts,
     };
+    let for_s = for_s.unwrap_or(PRESSED_S);
     match value {
-        Some(value) => vec![put(at_s, value)],
-        None => vec![put(at_s, "on"), put(at_s + PRESSED_S, "off")],
+        Some(value) => {
+            let again = ((for_s - PRESSED_S) / AGAIN_S).ceil().max(0.0) as u32;
+            let presses = (0..=again).map(|number| f64::from(number) * AGAIN_S);
+            let presses = presses.map(|after_s| after_s.min((for_s - PRESSED_S).max(0.0)));
+            presses.map(|after_s| put(at_s + after_s, value)).collect()
+        }
+        None => vec![put(at_s, "on"), put(at_s + for_s, "off")],
     }
 }
 
@@ -127,7 +139,7 @@ pub(super) fn read_place(table: &Table<'_, '_>, at_s: f64) -> Option<TimedText> 
 }
 
 /// What a part is put to: a number, or the key of a remote control.
-pub(crate) fn read_value(table: &Table<'_, '_>) -> Option<String> {
+fn read_value(table: &Table<'_, '_>) -> Option<String> {
     if table.is_text(VALUE) {
         return table.text(VALUE).map(|key| key.value);
     }
@@ -136,11 +148,11 @@ pub(crate) fn read_value(table: &Table<'_, '_>) -> Option<String> {
 }
 
 /// The command that has the key [`PRESS`].
-pub(super) fn read_press(table: &Table<'_, '_>, at_s: f64) -> Vec<TimedText> {
-    let value = read_value(table);
+pub(crate) fn read_press(table: &Table<'_, '_>, at_s: f64) -> Vec<TimedText> {
+    let (value, for_s) = (read_value(table), table.number(HELD, HOLD));
     let name = table.text(PRESS);
     name.map_or_else(Vec::new, |name| {
-        pressed(&name.value, value.as_deref(), at_s)
+        pressed(&name.value, value.as_deref(), at_s, for_s)
     })
 }
 
@@ -168,4 +180,40 @@ pub(super) fn read_typed(
         ending: ending.unwrap_or_default(),
         port,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::pressed;
+
+    /// The times of the lines, in ms, with what they put the part to.
+    fn lines(value: Option<&str>, for_s: Option<f64>) -> Vec<(i64, String)> {
+        let lines = pressed("it", value, 1.0, for_s).into_iter();
+        lines
+            .map(|line| {
+                (
+                    (1e3 * line.at_s).round() as i64,
+                    line.text["it=".len()..].to_owned(),
+                )
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_button_is_held_until_it_is_let_go_and_a_key_by_pressing_it_again() {
+        let button = |for_s| {
+            lines(None, for_s)
+                .into_iter()
+                .map(|(ms, _)| ms)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(button(None), [1_000, 1_200]);
+        assert_eq!(button(Some(2.0)), [1_000, 3_000]);
+        let key = |for_s| lines(Some("up"), for_s);
+        assert_eq!(key(None), [(1_000, "up".to_owned())]);
+        assert_eq!(key(Some(0.05)).len(), 1);
+        // It stays down for 0.2 s after the last one.
+        let held: Vec<i64> = key(Some(0.55)).into_iter().map(|(ms, _)| ms).collect();
+        assert_eq!(held, [1_000, 1_100, 1_200, 1_300, 1_350]);
+    }
 }

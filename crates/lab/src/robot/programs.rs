@@ -23,8 +23,9 @@ const FUNCTIONS: usize = 30;
 
 /// The robot that a page has wired, among the robots.
 const WIRED: &str = "wired";
-/// The scenario in which it starts.
+/// The scenario in which it starts, and the world of a robot that looks at lines.
 const FREE: &str = "free";
+const LINES: &str = "line_loop";
 
 /// What the text of a robot's file says.
 fn file_of(text: &str) -> Result<RobotFile, TargetError> {
@@ -186,9 +187,16 @@ impl SimulatedRobot {
         self.overrides.robot = Some(WIRED.into());
         self.overrides.wiring = None;
         let before = self.choice();
+        let looks_down = file_of(text).is_ok_and(|robot| {
+            robot
+                .wirings
+                .values()
+                .any(|wiring| !wiring.line_sensors.is_empty())
+        });
+        let world = before.world.filter(|_| before.scenario == FREE);
         Choice {
             scenario: FREE.into(),
-            world: before.world.filter(|_| before.scenario == FREE),
+            world: world.or_else(|| looks_down.then(|| LINES.into())),
             rig: None,
             seed: before.seed,
         }

@@ -324,7 +324,8 @@ fn a_remote_control_drives_the_robot_and_repeats_while_its_key_is_held() {
             .success()
     );
     let tests = "sketch = \"car.ino\"\nscenario = \"floor.toml\"\n[[test]]\nname = \"drives\"\n\
-                 step = [{ press = \"remote\", to = \"up\" }, { expect = \"18\" }, { press = \"remote\", to = 5 }, { expect = \"40\" }]\n";
+                 step = [{ press = \"remote\", to = \"up\" }, { expect = \"18\" }, { press = \"remote\", to = 5, for_s = 0.5 }, { expect = \"40\" }, \
+                 { expect = \"again\" }, { expect = \"again\" }, { expect = \"again\" }]\n";
     std::fs::write(bench.join("tests.toml"), tests).unwrap();
     let checked = rumbo(&bench, &["check", "tests.toml"]);
     assert!(
@@ -341,19 +342,15 @@ fn a_remote_control_drives_the_robot_and_repeats_while_its_key_is_held() {
         in_vain.contains("the robot has no Bluetooth module"),
         "{in_vain}"
     );
-    // Held: in the scenario, pressed again before it is up.
+    // Held, by an option and in the scenario.
+    let held = || assert_eq!(said(), format!("1C\n{}", "again\n".repeat(5)));
+    drive(&bench, &["--press", "remote=ok@1-1.6"]);
+    held();
     let scenario = std::fs::read_to_string(bench.join("floor.toml")).unwrap();
-    let held = (0..5).map(|n| {
-        let at_s = 1.0 + 0.1 * f64::from(n);
-        format!("[[command]]\nat_s = {at_s}\npress = \"remote\"\nto = \"ok\"\n")
-    });
-    std::fs::write(
-        bench.join("floor.toml"),
-        scenario.clone() + &held.collect::<String>(),
-    )
-    .unwrap();
+    let press = "[[command]]\nat_s = 1\npress = \"remote\"\nto = \"ok\"\nfor_s = 0.6\n";
+    std::fs::write(bench.join("floor.toml"), format!("{scenario}{press}")).unwrap();
     drive(&bench, &[]);
-    assert_eq!(said(), format!("1C\n{}", "again\n".repeat(5)));
+    held();
     std::fs::write(bench.join("floor.toml"), scenario).unwrap();
     for (press, why) in [
         (
@@ -361,6 +358,7 @@ fn a_remote_control_drives_the_robot_and_repeats_while_its_key_is_held() {
             "`remote` is a remote control, and walk none of its keys: 1, 2,",
         ),
         ("remote@1", "and on none of its keys"),
+        ("remote=up@3-1", "NAME@FROM-TO holds it"),
     ] {
         let refused = drive(&bench, &["--press", press]);
         assert_eq!(refused.status.code(), Some(2));

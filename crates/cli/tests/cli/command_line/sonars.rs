@@ -94,6 +94,22 @@ fn sonars_of_any_name_and_place_are_a_robot_s_and_in_its_log() {
     for name in ["true_range_rear_m", "pinged_rear_m", "pinged_front_left_m"] {
         assert!(csv.lines().next().unwrap().contains(name), "{csv:.400}");
     }
+    let checked = |truth: &str| {
+        let step = format!("{{ truth = \"{truth}\", within_s = 20, max = 0.32 }}");
+        let test = format!("[[test]]\nname = \"backs\"\nstep = [{step}]\n");
+        let program = "sketch = \"car.ino\"\nrobot = \"car.toml\"\n";
+        std::fs::write(bench.join("tests.toml"), format!("{program}{test}")).unwrap();
+        rumbo(&bench, &["check", "tests.toml"])
+    };
+    let backs = checked("range_rear_m");
+    assert!(
+        backs.status.success(),
+        "{}{}",
+        stdout(&backs),
+        stderr(&backs)
+    );
+    let unknown = stderr(&checked("range_reer_m"));
+    assert!(unknown.contains("did you mean `range_rear_m`"), "{unknown}");
 }
 
 #[test]
