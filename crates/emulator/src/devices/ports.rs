@@ -164,30 +164,30 @@ pub(crate) struct Ports {
 
 /// What a register of a port is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Register {
+pub(crate) enum PortRegister {
     Pin,
     Direction,
     Output,
 }
 
 /// Port and register at an address of the data space.
-pub(crate) const fn register(address: u16) -> Option<(usize, Register)> {
+pub(crate) const fn register(address: u16) -> Option<(usize, PortRegister)> {
     let index = match address {
         0x20..=0x34 => address - 0x20,
         0x100..=0x10B => address - 0x100 + 21,
         _ => return None,
     };
     let register = match index % 3 {
-        0 => Register::Pin,
-        1 => Register::Direction,
-        _ => Register::Output,
+        0 => PortRegister::Pin,
+        1 => PortRegister::Direction,
+        _ => PortRegister::Output,
     };
     Some(((index / 3) as usize, register))
 }
 
 /// A register of directions.
 pub(crate) fn is_direction(address: u16) -> bool {
-    matches!(register(address), Some((_, Register::Direction)))
+    matches!(register(address), Some((_, PortRegister::Direction)))
 }
 
 impl Ports {
@@ -204,10 +204,10 @@ impl Ports {
         };
         let port = &self.ports[index];
         match register {
-            Register::Direction => port.direction,
-            Register::Output => port.output,
-            Register::Pin if cycle < port.changed + SYNCHRONISER => port.level_before,
-            Register::Pin => port.level,
+            PortRegister::Direction => port.direction,
+            PortRegister::Output => port.output,
+            PortRegister::Pin if cycle < port.changed + SYNCHRONISER => port.level_before,
+            PortRegister::Pin => port.level,
         }
     }
 
@@ -220,9 +220,9 @@ impl Ports {
         let (index, register) = register(address)?;
         let value = value & self.model.ports[index];
         self.change(index, cycle, |port| match register {
-            Register::Pin => port.output ^= value,
-            Register::Direction => port.direction = value,
-            Register::Output => port.output = value,
+            PortRegister::Pin => port.output ^= value,
+            PortRegister::Direction => port.direction = value,
+            PortRegister::Output => port.output = value,
         })
     }
 
@@ -238,9 +238,9 @@ impl Ports {
         let mask = mask & self.model.ports[index];
         let put = |value: &mut u8| *value = if set { *value | mask } else { *value & !mask };
         self.change(index, cycle, |port| match register {
-            Register::Pin => port.output ^= if set { mask } else { 0 },
-            Register::Direction => put(&mut port.direction),
-            Register::Output => put(&mut port.output),
+            PortRegister::Pin => port.output ^= if set { mask } else { 0 },
+            PortRegister::Direction => put(&mut port.direction),
+            PortRegister::Output => put(&mut port.output),
         })
     }
 

@@ -14,8 +14,8 @@ use super::schedule::Source;
 use super::{Core, Event, Pwm};
 use place::ASYNCHRONOUS;
 #[cfg(test)]
-pub(crate) use place::Register;
-pub(crate) use place::{Place, narrow, wide, wide_of_two};
+pub(crate) use place::TimerRegister;
+pub(crate) use place::{TimerInstance, narrow, wide, wide_of_two};
 pub(crate) use registers::{read_general_control, write_general_control};
 use wave::{CAPTURE, CHANNELS, MATCH, OVERFLOW, Top, Wave};
 
@@ -42,7 +42,7 @@ enum Clock {
 /// One timer.
 #[derive(Clone, Debug)]
 pub(crate) struct Timer {
-    place: &'static Place,
+    place: &'static TimerInstance,
     wave: Wave,
     clock: Clock,
     control: [u8; 3],
@@ -68,7 +68,7 @@ pub(crate) struct Timer {
 }
 
 /// After reset.
-pub(crate) fn new(place: &'static Place) -> Timer {
+pub(crate) fn new(place: &'static TimerInstance) -> Timer {
     Timer {
         place,
         wave: Wave::new(place.wide, place.channels),
