@@ -1,5 +1,6 @@
 //! What can go wrong between a log and its parameters.
 
+use crate::row::LONGEST_MS;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -89,7 +90,7 @@ impl IdentifyError {
 
     /// A run longer than is compared.
     pub(crate) fn too_long(path: &Path) -> Self {
-        let most = crate::log::LONGEST_MS / 1_000;
+        let most = LONGEST_MS / 1_000;
         let remedy = "the most that is compared; cut it into shorter runs";
         Self::read(path, format!("lasts longer than {most} s, {remedy}"))
     }

@@ -4,8 +4,8 @@
 //! time since the row before, and over 50 ms at least.
 
 use crate::error::IdentifyError;
-use crate::log::{DriveLog, LONGEST_MS, RobotProgram, Seen, WINDOW_MS};
-use crate::row::{LogRow, Window};
+use crate::log::{DriveLog, RobotProgram, Seen, WINDOW_MS};
+use crate::row::{LONGEST_MS, LogRow, Window};
 use rumbo_log::Log;
 use std::path::Path;
 

@@ -6,13 +6,11 @@
 
 use crate::error::IdentifyError;
 use crate::pair::SonarPair;
-use crate::row::{LogRow, Window};
+use crate::row::{LONGEST_MS, LogRow, Window};
 use std::path::{Path, PathBuf};
 
 /// Length of the windows in which the original counts encoder edges, ms.
 pub(crate) const WINDOW_MS: usize = 50;
-/// Longest run: the simulation is kept for each millisecond.
-pub(crate) const LONGEST_MS: usize = 3_600_000;
 /// A log with more than one damaged row in so many is refused.
 pub(crate) const DAMAGED_IN: usize = 10;
 const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;
