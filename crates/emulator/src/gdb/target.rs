@@ -297,11 +297,9 @@ impl<M: Machine> SwBreakpoint for GdbTarget<M> {
         if !matches!(self.machine.chip().place(address), Some(Place::Flash(_))) {
             return Ok(false);
         }
-        self.breakpoints.push(address / 2);
-        self.machine
-            .chip_mut()
-            .cpu_mut()
-            .set_breakpoint(address / 2);
+        let word = address / 2;
+        self.breakpoints.push(word);
+        self.machine.chip_mut().cpu_mut().set_breakpoint(word);
         Ok(true)
     }
 
@@ -330,10 +328,8 @@ impl<M: Machine> GdbTarget<M> {
         let Place::Data(start) = self.machine.chip().place(address)? else {
             return None;
         };
-        let last = self.machine.chip().model().ram_end;
-        let end = start
-            .saturating_add(length as usize)
-            .min(usize::from(last) + 1);
+        let behind = usize::from(self.machine.chip().model().ram_end) + 1;
+        let end = start.saturating_add(length as usize).min(behind);
         Some(Watchpoint {
             addresses: start as u16..end as u16,
             reads: kind != WatchKind::Write,

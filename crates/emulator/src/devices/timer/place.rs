@@ -121,7 +121,7 @@ impl TimerInstance {
 }
 
 /// A timer of 16 bits with three outputs and vectors in this order: capture, the matches, overflow.
-pub(crate) const fn wide(number: usize, first_vector: u8, outputs: [Pin; 3]) -> TimerInstance {
+pub(crate) const fn wide(number: usize, vector: u8, outputs: [Pin; 3]) -> TimerInstance {
     TimerInstance {
         number,
         wide: true,
@@ -130,11 +130,11 @@ pub(crate) const fn wide(number: usize, first_vector: u8, outputs: [Pin; 3]) -> 
         flags: registers::TIFR0 + number as u16,
         enabled: registers::TIMSK0 + number as u16,
         vectors: [
-            (CAPTURE, first_vector),
-            (MATCH[0], first_vector + 1),
-            (MATCH[1], first_vector + 2),
-            (MATCH[2], first_vector + 3),
-            (OVERFLOW, first_vector + 4),
+            (CAPTURE, vector),
+            (MATCH[0], vector + 1),
+            (MATCH[1], vector + 2),
+            (MATCH[2], vector + 3),
+            (OVERFLOW, vector + 4),
         ],
         outputs,
         clock: None,
@@ -143,38 +143,34 @@ pub(crate) const fn wide(number: usize, first_vector: u8, outputs: [Pin; 3]) -> 
 }
 
 /// The same with two outputs.
-pub(crate) const fn wide_of_two(
-    number: usize,
-    first_vector: u8,
-    [a, b]: [Pin; 2],
-) -> TimerInstance {
-    let overflow = (OVERFLOW, first_vector + 3);
+pub(crate) const fn wide_of_two(number: usize, vector: u8, [a, b]: [Pin; 2]) -> TimerInstance {
+    let overflow = (OVERFLOW, vector + 3);
     TimerInstance {
         channels: 2,
         vectors: [
-            (CAPTURE, first_vector),
-            (MATCH[0], first_vector + 1),
-            (MATCH[1], first_vector + 2),
+            (CAPTURE, vector),
+            (MATCH[0], vector + 1),
+            (MATCH[1], vector + 2),
             overflow,
             overflow,
         ],
-        ..wide(number, first_vector, [a, b, b])
+        ..wide(number, vector, [a, b, b])
     }
 }
 
 /// A timer of 8 bits with two outputs and vectors in this order: the matches, overflow.
-pub(crate) const fn narrow(number: usize, first_vector: u8, [a, b]: [Pin; 2]) -> TimerInstance {
-    let overflow = (OVERFLOW, first_vector + 2);
+pub(crate) const fn narrow(number: usize, vector: u8, [a, b]: [Pin; 2]) -> TimerInstance {
+    let overflow = (OVERFLOW, vector + 2);
     TimerInstance {
         wide: false,
         channels: 2,
         vectors: [
-            (MATCH[0], first_vector),
-            (MATCH[1], first_vector + 1),
+            (MATCH[0], vector),
+            (MATCH[1], vector + 1),
             overflow,
             overflow,
             overflow,
         ],
-        ..wide(number, first_vector, [a, b, b])
+        ..wide(number, vector, [a, b, b])
     }
 }

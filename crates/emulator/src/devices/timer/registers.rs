@@ -3,7 +3,7 @@
 //! Counter and capture register are 16 bits behind an 8-bit bus: reading the low byte latches the high one, and writing the low byte
 //! takes the high one along (section 17.3). Compare registers are latched for writing only.
 
-use super::place::{ASYNCHRONOUS, TimerRegister};
+use super::place::{ASYNCHRONOUS, TimerRegister as Register};
 use super::wave::{CAPTURE, CHANNELS, Mode, OVERFLOW, Top};
 use super::{AS2, Clock, Timer};
 use crate::devices::Core;
@@ -21,15 +21,12 @@ impl Timer {
     /// The cycle before which a register reads the same unless an event comes first, and a read changes nothing.
     pub(crate) fn steady_until(&self, core: &Core, address: u16) -> u64 {
         match (self.place.register(address), self.clock) {
-            (Some(TimerRegister::Flags), Clock::Divided(divisor)) => {
+            (Some(Register::Flags), Clock::Divided(divisor)) => {
                 let prescaler = self.prescaler(core);
                 let tick = prescaler.ticks(divisor, self.computed_to) + self.wave.quiet_ticks(0xFF);
                 prescaler.reset + tick * divisor
             }
-            (
-                Some(TimerRegister::Count | TimerRegister::Capture | TimerRegister::CaptureHigh),
-                _,
-            ) => 0,
+            (Some(Register::Count | Register::Capture | Register::CaptureHigh), _) => 0,
             _ => u64::MAX,
         }
     }
@@ -41,7 +38,7 @@ impl Timer {
             Clock::Divided(divisor) if !prescaler.held && !self.stopped => Some(divisor),
             _ => None,
         };
-        let is_count = self.place.register(address) == Some(TimerRegister::Count);
+        let is_count = self.place.register(address) == Some(Register::Count);
         is_count.then_some(Counter {
             count: self.wave.count,
             cycle: self.computed_to.saturating_sub(prescaler.reset),
@@ -59,21 +56,21 @@ impl Timer {
             return 0;
         };
         let [low, high] = match register {
-            TimerRegister::Count => self.wave.count,
-            TimerRegister::Capture => self.wave.capture,
-            TimerRegister::Compare(channel) => self.wave.buffered[channel],
-            TimerRegister::CountHigh | TimerRegister::CaptureHigh => return self.latch,
-            TimerRegister::CompareHigh(channel) => self.wave.buffered[channel] >> 8,
-            TimerRegister::ControlA => u16::from(self.control[0]),
-            TimerRegister::ControlB => u16::from(self.control[1]),
+            Register::Count => self.wave.count,
+            Register::Capture => self.wave.capture,
+            Register::Compare(channel) => self.wave.buffered[channel],
+            Register::CountHigh | Register::CaptureHigh => return self.latch,
+            Register::CompareHigh(channel) => self.wave.buffered[channel] >> 8,
+            Register::ControlA => u16::from(self.control[0]),
+            Register::ControlB => u16::from(self.control[1]),
             // The force bits read as zero.
-            TimerRegister::ControlC => 0,
-            TimerRegister::Flags => u16::from(self.wave.flags),
-            TimerRegister::Enabled => u16::from(self.enabled),
-            TimerRegister::Asynchronous => u16::from(self.asynchronous),
+            Register::ControlC => 0,
+            Register::Flags => u16::from(self.wave.flags),
+            Register::Enabled => u16::from(self.enabled),
+            Register::Asynchronous => u16::from(self.asynchronous),
         }
         .to_le_bytes();
-        if matches!(register, TimerRegister::Count | TimerRegister::Capture) {
+        if matches!(register, Register::Count | Register::Capture) {
             self.latch = high;
         }
         low
@@ -93,28 +90,24 @@ impl Timer {
         }
         let word = u16::from_le_bytes([value, if self.place.wide { self.latch } else { 0 }]);
         match register {
-            TimerRegister::Count => {
+            Register::Count => {
                 self.wave.count = word;
                 // Also while it stands (section 17.7.2).
                 self.wave.blocked = true;
             }
             // The capture register is writable only in a mode that uses it as the top.
-            TimerRegister::Capture if self.wave.mode.top == Top::Capture => {
-                self.wave.capture = word
-            }
-            TimerRegister::Capture => {}
-            TimerRegister::Compare(channel) => self.wave.set_compare(channel, word),
-            TimerRegister::CountHigh
-            | TimerRegister::CaptureHigh
-            | TimerRegister::CompareHigh(_) => {
+            Register::Capture if self.wave.mode.top == Top::Capture => self.wave.capture = word,
+            Register::Capture => {}
+            Register::Compare(channel) => self.wave.set_compare(channel, word),
+            Register::CountHigh | Register::CaptureHigh | Register::CompareHigh(_) => {
                 self.latch = value;
             }
-            TimerRegister::ControlA => self.set_control(0, value),
-            TimerRegister::ControlB => self.set_control(1, value),
-            TimerRegister::ControlC => self.force(value, [0x80, 0x40, 0x20]),
-            TimerRegister::Flags => self.wave.flags &= !value,
-            TimerRegister::Enabled => self.enabled = value & (OVERFLOW | 0x0E | CAPTURE),
-            TimerRegister::Asynchronous => {
+            Register::ControlA => self.set_control(0, value),
+            Register::ControlB => self.set_control(1, value),
+            Register::ControlC => self.force(value, [0x80, 0x40, 0x20]),
+            Register::Flags => self.wave.flags &= !value,
+            Register::Enabled => self.enabled = value & (OVERFLOW | 0x0E | CAPTURE),
+            Register::Asynchronous => {
                 self.asynchronous = value & (EXCLK | AS2) | self.asynchronous & UPDATES;
                 if value & AS2 == 0 {
                     self.asynchronous &= !UPDATES;
