@@ -16,16 +16,8 @@ pub(crate) const MOST: usize = 16;
 const NEXT: &str = "*";
 const AND: &str = " and ";
 
-/// The orders that a link may give, and their values; those of a route are waypoints.
-const ORDERS: [(&str, &[&str]); 17] = [
-    ("stop", &[]),
-    ("arm", &[]),
-    ("disarm", &[]),
-    ("clear_fault", &[]),
-    ("lane", &[]),
-    ("reset_params", &[]),
-    ("save_params", &[]),
-    ("reset_pose", &[]),
+/// The orders with values that a link may give, besides [`Command::NAMED`]; those of a route are waypoints.
+const ORDERS: [(&str, &[&str]); 9] = [
     ("mode", &["mode"]),
     ("reference", &["value"]),
     ("wheel_reference", &["left", "right"]),
@@ -80,14 +72,6 @@ pub(crate) fn from_text(text: &str) -> Result<(VecDeque<(u64, Order)>, usize), S
 /// The command as an order in words.
 fn words(command: &Command) -> String {
     match command {
-        Command::Stop => "stop".into(),
-        Command::Arm => "arm".into(),
-        Command::Disarm => "disarm".into(),
-        Command::ClearFault => "clear_fault".into(),
-        Command::Lane => "lane".into(),
-        Command::ResetParams => "reset_params".into(),
-        Command::SaveParams => "save_params".into(),
-        Command::ResetPose => "reset_pose".into(),
         Command::Mode(mode) => format!("mode {}", *mode as u8),
         Command::Reference(value) => format!("reference {value}"),
         Command::WheelReference(wheels) => {
@@ -105,13 +89,18 @@ fn words(command: &Command) -> String {
             let name = rumbo_log::parameter(*id).map_or("", |parameter| parameter.name);
             format!("set_param {name} {value}")
         }
-        // No operator's: the session asks by itself.
-        Command::GetParam { .. } => String::new(),
         Command::Route { repeat, relative } => format!("{ROUTE} {repeat} {relative}"),
         Command::Waypoint(at) => match at.heading_rad {
             Some(heading_rad) => format!("waypoint {} {} {heading_rad}", at.x_m, at.y_m),
             None => format!("waypoint {} {}", at.x_m, at.y_m),
         },
+        // Nobody gives any other: the session asks by itself.
+        other => {
+            let mut named = Command::NAMED.into_iter();
+            named
+                .find(|(_, command)| command == other)
+                .map_or_else(String::new, |(name, _)| name.into())
+        }
     }
 }
 
@@ -137,8 +126,9 @@ fn order(commands: &str) -> Result<Order, String> {
 fn message(words: &str) -> Result<Map<String, Value>, String> {
     let mut words = words.split_whitespace();
     let kind = words.next().unwrap_or_default();
-    let (_, fields) = ORDERS
-        .iter()
+    let named = Command::NAMED.map(|(name, _)| (name, &[][..]));
+    let mut orders = named.into_iter().chain(ORDERS);
+    let (_, fields) = orders
         .find(|(name, _)| *name == kind)
         .ok_or_else(|| format!("there is no command `{kind}`"))?;
     let mut message = Map::from_iter([("type".to_owned(), Value::from(kind))]);
@@ -171,15 +161,7 @@ mod tests {
     #[test]
     fn what_is_written_is_read_to_the_last_bit() {
         let third = 1.0_f32 / 3.0;
-        let single = [
-            Command::Stop,
-            Command::Arm,
-            Command::Disarm,
-            Command::ClearFault,
-            Command::Lane,
-            Command::ResetParams,
-            Command::SaveParams,
-            Command::ResetPose,
+        let valued = [
             Command::Mode(ModeId::WallFollow),
             Command::Reference(third),
             Command::Reference(1e-7),
@@ -219,7 +201,8 @@ mod tests {
             place(None),
             place(Some(third)),
         ];
-        for (number, command) in (1..).zip(single) {
+        let named = Command::NAMED.map(|(_, command)| command);
+        for (number, command) in (1..).zip(named.into_iter().chain(valued)) {
             let t_us = number * 4_005_000;
             let commands = vec![command];
             let text = to_text(&[Change { t_us, commands }]);

@@ -128,7 +128,7 @@ pub struct OdometryErrors {
 
 /// A step along the path, short enough to be straight within a few degrees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Piece {
+pub struct PathStep {
     /// Sine and cosine of the heading in its middle.
     pub facing: (f32, f32),
     /// Forward distance, signed [m].
@@ -139,15 +139,15 @@ pub struct Piece {
     pub rolled_m: Wheels<f32>,
 }
 
-impl Piece {
+impl PathStep {
     /// The step between two successive poses of a robot with wheels `base_m` [m] apart that did not reverse in between.
-    pub fn between(before: &Pose, now: &Pose, base_m: f32) -> Piece {
+    pub fn between(before: &Pose, now: &Pose, base_m: f32) -> PathStep {
         let turned_rad = wrap_angle(now.heading_rad - before.heading_rad);
         let facing = sin_cos(before.heading_rad + 0.5 * turned_rad);
         let (sin, cos) = facing;
         let forward_m = (now.x_m - before.x_m) * cos + (now.y_m - before.y_m) * sin;
         let turn_m = 0.5 * turned_rad * base_m;
-        Piece {
+        PathStep {
             facing,
             forward_m,
             turned_rad,
@@ -173,17 +173,17 @@ pub struct Uncertainty {
 
 impl Uncertainty {
     /// Updates with a step.
-    pub fn advance(&mut self, errors: &OdometryErrors, piece: &Piece) {
-        let (sin, cos) = piece.facing;
-        let (dx, dy) = (piece.forward_m * cos, piece.forward_m * sin);
+    pub fn advance(&mut self, errors: &OdometryErrors, step: &PathStep) {
+        let (sin, cos) = step.facing;
+        let (dx, dy) = (step.forward_m * cos, step.forward_m * sin);
         // What a relative error of each kind adds to the step: to its turn, to its distance.
         let adds = [
             (
-                piece.forward_m / errors.base_m,
-                0.25 * piece.turned_rad * errors.base_m,
+                step.forward_m / errors.base_m,
+                0.25 * step.turned_rad * errors.base_m,
             ),
-            (piece.turned_rad, 0.0),
-            (0.0, piece.forward_m),
+            (step.turned_rad, 0.0),
+            (0.0, step.forward_m),
         ];
         for ([x, y, h], (turn, way)) in self.by.iter_mut().zip(&adds) {
             let middle = *h + 0.5 * turn;
@@ -191,7 +191,7 @@ impl Uncertainty {
             *y += way * sin + dx * middle;
             *h += turn;
         }
-        self.slip_on(errors, (sin, cos), (dx, dy), &piece.rolled_m);
+        self.slip_on(errors, (sin, cos), (dx, dy), &step.rolled_m);
     }
 
     fn slip_on(
@@ -337,7 +337,7 @@ mod tests {
         for _ in 0..times {
             let before = *pose;
             roll(&robot(), pose, wheel_rad);
-            uncertainty.advance(&ERRORS, &Piece::between(&before, pose, ERRORS.base_m));
+            uncertainty.advance(&ERRORS, &PathStep::between(&before, pose, ERRORS.base_m));
         }
     }
 

@@ -56,8 +56,8 @@ pub struct Model {
     pub(crate) owners: [Owner; REGISTERS_END],
     /// The bits that each port has.
     pub(crate) ports: [u8; PORTS],
-    pub(crate) timers: &'static [timer::Place],
-    pub(crate) usarts: &'static [usart::Place],
+    pub(crate) timers: &'static [timer::TimerInstance],
+    pub(crate) usarts: &'static [usart::UsartInstance],
     /// The pins of INT0 and on; from the second value on, their edges need the clock of the peripherals.
     pub(crate) external: (&'static [Pin], usize),
     pub(crate) pin_changes: &'static [PinChange],
@@ -131,8 +131,8 @@ impl Model {
 
     /// The inputs of timers and USARTs, by the pin's number.
     pub(crate) fn sensed(&self) -> u128 {
-        let of_timers = self.timers.iter().flat_map(timer::Place::inputs);
-        let of_usarts = self.usarts.iter().flat_map(usart::Place::inputs);
+        let of_timers = self.timers.iter().flat_map(timer::TimerInstance::inputs);
+        let of_usarts = self.usarts.iter().flat_map(usart::UsartInstance::inputs);
         let inputs = of_timers.chain(of_usarts);
         inputs.fold(0, |all, pin| all | 1 << pin.number())
     }

@@ -1,10 +1,8 @@
 //! What can go wrong between a log and its parameters.
 
+use crate::row::LONGEST_MS;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
-
-/// Longest run: the simulation is kept for each millisecond.
-pub(crate) const LONGEST_MS: usize = 3_600_000;
 
 /// Why a run could not be identified. Each message names the place and the remedy.
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -3,9 +3,9 @@
 //! What a row says holds until the next one. How its speeds were measured nobody knows: they count as means over the
 //! time since the row before, and over 50 ms at least.
 
-use crate::error::{IdentifyError, LONGEST_MS};
+use crate::error::IdentifyError;
 use crate::log::{DriveLog, RobotProgram, Seen, WINDOW_MS};
-use crate::row::{LogRow, Window};
+use crate::row::{LONGEST_MS, LogRow, Window};
 use rumbo_log::Log;
 use std::path::Path;
 

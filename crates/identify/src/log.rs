@@ -4,9 +4,9 @@
 //! next: the duty was applied then, the speeds are those of the latest completed 50 ms window. Where the applied
 //! reference is zero (modes 5 to 7), the bridge was released whatever the PWM column says.
 
-use crate::error::{IdentifyError, LONGEST_MS};
+use crate::error::IdentifyError;
 use crate::pair::SonarPair;
-use crate::row::{LogRow, Window};
+use crate::row::{LONGEST_MS, LogRow, Window};
 use std::path::{Path, PathBuf};
 
 /// Length of the windows in which the original counts encoder edges, ms.

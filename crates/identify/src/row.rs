@@ -1,5 +1,8 @@
 //! One row of a recorded run.
 
+/// Longest run: the simulation is kept for each millisecond.
+pub(crate) const LONGEST_MS: usize = 3_600_000;
+
 /// One row of a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LogRow {

@@ -54,7 +54,7 @@ struct Index {
 }
 
 /// Where a record is in the file.
-struct Place {
+struct Extent {
     at: u64,
     length: u64,
 }
@@ -84,7 +84,7 @@ impl<W: Write> Container<W> {
     /// What `into` does not take.
     pub fn metadata(&mut self, name: &str, texts: &BTreeMap<String, String>) -> io::Result<()> {
         self.close_chunk()?;
-        let Place { at, length } =
+        let Extent { at, length } =
             self.record(op::METADATA, &Body::default().text(name).texts(texts).0)?;
         let entry = Body::default().u64(at).u64(length).text(name);
         self.index.counts[4] += 1;
@@ -101,7 +101,7 @@ impl<W: Write> Container<W> {
         let mut body = Body::default().u64(0).u64(0).text(name).text(media_type);
         body = body.u64(data.len() as u64).bytes(data);
         let crc = CRC.checksum(&body.0);
-        let Place { at, length } = self.record(op::ATTACHMENT, &body.u32(crc).0)?;
+        let Extent { at, length } = self.record(op::ATTACHMENT, &body.u32(crc).0)?;
         let entry = Body::default().u64(at).u64(length).u64(0).u64(0);
         let entry = entry.u64(data.len() as u64).text(name).text(media_type);
         self.index.counts[3] += 1;
@@ -292,7 +292,7 @@ impl<W: Write> Container<W> {
         compression: &str,
         (compressed, uncompressed): (usize, usize),
     ) -> io::Result<()> {
-        let Place { at, length } = self.record(op::CHUNK, body)?;
+        let Extent { at, length } = self.record(op::CHUNK, body)?;
         let mut chunk = std::mem::take(&mut self.chunk);
         let messages_at = self.at;
         let mut places = Body::default();
@@ -320,13 +320,13 @@ impl<W: Write> Container<W> {
         Ok(())
     }
 
-    fn record(&mut self, kind: u8, body: &[u8]) -> io::Result<Place> {
+    fn record(&mut self, kind: u8, body: &[u8]) -> io::Result<Extent> {
         let at = self.at;
         self.put(&[kind])?;
         self.put(&(body.len() as u64).to_le_bytes())?;
         self.put(body)?;
         let length = self.at - at;
-        Ok(Place { at, length })
+        Ok(Extent { at, length })
     }
 
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {

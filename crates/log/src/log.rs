@@ -33,7 +33,7 @@ pub struct Log {
     /// What crossed the USARTs of an emulated chip, in order.
     pub said: Vec<Said>,
     /// What was sent to the robot, in order, which times alone do not give: indices in `link` and `said`.
-    pub(crate) order: Vec<Place>,
+    pub(crate) order: Vec<SentIndex>,
     /// Why the log ends early, where it does; or why something within is missing.
     pub cut: Option<String>,
     /// Something within is missing, while what follows is present.
@@ -44,7 +44,7 @@ pub struct Log {
 
 /// Index of something sent.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Place {
+pub(crate) enum SentIndex {
     Link(usize),
     Said(usize),
 }
@@ -76,8 +76,8 @@ impl Log {
     /// What was sent to the robot, in order.
     pub fn sent(&self) -> impl Iterator<Item = Sent<'_>> {
         self.order.iter().filter_map(|place| match *place {
-            Place::Link(at) => self.link.get(at).map(Sent::Link),
-            Place::Said(at) => self.said.get(at).map(Sent::Typed),
+            SentIndex::Link(at) => self.link.get(at).map(Sent::Link),
+            SentIndex::Said(at) => self.said.get(at).map(Sent::Typed),
         })
     }
 

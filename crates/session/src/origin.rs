@@ -9,7 +9,7 @@
 //! Derivation: docs/theory/odometry.md.
 
 use rumbo_control::Pose;
-use rumbo_control::odometry::{OdometryErrors, Piece, Uncertainty};
+use rumbo_control::odometry::{OdometryErrors, PathStep, Uncertainty};
 use rumbo_log::{MapPose, Spread, compose};
 
 /// Faster than a robot drives [m/s].
@@ -66,8 +66,8 @@ impl Origin {
                 };
                 self.settle();
             } else {
-                let piece = Piece::between(&before, &reported, errors.base_m);
-                self.uncertainty.advance(errors, &piece);
+                let step = PathStep::between(&before, &reported, errors.base_m);
+                self.uncertainty.advance(errors, &step);
             }
         }
         self.last = Some((t_ms, reported));

@@ -10,7 +10,7 @@ use tokio::sync::watch;
 
 /// What is to be shown.
 #[derive(Debug, Default)]
-pub(crate) struct Board {
+pub(crate) struct SharedBoard {
     board: Mutex<Shown>,
     /// Orders that the session has taken.
     taken: AtomicU64,
@@ -24,7 +24,7 @@ struct Shown {
     taken: u64,
 }
 
-impl Board {
+impl SharedBoard {
     /// A poisoned lock holds whole values all the same: each is written in one move.
     fn lock(&self) -> MutexGuard<'_, Shown> {
         self.board.lock().unwrap_or_else(PoisonError::into_inner)

@@ -6,12 +6,12 @@ use tokio::sync::watch;
 
 /// The one lease of control.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Lease {
+pub(crate) struct SharedLease {
     lease: Arc<Mutex<rumbo_session::Lease>>,
     changed: watch::Sender<()>,
 }
 
-impl Lease {
+impl SharedLease {
     fn lock(&self) -> MutexGuard<'_, rumbo_session::Lease> {
         self.lease.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -27,22 +27,22 @@ impl Lease {
     }
 
     /// Admits a page; `None`: too many are open.
-    pub(crate) fn join(&self, may_control: bool) -> Option<Place> {
+    pub(crate) fn join(&self, may_control: bool) -> Option<Membership> {
         let page = self.lock().join(may_control)?;
         self.changed.send_replace(());
         let lease = self.clone();
-        Some(Place { page, lease })
+        Some(Membership { page, lease })
     }
 }
 
 /// A page's membership; dropping it releases control, if the page had it.
 #[derive(Debug)]
-pub(crate) struct Place {
+pub(crate) struct Membership {
     page: PageId,
-    lease: Lease,
+    lease: SharedLease,
 }
 
-impl Place {
+impl Membership {
     /// Whether the page may give this order; why not otherwise.
     pub(crate) fn admit(&self, order: &Order) -> Result<(), &'static str> {
         let mut lease = self.lease.lock();
@@ -60,7 +60,7 @@ impl Place {
     }
 }
 
-impl Drop for Place {
+impl Drop for Membership {
     fn drop(&mut self) {
         self.lease.lock().leave(self.page);
         self.lease.changed.send_replace(());

@@ -1,6 +1,6 @@
 //! A replay's thread: plays it by the wall clock, and connects it with the pages.
 
-use crate::board::Board;
+use crate::board::SharedBoard;
 use crate::session::Orders;
 use rumbo_session::Replay;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ const WAKE_PAUSED: Duration = Duration::from_millis(250);
 const FOLLOW: Duration = Duration::from_millis(12);
 
 /// Runs until the sender of orders is gone.
-pub(crate) fn run(mut replay: Replay, board: &Arc<Board>, orders: &Orders) {
+pub(crate) fn run(mut replay: Replay, board: &Arc<SharedBoard>, orders: &Orders) {
     let began = Instant::now();
     loop {
         for event in replay.take_events() {

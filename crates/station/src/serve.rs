@@ -1,11 +1,11 @@
 //! Starts the lab: binds the port, then runs the session and the web server in threads of their own.
 
-use crate::board::Board;
+use crate::board::SharedBoard;
 use crate::door;
 use crate::echo::{Echo, Print};
 use crate::error::{ServeError, SessionError};
 use crate::guard::{self, Guard};
-use crate::lease::Lease;
+use crate::lease::SharedLease;
 use crate::order_sender::OrderSender;
 use crate::recorder::RecordingSetting;
 use crate::recordings::Recordings;
@@ -245,7 +245,7 @@ pub(crate) fn serve_replay(name: String, log: Log) -> Result<(String, Box<dyn Se
 }
 
 /// What a robot's session writes to, and where its orders come from.
-type Chair = (Arc<Board>, Orders);
+type Chair = (Arc<SharedBoard>, Orders);
 
 /// What pages may use beside the session.
 #[derive(Default)]
@@ -295,12 +295,12 @@ fn start_on(
     let (mut chairs, mut hubs) = (Vec::new(), Vec::new());
     let robots: Arc<[String]> = names.iter().filter(|_| several).cloned().collect();
     for (robot, (sender, orders)) in OrderSender::of(robots.len().max(1)).into_iter().enumerate() {
-        let board = Arc::new(Board::default());
+        let board = Arc::new(SharedBoard::default());
         chairs.push((Arc::clone(&board), orders));
         hubs.push(Hub {
             board,
             orders: Arc::new(sender),
-            lease: Lease::default(),
+            lease: SharedLease::default(),
             robot,
             robots: Arc::clone(&robots),
             local: at.ip().is_loopback(),

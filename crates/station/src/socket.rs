@@ -4,11 +4,11 @@
 //! sends anything but an order gets the reason and is closed; the robot goes on. A slow page loses samples of plots but
 //! gets every event.
 //!
-//! STOP is accepted from every page, anything else from the page that has control ([`Lease`]).
+//! STOP is accepted from every page, anything else from the page that has control ([`SharedLease`]).
 
-use crate::board::Board;
+use crate::board::SharedBoard;
 use crate::guard::Role;
-use crate::lease::{Lease, Place};
+use crate::lease::{Membership, SharedLease};
 use crate::order_sender::{OrderSender, TOO_MANY};
 use crate::recordings::Recordings;
 use crate::tuning::Tuning;
@@ -43,9 +43,9 @@ pub(crate) const SILENCE: Duration = Duration::from_secs(15);
 /// State shared by all connections.
 #[derive(Clone, Debug)]
 pub(crate) struct Hub {
-    pub(crate) board: Arc<Board>,
+    pub(crate) board: Arc<SharedBoard>,
     pub(crate) orders: Arc<OrderSender>,
-    pub(crate) lease: Lease,
+    pub(crate) lease: SharedLease,
     /// Its number among the robots in its world, and what they are called if there are several.
     pub(crate) robot: usize,
     pub(crate) robots: Arc<[String]>,
@@ -150,7 +150,7 @@ async fn close(
 async fn take_orders(
     mut from_page: impl Stream<Item = Result<Message, axum::Error>> + Unpin,
     hub: &Hub,
-    place: &Place,
+    place: &Membership,
     given: &Given,
     refuse: &mpsc::Sender<&'static str>,
 ) -> Option<Closing> {
@@ -203,7 +203,7 @@ async fn take_orders(
 async fn publish_news(
     out: &mut (impl Sink<Message> + Unpin),
     hub: &Hub,
-    place: &Place,
+    place: &Membership,
     given: &Given,
     mut refusals: mpsc::Receiver<&'static str>,
 ) -> Option<Closing> {
@@ -280,9 +280,9 @@ mod tests {
 
     fn hub() -> Hub {
         Hub {
-            board: Arc::new(Board::default()),
+            board: Arc::new(SharedBoard::default()),
             orders: Arc::new(OrderSender::of(1).remove(0).0),
-            lease: Lease::default(),
+            lease: SharedLease::default(),
             robot: 0,
             robots: Arc::default(),
             local: true,

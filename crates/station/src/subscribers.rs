@@ -1,6 +1,6 @@
 //! The subscribers of a session: pages, the log, the terminal. Each gets every event and uses what it needs.
 
-use crate::board::Board;
+use crate::board::SharedBoard;
 use crate::echo::Echo;
 use crate::log_file::Problem;
 use crate::recorder::Recorder;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// The subscribers of one session.
 pub(crate) struct Subscribers {
-    pub(crate) board: Arc<Board>,
+    pub(crate) board: Arc<SharedBoard>,
     /// Prints warnings and faults on the terminal too.
     pub(crate) echo: Option<Echo>,
     pub(crate) recorder: Option<Recorder>,

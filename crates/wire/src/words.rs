@@ -7,6 +7,18 @@ use rumbo_control::mode::{ModeId, Movement, ReferenceKind};
 use rumbo_control::params::ParamId;
 
 impl Command {
+    /// The commands without a value that a person gives, as pages, links and files name them.
+    pub const NAMED: [(&'static str, Command); 8] = [
+        ("stop", Command::Stop),
+        ("arm", Command::Arm),
+        ("disarm", Command::Disarm),
+        ("clear_fault", Command::ClearFault),
+        ("lane", Command::Lane),
+        ("reset_params", Command::ResetParams),
+        ("save_params", Command::SaveParams),
+        ("reset_pose", Command::ResetPose),
+    ];
+
     /// What a cut-off at the supply of the motors, as an emergency button is, makes of it: STOP and OFF cut (`false`), ON
     /// closes.
     #[must_use]

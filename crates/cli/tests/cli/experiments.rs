@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::support::rumbo_in;
 use rumbo_log::{LogKind, Manifest, Truth};
 use rumbo_session::headless::RunRecords;
 use rumbo_station::headless::record_run;
@@ -93,11 +94,7 @@ fn a_recorded_run_stands_beside_ours_and_a_file_of_no_experiment_is_named() {
 #[test]
 fn a_log_of_a_real_robot_stands_beside_ours_and_one_of_a_simulated_robot_does_not() {
     let folder = tempfile::tempdir().unwrap();
-    let out = Command::new(env!("CARGO_BIN_EXE_rumbo"))
-        .current_dir(folder.path())
-        .args(["run", "mode5", "--out", "real"])
-        .output()
-        .unwrap();
+    let out = rumbo_in(folder.path(), &["run", "mode5", "--out", "real"]);
     assert!(out.status.success());
     let simulated = folder.path().join("real/mode5-1.mcap");
     let log = log_file::read(&simulated).unwrap();

@@ -135,13 +135,6 @@ fn a_drive_is_an_ordinary_log_that_is_identified_again_and_written_into_a_robot_
     assert_eq!(std::fs::read(&file).unwrap(), before);
 }
 
-/// The only log of a folder.
-#[cfg(unix)]
-fn only_log(folder: &Path) -> std::path::PathBuf {
-    let mut files = std::fs::read_dir(folder).unwrap();
-    files.next().unwrap().unwrap().path()
-}
-
 #[cfg(unix)]
 fn drives(log: &rumbo_log::Log) -> bool {
     let mut rows = log.rows.iter();
@@ -176,7 +169,7 @@ fn interrupted(port: &str, folder: &Path) -> Option<std::process::Output> {
     while drive.try_wait().unwrap().is_none() {
         assert!(std::time::Instant::now() < until, "it does not drive");
         // Its log reaches the file while it drives.
-        if log_file::read_signals(&only_log(folder)).is_ok_and(|log| drives(&log)) {
+        if log_file::read_signals(&support::only_file(folder)).is_ok_and(|log| drives(&log)) {
             // Of one that has just ended nobody is there to be asked.
             let _ = Command::new("kill")
                 .args(["-INT", &drive.id().to_string()])
@@ -205,7 +198,7 @@ fn ctrl_c_stops_the_robot_and_keeps_the_log() {
     let said = support::stderr(&output);
     assert_eq!(output.status.code(), Some(130), "{said}");
     assert!(said.contains("what was driven is in"), "{said}");
-    let log = log_file::read(&only_log(folder.path())).unwrap();
+    let log = log_file::read(&support::only_file(folder.path())).unwrap();
     assert_eq!(log.cut, None);
     assert!(drives(&log));
     let last = log.rows.last().unwrap();

@@ -2,60 +2,34 @@
 
 #![cfg(test)]
 
-use crate::support::program;
+use crate::support::{Running, only_file, program, rumbo_in};
 use rumbo_log::{Burst, Truth};
 use rumbo_session::headless::RunRecords;
 use rumbo_station::headless::record_run;
 use rumbo_station::log_file;
 use rumbo_wire::message::Hello;
 use rumbo_wire::{Decoder, FrameMessage, FromRobot, Received};
-use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::path::Path;
+use std::process::Command;
 use std::time::Duration;
-
-fn rumbo(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rumbo"))
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap()
-}
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
 /// A lab that records into a folder, once it is up.
-fn lab(folder: &Path, speed: &str) -> Child {
-    let mut lab = Command::new(env!("CARGO_BIN_EXE_rumbo"))
-        .args([
-            "lab",
-            "--no-browser",
-            "--port",
-            "0",
-            "--speed",
-            speed,
-            "--out",
-        ])
-        .arg(folder)
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut address = String::new();
-    BufReader::new(lab.stdout.take().unwrap())
-        .read_line(&mut address)
-        .unwrap();
-    lab
-}
-
-fn only_log(folder: &Path) -> PathBuf {
-    let mut logs: Vec<_> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|file| file.unwrap().path())
-        .collect();
-    assert_eq!(logs.len(), 1, "{logs:?}");
-    logs.remove(0)
+fn lab(folder: &Path, speed: &str) -> Running {
+    let folder = folder.to_str().unwrap();
+    let with = [
+        "lab",
+        "--no-browser",
+        "--port=0",
+        "--speed",
+        speed,
+        "--out",
+        folder,
+    ];
+    Running::start(&with)
 }
 
 #[test]
@@ -65,7 +39,7 @@ fn each_of_several_robots_has_a_log_with_the_others_that_runs_again() {
         [[command]]\nat_s = 0.4\nspeed_rpm = 40\n[[command]]\nat_s = 0.5\narm = true\n\
         [[fleet]]\nname = \"east\"\n[[fleet]]\nname = \"west\"\nstart = { x_m = 0.7, heading_deg = 180 }\n";
     std::fs::write(folder.path().join("two.toml"), scenario).unwrap();
-    let ran = rumbo(&["run", "two.toml", "--out", "out"], folder.path());
+    let ran = rumbo_in(folder.path(), &["run", "two.toml", "--out", "out"]);
     assert_eq!(ran.status.code(), Some(0), "{}", text(&ran.stderr));
     let table = text(&ran.stdout);
     assert!(
@@ -95,7 +69,7 @@ fn each_of_several_robots_has_a_log_with_the_others_that_runs_again() {
             (seen[0] - seen[50]).abs() > 0.05,
             "the other drives: {seen:?}"
         );
-        let again = rumbo(&["rerun", &path], folder.path());
+        let again = rumbo_in(folder.path(), &["rerun", &path]);
         assert_eq!(
             again.status.code(),
             Some(0),
@@ -106,7 +80,7 @@ fn each_of_several_robots_has_a_log_with_the_others_that_runs_again() {
     }
     // Files of another scenario of that name are kept.
     std::fs::write(folder.path().join("out/two-1-east.truth.csv"), "mine").unwrap();
-    let refused = rumbo(&["run", "two.toml", "--out", "out"], folder.path());
+    let refused = rumbo_in(folder.path(), &["run", "two.toml", "--out", "out"]);
     assert_eq!(refused.status.code(), Some(2), "{}", text(&refused.stderr));
 }
 
@@ -114,11 +88,11 @@ fn each_of_several_robots_has_a_log_with_the_others_that_runs_again() {
 fn a_run_is_recorded_whole_and_the_same_run_is_the_same_file() {
     let folder = tempfile::tempdir().unwrap();
     for out in ["one", "two"] {
-        let done = rumbo(
+        let done = rumbo_in(
+            folder.path(),
             &[
                 "run", "mode1", "--seed", "7", "--param", "kv=0.03", "--out", out,
             ],
-            folder.path(),
         );
         assert!(
             done.status.code().is_some_and(|status| status < 2),
@@ -151,7 +125,7 @@ fn a_run_is_recorded_whole_and_the_same_run_is_the_same_file() {
             .any(|(_, _, text)| text.starts_with("sent: ON"))
     );
     assert!(log.outcome.unwrap().metrics.len() > 3);
-    let again = rumbo(&["rerun", "one/mode1-7.mcap"], folder.path());
+    let again = rumbo_in(folder.path(), &["rerun", "one/mode1-7.mcap"]);
     assert_eq!(
         again.status.code(),
         Some(0),
@@ -171,10 +145,10 @@ fn a_run_is_recorded_whole_and_the_same_run_is_the_same_file() {
 #[test]
 fn a_log_has_what_the_control_loops_add_up_to() {
     let folder = tempfile::tempdir().unwrap();
-    rumbo(&["run", "mode3", "--out", "."], folder.path());
-    let done = rumbo(
-        &["export", "mode3-1.mcap", "--format", "csv"],
+    rumbo_in(folder.path(), &["run", "mode3", "--out", "."]);
+    let done = rumbo_in(
         folder.path(),
+        &["export", "mode3-1.mcap", "--format", "csv"],
     );
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     let log = log_file::read(&folder.path().join("mode3-1.mcap")).unwrap();
@@ -217,10 +191,10 @@ fn a_log_has_what_the_control_loops_add_up_to() {
 #[test]
 fn a_figure_has_the_signals_and_the_time_that_were_asked_for() {
     let folder = tempfile::tempdir().unwrap();
-    rumbo(&["run", "mode5", "--out", "."], folder.path());
+    rumbo_in(folder.path(), &["run", "mode5", "--out", "."]);
     let export = |more: &[&str]| {
         let all = [&["export", "mode5-1.mcap"], more].concat();
-        rumbo(&all, folder.path())
+        rumbo_in(folder.path(), &all)
     };
     let picture = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
     assert_eq!(export(&["--format", "svg"]).status.code(), Some(0));
@@ -263,7 +237,7 @@ fn a_figure_has_the_signals_and_the_time_that_were_asked_for() {
             text(&refused.stderr)
         );
     }
-    let explained = rumbo(&["explain", "mode5-1.mcap", "--from", "1e4"], folder.path());
+    let explained = rumbo_in(folder.path(), &["explain", "mode5-1.mcap", "--from", "1e4"]);
     let said = text(&explained.stderr);
     assert_eq!(explained.status.code(), Some(2));
     assert!(said.contains("nothing from 10000 s to its end"), "{said}");
@@ -272,16 +246,17 @@ fn a_figure_has_the_signals_and_the_time_that_were_asked_for() {
 #[test]
 fn a_log_is_exported_with_units_and_compared_with_another() {
     let folder = tempfile::tempdir().unwrap();
-    let done = rumbo(
-        &["run", "mode1", "--runs", "2", "--out", "."],
+    let done = rumbo_in(
         folder.path(),
+        &["run", "mode1", "--runs", "2", "--out", "."],
     );
     assert!(
         done.status.code().is_some_and(|status| status < 2),
         "{}",
         text(&done.stderr)
     );
-    let done = rumbo(
+    let done = rumbo_in(
+        folder.path(),
         &[
             "export",
             "mode1-1.mcap",
@@ -292,7 +267,6 @@ fn a_log_is_exported_with_units_and_compared_with_another() {
             "--format",
             "svg",
         ],
-        folder.path(),
     );
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     let csv = std::fs::read_to_string(folder.path().join("x/mode1-1.csv")).unwrap();
@@ -324,13 +298,14 @@ fn a_log_is_exported_with_units_and_compared_with_another() {
         "--out",
         "both.svg",
     ];
-    let done = rumbo(&pair, folder.path());
+    let done = rumbo_in(folder.path(), &pair);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     assert!(text(&done.stdout).contains("\"log.way_m\":"));
     assert!(folder.path().join("both.svg").exists());
-    let other = rumbo(&[&pair[..], &["--tolerance", "0"]].concat(), folder.path());
+    let other = rumbo_in(folder.path(), &[&pair[..], &["--tolerance", "0"]].concat());
     assert_eq!(other.status.code(), Some(1));
-    let same = rumbo(
+    let same = rumbo_in(
+        folder.path(),
         &[
             "compare",
             "mode1-1.mcap",
@@ -338,7 +313,6 @@ fn a_log_is_exported_with_units_and_compared_with_another() {
             "--tolerance",
             "0",
         ],
-        folder.path(),
     );
     assert_eq!(same.status.code(), Some(0), "{}", text(&same.stdout));
 }
@@ -349,14 +323,14 @@ fn parameters_that_differ_are_shown_beside_the_metrics() {
     for value in ["0.03", "0.04"] {
         let parameter = format!("kv={value}");
         let run = ["run", "mode5", "--param", &parameter, "--out", value];
-        assert!(rumbo(&run, folder.path()).status.code().unwrap() < 2);
+        assert!(rumbo_in(folder.path(), &run).status.code().unwrap() < 2);
     }
     let pair = ["compare", "0.03/mode5-1.mcap", "0.04/mode5-1.mcap"];
-    let said = text(&rumbo(&pair, folder.path()).stdout);
+    let said = text(&rumbo_in(folder.path(), &pair).stdout);
     let (_, parameters) = said.split_once("parameters that differ:\n").unwrap();
     assert_eq!(parameters, "  kv  0.03  0.04\n");
     // A robot that calibrated itself before the run knows what it found.
-    rumbo(&["run", "mode7", "--out", "."], folder.path());
+    rumbo_in(folder.path(), &["run", "mode7", "--out", "."]);
     let calibrated = log_file::read(&folder.path().join("mode7-1.mcap")).unwrap();
     let plain = log_file::read(&folder.path().join("0.03/mode5-1.mcap")).unwrap();
     assert_ne!(
@@ -364,18 +338,18 @@ fn parameters_that_differ_are_shown_beside_the_metrics() {
         plain.parameters()["base_m"]
     );
     let same = ["compare", "0.03/mode5-1.mcap", "0.03/mode5-1.mcap"];
-    assert!(!text(&rumbo(&same, folder.path()).stdout).contains("differ:"));
+    assert!(!text(&rumbo_in(folder.path(), &same).stdout).contains("differ:"));
 }
 
 #[test]
 fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
     let folder = tempfile::tempdir().unwrap();
-    rumbo(&["run", "mode5", "--out", "."], folder.path());
+    rumbo_in(folder.path(), &["run", "mode5", "--out", "."]);
     let path = folder.path().join("mode5-1.mcap");
     let log = log_file::read(&path).unwrap();
     let whole = std::fs::read(&path).unwrap();
     std::fs::write(folder.path().join("cut.mcap"), &whole[..whole.len() / 2]).unwrap();
-    let cut = rumbo(&["rerun", "cut.mcap"], folder.path());
+    let cut = rumbo_in(folder.path(), &["rerun", "cut.mcap"]);
     assert_eq!(cut.status.code(), Some(0));
     assert!(text(&cut.stderr).contains("cut.mcap ends at"));
 
@@ -390,7 +364,7 @@ fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
         for command in ["rerun", "export", "compare", "replay"] {
             let log = ["head.mcap", "head.mcap"];
             let log = &log[..1 + usize::from(command == "compare")];
-            let output = rumbo(&[&[command], log].concat(), folder.path());
+            let output = rumbo_in(folder.path(), &[&[command], log].concat());
             assert_eq!(output.status.code(), Some(2), "{command}, {bytes} bytes");
             assert!(
                 text(&output.stderr).contains(said),
@@ -412,7 +386,7 @@ fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
         std::fs::write(folder.path().join("damaged.mcap"), &damaged).unwrap();
     };
     damaged(9);
-    let shown = rumbo(&["export", "damaged.mcap"], folder.path());
+    let shown = rumbo_in(folder.path(), &["export", "damaged.mcap"]);
     assert_eq!(shown.status.code(), Some(0), "{}", text(&shown.stderr));
     let said = text(&shown.stderr);
     assert!(
@@ -420,21 +394,21 @@ fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
         "{said}"
     );
     let rows = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
-    rumbo(&["export", "mode5-1.mcap"], folder.path());
+    rumbo_in(folder.path(), &["export", "mode5-1.mcap"]);
     assert_eq!(rows("damaged.csv"), rows("mode5-1.csv"));
-    let again = rumbo(&["rerun", "damaged.mcap"], folder.path());
+    let again = rumbo_in(folder.path(), &["rerun", "damaged.mcap"]);
     assert_eq!(again.status.code(), Some(0));
     // Damaged in the middle, the rest is read, but the run cannot be compared.
     let index = mcap::Summary::read(&whole).unwrap().unwrap();
     let chunk = &index.chunk_indexes[index.chunk_indexes.len() / 2];
     damaged(chunk.chunk_start_offset as usize + 1_000);
-    let shown = rumbo(&["export", "damaged.mcap", "--force"], folder.path());
+    let shown = rumbo_in(folder.path(), &["export", "damaged.mcap", "--force"]);
     assert_eq!(shown.status.code(), Some(0), "{}", text(&shown.stderr));
     assert!(text(&shown.stderr).starts_with("note: damaged.mcap is damaged: "));
     let count = |name: &str| rows(name).lines().count();
     assert!(count("damaged.csv") > count("mode5-1.csv") / 2);
     assert!(count("damaged.csv") < count("mode5-1.csv"));
-    let again = rumbo(&["rerun", "damaged.mcap"], folder.path());
+    let again = rumbo_in(folder.path(), &["rerun", "damaged.mcap"]);
     assert_eq!(again.status.code(), Some(2));
     assert!(text(&again.stderr).contains("parts of it are missing"));
 
@@ -453,7 +427,7 @@ fn another_table_of_parameters_and_the_end_of_a_truncated_log_are_reported() {
         ..RunRecords::default()
     };
     record_run(&path, &manifest, run).unwrap();
-    let other = rumbo(&["rerun", "mode5-1.mcap"], folder.path());
+    let other = rumbo_in(folder.path(), &["rerun", "mode5-1.mcap"]);
     let said = text(&other.stdout);
     assert_eq!(other.status.code(), Some(1));
     for part in ["another table of parameters", "by version 0.0.7"] {
@@ -488,14 +462,14 @@ fn a_lab_that_is_killed_leaves_a_log_that_the_next_command_makes_whole() {
             let output = list.output().unwrap();
             (text(&output.stdout), text(&output.stderr))
         };
-        let mut lab = lab(folder.path(), "8");
+        let lab = lab(folder.path(), "8");
         std::thread::sleep(Duration::from_millis(lived_ms));
         // What somebody still writes is let be.
         assert_eq!(list().1, "");
-        let path = only_log(folder.path());
+        let path = only_file(folder.path());
         let living = log_file::read(&path).unwrap();
-        lab.kill().unwrap();
-        lab.wait().unwrap();
+        // Killed, without a chance to complete it.
+        drop(lab);
         let before = log_file::read(&path).unwrap();
         assert!(before.manifest.is_some());
         assert!(living.cut.is_some() && before.cut.is_some());
@@ -509,7 +483,7 @@ fn a_lab_that_is_killed_leaves_a_log_that_the_next_command_makes_whole() {
             said.contains("it is a whole log now") && said.lines().count() == 1,
             "{said}"
         );
-        let bytes = std::fs::read(only_log(folder.path())).unwrap();
+        let bytes = std::fs::read(only_file(folder.path())).unwrap();
         let index = mcap::Summary::read(&bytes).unwrap().unwrap();
         assert!(index.stats.unwrap().message_count > 0);
         let after = log_file::read(&path).unwrap();
@@ -551,22 +525,17 @@ fn a_lab_that_is_asked_to_end_completes_its_log() {
 #[cfg(unix)]
 fn completes_its_log(signal: &str) {
     let folder = tempfile::tempdir().unwrap();
-    let mut lab = lab(folder.path(), "8");
+    let lab = lab(folder.path(), "8");
     std::thread::sleep(Duration::from_millis(1_200));
-    let asked = Command::new("kill")
-        .args([signal, &lab.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(asked.success());
-    assert_eq!(lab.wait().unwrap().code(), Some(0));
-    let log = log_file::read(&only_log(folder.path())).unwrap();
+    lab.end_by(signal);
+    let log = log_file::read(&only_file(folder.path())).unwrap();
     assert_eq!(log.cut, None);
     assert!(log.rows.len() > 20, "{}", log.rows.len());
     let stop = log.link.iter().rev().find(|burst| burst.to_robot).unwrap();
     assert!(!stop.bytes.is_empty());
     drop(log);
-    let path = only_log(folder.path());
-    let again = rumbo(&["rerun", path.to_str().unwrap()], folder.path());
+    let path = only_file(folder.path());
+    let again = rumbo_in(folder.path(), &["rerun", path.to_str().unwrap()]);
     assert_eq!(
         again.status.code(),
         Some(0),
@@ -583,56 +552,31 @@ fn a_lab_that_cannot_record_runs_all_the_same() {
     std::fs::write(&file, "").unwrap();
     let mut lab = lab(&file, "1");
     std::thread::sleep(Duration::from_millis(300));
-    assert_eq!(lab.try_wait().unwrap(), None);
-    lab.kill().unwrap();
-    lab.wait().unwrap();
+    assert!(lab.is_alive());
 }
 
 #[cfg(unix)]
 #[test]
 fn a_simulated_robot_behind_a_pseudo_terminal_is_connected_to_and_recorded_like_a_real_one() {
     let folder = tempfile::tempdir().unwrap();
-    let start = |arguments: &[&str]| {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_rumbo"))
-            .args(arguments)
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        BufReader::new(child.stdout.take().unwrap())
-            .read_line(&mut line)
-            .unwrap();
-        (child, line.trim().to_owned())
-    };
-    let (mut robot, port) = start(&["lab", "--pty", "--scenario", "mode5"]);
+    let robot = Running::start(&["lab", "--pty", "--scenario", "mode5"]);
+    let port = robot.said.clone();
     assert!(port.starts_with("/dev/"), "{port}");
     let out = folder.path().to_str().unwrap();
-    let (mut station, address) = start(&[
-        "connect",
-        &port,
-        "--no-browser",
-        "--port",
-        "0",
-        "--out",
-        out,
-    ]);
+    let connect = ["connect", &port, "--no-browser", "--port=0", "--out", out];
+    let station = Running::start(&connect);
+    let address = &station.said;
     assert!(address.starts_with("http://127.0.0.1:"), "{address}");
     std::thread::sleep(Duration::from_millis(2_500));
-    let asked = Command::new("kill")
-        .args(["-TERM", &station.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(asked.success());
-    assert_eq!(station.wait().unwrap().code(), Some(0));
-    robot.kill().unwrap();
-    robot.wait().unwrap();
-    let log = log_file::read(&only_log(folder.path())).unwrap();
+    station.end();
+    drop(robot);
+    let log = log_file::read(&only_file(folder.path())).unwrap();
     assert!(log.rows.len() > 10, "{}", log.rows.len());
     assert!(log.rows.iter().all(|row| row.signal("armed") == Some(0.0)));
     assert_eq!(log.manifest.unwrap().port, Some(port));
-    let again = rumbo(
-        &["rerun", only_log(folder.path()).to_str().unwrap()],
+    let again = rumbo_in(
         folder.path(),
+        &["rerun", only_file(folder.path()).to_str().unwrap()],
     );
     assert_eq!(again.status.code(), Some(2));
 }

@@ -6,8 +6,7 @@ use crate::support;
 use rumbo_station::log_file;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use support::{Page, Running, sketch};
+use support::{Page, Running, rumbo_in, sketch};
 
 /// The value of a signal in the last row of a message.
 fn signal(message: &Value, columns: &[String], name: &str) -> Option<f64> {
@@ -130,16 +129,9 @@ fn the_original_program_is_recognised_commanded_watched_and_recorded() {
         "{sent:?}"
     );
     replayed(&path, log.duration_s());
-    for arguments in [&["export"][..], &["compare"]] {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_rumbo"));
-        command
-            .current_dir(folder.path())
-            .args(arguments)
-            .arg(&path);
-        if arguments == ["compare"] {
-            command.arg(&path);
-        }
-        let done = command.output().unwrap();
+    let log = path.to_str().unwrap();
+    for arguments in [&["export", log][..], &["compare", log, log]] {
+        let done = rumbo_in(folder.path(), arguments);
         let said = String::from_utf8_lossy(&done.stderr);
         assert_eq!(done.status.code(), Some(0), "{said}");
     }
@@ -207,14 +199,7 @@ fn a_run_with_an_image_is_run_again_whole_with_what_its_usarts_said() {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    let rumbo = |arguments: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_rumbo"));
-        command
-            .current_dir(folder.path())
-            .args(arguments)
-            .output()
-            .unwrap()
-    };
+    let rumbo = |arguments: &[&str]| rumbo_in(folder.path(), arguments);
     let image = image.to_str().unwrap();
     let done = rumbo(&["run", "mode5", "--firmware", image, "--out", "."]);
     assert!(

@@ -4,7 +4,7 @@
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use tungstenite::{Message, WebSocket};
@@ -44,6 +44,23 @@ pub(crate) fn rumbo(arguments: &[&str]) -> Output {
     command.output().unwrap()
 }
 
+/// The same in a folder of the test's own, which also has its logs.
+pub(crate) fn rumbo_in(folder: impl AsRef<Path>, arguments: &[&str]) -> Output {
+    let folder = folder.as_ref();
+    let mut command = program();
+    command.env("RUMBO_LOGS", folder.join("logs"));
+    command.current_dir(folder).args(arguments);
+    command.output().unwrap()
+}
+
+/// The only file of a folder.
+pub(crate) fn only_file(folder: &Path) -> PathBuf {
+    let files = std::fs::read_dir(folder).unwrap();
+    let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
+    assert_eq!(files.len(), 1, "{files:?}");
+    files.remove(0)
+}
+
 pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
@@ -76,13 +93,21 @@ impl Running {
     }
 
     /// Asks it to end, as Ctrl-C does, and waits.
-    pub(crate) fn end(mut self) {
-        let asked = Command::new("kill")
-            .args(["-TERM", &self.child.id().to_string()])
-            .status()
-            .unwrap();
-        assert!(asked.success());
+    pub(crate) fn end(self) {
+        self.end_by("-TERM");
+    }
+
+    /// The same by this signal.
+    pub(crate) fn end_by(mut self, signal: &str) {
+        let process = self.child.id().to_string();
+        let asked = Command::new("kill").args([signal, &process]).status();
+        assert!(asked.unwrap().success());
         assert_eq!(self.child.wait().unwrap().code(), Some(0));
+    }
+
+    /// It has not ended by itself.
+    pub(crate) fn is_alive(&mut self) -> bool {
+        self.child.try_wait().unwrap().is_none()
     }
 }
 

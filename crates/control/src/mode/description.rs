@@ -46,12 +46,12 @@ pub struct StateDescription {
     /// What the robot does in it.
     pub does: &'static str,
     /// The transitions from it while the robot is armed; a command may lead back to the first state at any time.
-    pub ways: &'static [Way],
+    pub ways: &'static [Transition],
 }
 
 /// A transition to another state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Way {
+pub struct Transition {
     /// Number of the state that follows.
     pub to: u8,
     /// When, in a few words.
@@ -327,7 +327,7 @@ macro_rules! states {
             $crate::mode::StateDescription {
                 name: $name,
                 does: $does.trim_ascii(),
-                ways: &[ $( $crate::mode::Way { to: $phase::$to as u8, when: $when } ),* ],
+                ways: &[ $( $crate::mode::Transition { to: $phase::$to as u8, when: $when } ),* ],
             },
         )+ ];
     };

@@ -25,7 +25,7 @@ mod reference;
 
 pub use active::{ActiveMode, ModeId};
 pub use description::{
-    Description, Law, MetricGroup, ModePlot, ParamGroup, StateDescription, Takes, Way,
+    Description, Law, MetricGroup, ModePlot, ParamGroup, StateDescription, Takes, Transition,
 };
 pub use movement::{Movement, MovementLevel};
 pub use reference::{Reference, ReferenceDescription, ReferenceKind};

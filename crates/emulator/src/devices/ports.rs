@@ -5,7 +5,7 @@
 
 use crate::model::Model;
 pub use crate::model::pin::{PORTS, Pin};
-use crate::model::pin::{Register, register};
+use crate::model::pin::{PortRegister, register};
 
 /// Cycles after which a changed level is read.
 const SYNCHRONISER: u64 = 2;
@@ -108,7 +108,7 @@ pub(crate) struct Ports {
 
 /// A register of directions.
 pub(crate) fn is_direction(address: u16) -> bool {
-    matches!(register(address), Some((_, Register::Direction)))
+    matches!(register(address), Some((_, PortRegister::Direction)))
 }
 
 impl Ports {
@@ -125,10 +125,10 @@ impl Ports {
         };
         let port = &self.ports[index];
         match register {
-            Register::Direction => port.direction,
-            Register::Output => port.output,
-            Register::Pin if cycle < port.changed + SYNCHRONISER => port.level_before,
-            Register::Pin => port.level,
+            PortRegister::Direction => port.direction,
+            PortRegister::Output => port.output,
+            PortRegister::Pin if cycle < port.changed + SYNCHRONISER => port.level_before,
+            PortRegister::Pin => port.level,
         }
     }
 
@@ -141,9 +141,9 @@ impl Ports {
         let (index, register) = register(address)?;
         let value = value & self.model.ports[index];
         self.change(index, cycle, |port| match register {
-            Register::Pin => port.output ^= value,
-            Register::Direction => port.direction = value,
-            Register::Output => port.output = value,
+            PortRegister::Pin => port.output ^= value,
+            PortRegister::Direction => port.direction = value,
+            PortRegister::Output => port.output = value,
         })
     }
 
@@ -159,9 +159,9 @@ impl Ports {
         let mask = mask & self.model.ports[index];
         let put = |value: &mut u8| *value = if set { *value | mask } else { *value & !mask };
         self.change(index, cycle, |port| match register {
-            Register::Pin => port.output ^= if set { mask } else { 0 },
-            Register::Direction => put(&mut port.direction),
-            Register::Output => put(&mut port.output),
+            PortRegister::Pin => port.output ^= if set { mask } else { 0 },
+            PortRegister::Direction => put(&mut port.direction),
+            PortRegister::Output => put(&mut port.output),
         })
     }
 

@@ -16,7 +16,7 @@ use gdbstub::stub::{DisconnectReason, GdbStub};
 pub use session::{GdbSession, Progress};
 use std::io;
 use std::net::TcpStream;
-use target::{Debugger, Events};
+use target::{Events, GdbTarget};
 
 /// A chip with all that is connected to it.
 pub trait Machine {
@@ -127,7 +127,7 @@ pub enum Farewell {
 /// # Errors
 /// The connection broke, or the debugger broke the protocol.
 pub fn serve<M: Machine>(machine: &mut M, connection: TcpStream) -> io::Result<Farewell> {
-    let mut debugger = Debugger::new(machine);
+    let mut debugger = GdbTarget::new(machine);
     let stub = GdbStub::new(connection);
     let reason = stub
         .run_blocking::<Events<&mut M>>(&mut debugger)

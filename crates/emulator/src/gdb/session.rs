@@ -1,7 +1,7 @@
 //! A debugging session served in turns, by a caller with other work in between.
 
 use super::Machine;
-use super::target::Debugger;
+use super::target::GdbTarget;
 use gdbstub::common::Signal;
 use gdbstub::conn::ConnectionExt;
 use gdbstub::stub::state_machine::GdbStubStateMachine;
@@ -20,11 +20,11 @@ pub enum Progress {
     Gone,
 }
 
-type State<M> = GdbStubStateMachine<'static, Debugger<M>, TcpStream>;
+type State<M> = GdbStubStateMachine<'static, GdbTarget<M>, TcpStream>;
 
 /// A machine with a debugger at it.
 pub struct GdbSession<M: Machine + 'static> {
-    debugger: Debugger<M>,
+    debugger: GdbTarget<M>,
     /// `None` once the debugger is gone.
     state: Option<State<M>>,
 }
@@ -35,7 +35,7 @@ impl<M: Machine> GdbSession<M> {
     /// # Errors
     /// The connection broke.
     pub fn new(machine: M, connection: TcpStream) -> io::Result<GdbSession<M>> {
-        let mut debugger = Debugger::new(machine);
+        let mut debugger = GdbTarget::new(machine);
         let state = GdbStub::new(connection)
             .run_state_machine(&mut debugger)
             .map_err(|error| io::Error::other(format!("debugger: {error}")))?;

@@ -52,7 +52,7 @@ enum Motion {
 }
 
 /// A machine in the hands of a debugger.
-pub(super) struct Debugger<M> {
+pub(super) struct GdbTarget<M> {
     pub(super) machine: M,
     motion: Motion,
     /// It stands, perhaps at a breakpoint.
@@ -61,9 +61,9 @@ pub(super) struct Debugger<M> {
     watchpoints: Vec<Watchpoint>,
 }
 
-impl<M: Machine> Debugger<M> {
+impl<M: Machine> GdbTarget<M> {
     pub(super) fn new(machine: M) -> Self {
-        Debugger {
+        GdbTarget {
             machine,
             motion: Motion::Continue,
             stands: true,
@@ -154,7 +154,7 @@ impl<M: Machine> Debugger<M> {
     }
 }
 
-impl<M: Machine> Target for Debugger<M> {
+impl<M: Machine> Target for GdbTarget<M> {
     type Arch = Avr;
     type Error = Infallible;
 
@@ -177,7 +177,7 @@ impl<M: Machine> Target for Debugger<M> {
     }
 }
 
-impl<M: Machine> TargetDescriptionXmlOverride for Debugger<M> {
+impl<M: Machine> TargetDescriptionXmlOverride for GdbTarget<M> {
     fn target_description_xml(
         &self,
         annex: &[u8],
@@ -199,7 +199,7 @@ impl<M: Machine> TargetDescriptionXmlOverride for Debugger<M> {
     }
 }
 
-impl<M: Machine> SingleThreadBase for Debugger<M> {
+impl<M: Machine> SingleThreadBase for GdbTarget<M> {
     fn read_registers(&mut self, registers: &mut AvrRegisters) -> TargetResult<(), Self> {
         let cpu = self.machine.chip().cpu();
         *registers = AvrRegisters {
@@ -249,7 +249,7 @@ impl<M: Machine> SingleThreadBase for Debugger<M> {
     }
 }
 
-impl<M: Machine> SingleThreadResume for Debugger<M> {
+impl<M: Machine> SingleThreadResume for GdbTarget<M> {
     fn resume(&mut self, _: Option<Signal>) -> Result<(), Infallible> {
         self.set_off(Motion::Continue);
         Ok(())
@@ -264,21 +264,21 @@ impl<M: Machine> SingleThreadResume for Debugger<M> {
     }
 }
 
-impl<M: Machine> SingleThreadSingleStep for Debugger<M> {
+impl<M: Machine> SingleThreadSingleStep for GdbTarget<M> {
     fn step(&mut self, _: Option<Signal>) -> Result<(), Infallible> {
         self.set_off(Motion::Step);
         Ok(())
     }
 }
 
-impl<M: Machine> SingleThreadRangeStepping for Debugger<M> {
+impl<M: Machine> SingleThreadRangeStepping for GdbTarget<M> {
     fn resume_range_step(&mut self, start: u32, end: u32) -> Result<(), Infallible> {
         self.set_off(Motion::Within(start..end));
         Ok(())
     }
 }
 
-impl<M: Machine> Breakpoints for Debugger<M> {
+impl<M: Machine> Breakpoints for GdbTarget<M> {
     fn support_sw_breakpoint(&mut self) -> Option<SwBreakpointOps<'_, Self>> {
         Some(self)
     }
@@ -292,16 +292,14 @@ impl<M: Machine> Breakpoints for Debugger<M> {
     }
 }
 
-impl<M: Machine> SwBreakpoint for Debugger<M> {
+impl<M: Machine> SwBreakpoint for GdbTarget<M> {
     fn add_sw_breakpoint(&mut self, address: u32, _: usize) -> TargetResult<bool, Self> {
         if !matches!(self.machine.chip().place(address), Some(Place::Flash(_))) {
             return Ok(false);
         }
-        self.breakpoints.push(address / 2);
-        self.machine
-            .chip_mut()
-            .cpu_mut()
-            .set_breakpoint(address / 2);
+        let word = address / 2;
+        self.breakpoints.push(word);
+        self.machine.chip_mut().cpu_mut().set_breakpoint(word);
         Ok(true)
     }
 
@@ -314,7 +312,7 @@ impl<M: Machine> SwBreakpoint for Debugger<M> {
     }
 }
 
-impl<M: Machine> HwBreakpoint for Debugger<M> {
+impl<M: Machine> HwBreakpoint for GdbTarget<M> {
     fn add_hw_breakpoint(&mut self, address: u32, kind: usize) -> TargetResult<bool, Self> {
         self.add_sw_breakpoint(address, kind)
     }
@@ -324,16 +322,14 @@ impl<M: Machine> HwBreakpoint for Debugger<M> {
     }
 }
 
-impl<M: Machine> Debugger<M> {
+impl<M: Machine> GdbTarget<M> {
     /// Data addresses that are watched; `None` if they are not in the data space.
     fn watchpoint(&self, address: u32, length: u32, kind: WatchKind) -> Option<Watchpoint> {
         let Place::Data(start) = self.machine.chip().place(address)? else {
             return None;
         };
-        let last = self.machine.chip().model().ram_end;
-        let end = start
-            .saturating_add(length as usize)
-            .min(usize::from(last) + 1);
+        let behind = usize::from(self.machine.chip().model().ram_end) + 1;
+        let end = start.saturating_add(length as usize).min(behind);
         Some(Watchpoint {
             addresses: start as u16..end as u16,
             reads: kind != WatchKind::Write,
@@ -342,7 +338,7 @@ impl<M: Machine> Debugger<M> {
     }
 }
 
-impl<M: Machine> HwWatchpoint for Debugger<M> {
+impl<M: Machine> HwWatchpoint for GdbTarget<M> {
     fn add_hw_watchpoint(
         &mut self,
         address: u32,
@@ -371,7 +367,7 @@ impl<M: Machine> HwWatchpoint for Debugger<M> {
     }
 }
 
-impl<M: Machine> MonitorCmd for Debugger<M> {
+impl<M: Machine> MonitorCmd for GdbTarget<M> {
     fn handle_monitor_cmd(
         &mut self,
         command: &[u8],
@@ -397,12 +393,12 @@ impl<M: Machine> MonitorCmd for Debugger<M> {
 pub(super) struct Events<M>(PhantomData<M>);
 
 impl<M: Machine> BlockingEventLoop for Events<M> {
-    type Target = Debugger<M>;
+    type Target = GdbTarget<M>;
     type Connection = TcpStream;
     type StopReason = SingleThreadStopReason<u32>;
 
     fn wait_for_stop_reason(
-        debugger: &mut Debugger<M>,
+        debugger: &mut GdbTarget<M>,
         connection: &mut TcpStream,
     ) -> Result<
         Event<Self::StopReason>,
@@ -417,7 +413,7 @@ impl<M: Machine> BlockingEventLoop for Events<M> {
         }
     }
 
-    fn on_interrupt(_: &mut Debugger<M>) -> Result<Option<Self::StopReason>, Infallible> {
+    fn on_interrupt(_: &mut GdbTarget<M>) -> Result<Option<Self::StopReason>, Infallible> {
         Ok(Some(SingleThreadStopReason::Signal(Signal::SIGINT)))
     }
 }

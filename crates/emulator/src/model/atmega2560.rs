@@ -2,8 +2,8 @@
 
 use super::Fuses;
 use super::map::owners;
-use super::timer::{Place as Timer, narrow, wide};
-use super::usart::Place as Usart;
+use super::timer::{TimerInstance, narrow, wide};
+use super::usart::UsartInstance;
 use super::{Analog, Model, PinChange, Vectors, pin, pins_of};
 
 /// The ATmega2560 of an Arduino Mega.
@@ -101,7 +101,7 @@ const fn analog_pins() -> [Option<super::Pin>; 19] {
     pins
 }
 
-static TIMERS: [Timer; 6] = [
+static TIMERS: [TimerInstance; 6] = [
     narrow(0, 21, [pin('B', 7), pin('G', 5)]).with(pin('D', 7), None),
     wide(1, 16, [pin('B', 5), pin('B', 6), pin('B', 7)]).with(pin('D', 6), Some(pin('D', 4))),
     narrow(2, 13, [pin('B', 4), pin('H', 6)]),
@@ -110,11 +110,11 @@ static TIMERS: [Timer; 6] = [
     wide(5, 46, [pin('L', 3), pin('L', 4), pin('L', 5)]).with(pin('L', 2), Some(pin('L', 1))),
 ];
 
-static USARTS: [Usart; 4] = [
-    Usart::new(0, 25, [pin('E', 0), pin('E', 1), pin('E', 2)]),
-    Usart::new(1, 36, [pin('D', 2), pin('D', 3), pin('D', 5)]),
-    Usart::new(2, 51, [pin('H', 0), pin('H', 1), pin('H', 2)]),
-    Usart::new(3, 54, [pin('J', 0), pin('J', 1), pin('J', 2)]),
+static USARTS: [UsartInstance; 4] = [
+    UsartInstance::new(0, 25, [pin('E', 0), pin('E', 1), pin('E', 2)]),
+    UsartInstance::new(1, 36, [pin('D', 2), pin('D', 3), pin('D', 5)]),
+    UsartInstance::new(2, 51, [pin('H', 0), pin('H', 1), pin('H', 2)]),
+    UsartInstance::new(3, 54, [pin('J', 0), pin('J', 1), pin('J', 2)]),
 ];
 
 static VECTORS: [&str; 57] = [

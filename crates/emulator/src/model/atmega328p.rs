@@ -2,8 +2,8 @@
 
 use super::Fuses;
 use super::map::owners;
-use super::timer::{Place as Timer, narrow, wide_of_two};
-use super::usart::Place as Usart;
+use super::timer::{TimerInstance, narrow, wide_of_two};
+use super::usart::UsartInstance;
 use super::{Analog, Model, PinChange, Vectors, pin, pins_of};
 use crate::registers;
 
@@ -97,13 +97,17 @@ const fn analog_pins() -> [Option<super::Pin>; 19] {
     pins
 }
 
-static TIMERS: [Timer; 3] = [
+static TIMERS: [TimerInstance; 3] = [
     narrow(0, 14, [pin('D', 6), pin('D', 5)]).with(pin('D', 4), None),
     wide_of_two(1, 10, [pin('B', 1), pin('B', 2)]).with(pin('D', 5), Some(pin('B', 0))),
     narrow(2, 7, [pin('B', 3), pin('D', 3)]),
 ];
 
-static USARTS: [Usart; 1] = [Usart::new(0, 18, [pin('D', 0), pin('D', 1), pin('D', 4)])];
+static USARTS: [UsartInstance; 1] = [UsartInstance::new(
+    0,
+    18,
+    [pin('D', 0), pin('D', 1), pin('D', 4)],
+)];
 
 static VECTORS: [&str; 26] = [
     "RESET",

@@ -61,23 +61,23 @@ impl std::fmt::Display for Pin {
 
 /// What a register of a port is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Register {
+pub(crate) enum PortRegister {
     Pin,
     Direction,
     Output,
 }
 
 /// Port and register at an address of the data space.
-pub(crate) const fn register(address: u16) -> Option<(usize, Register)> {
+pub(crate) const fn register(address: u16) -> Option<(usize, PortRegister)> {
     let index = match address {
         0x20..=0x34 => address - 0x20,
         0x100..=0x10B => address - 0x100 + 21,
         _ => return None,
     };
     let register = match index % 3 {
-        0 => Register::Pin,
-        1 => Register::Direction,
-        _ => Register::Output,
+        0 => PortRegister::Pin,
+        1 => PortRegister::Direction,
+        _ => PortRegister::Output,
     };
     Some(((index / 3) as usize, register))
 }

@@ -1,8 +1,8 @@
 //! Every name and number of the descriptions, against the headers of avr-libc.
 
-use super::pin::{Register as OfPort, register as of_port};
-use super::timer::Register as OfTimer;
-use super::usart::Register as OfUsart;
+use super::pin::{PortRegister, register as of_port};
+use super::timer::TimerRegister;
+use super::usart::UsartRegister;
 use super::*;
 use crate::registers;
 use std::collections::{BTreeMap, BTreeSet};
@@ -83,31 +83,31 @@ fn has(model: &Model, name: &str, address: u16) -> bool {
         place.is_some_and(|place| place.register(address) == Some(register))
     };
     match general.as_str() {
-        _ if name.len() == 4 && name.starts_with("PIN") => of_port(OfPort::Pin),
-        _ if name.len() == 4 && name.starts_with("DDR") => of_port(OfPort::Direction),
-        _ if name.len() == 5 && name.starts_with("PORT") => of_port(OfPort::Output),
-        "TCCRnA" => of_timer(OfTimer::ControlA),
-        "TCCRnB" => of_timer(OfTimer::ControlB),
-        "TCCRnC" => of_timer(OfTimer::ControlC),
-        "TCNTn" | "TCNTnL" => of_timer(OfTimer::Count),
-        "TCNTnH" => of_timer(OfTimer::CountHigh),
-        "ICRnL" => of_timer(OfTimer::Capture),
-        "ICRnH" => of_timer(OfTimer::CaptureHigh),
-        "OCRnA" | "OCRnAL" => of_timer(OfTimer::Compare(0)),
-        "OCRnB" | "OCRnBL" => of_timer(OfTimer::Compare(1)),
-        "OCRnCL" => of_timer(OfTimer::Compare(2)),
-        "OCRnAH" => of_timer(OfTimer::CompareHigh(0)),
-        "OCRnBH" => of_timer(OfTimer::CompareHigh(1)),
-        "OCRnCH" => of_timer(OfTimer::CompareHigh(2)),
-        "TIFRn" => of_timer(OfTimer::Flags),
-        "TIMSKn" => of_timer(OfTimer::Enabled),
-        "ASSR" => model.timers[2].register(address) == Some(OfTimer::Asynchronous),
-        "UCSRnA" => of_usart(OfUsart::StatusA),
-        "UCSRnB" => of_usart(OfUsart::ControlB),
-        "UCSRnC" => of_usart(OfUsart::ControlC),
-        "UBRRnL" => of_usart(OfUsart::RateLow),
-        "UBRRnH" => of_usart(OfUsart::RateHigh),
-        "UDRn" => of_usart(OfUsart::Data),
+        _ if name.len() == 4 && name.starts_with("PIN") => of_port(PortRegister::Pin),
+        _ if name.len() == 4 && name.starts_with("DDR") => of_port(PortRegister::Direction),
+        _ if name.len() == 5 && name.starts_with("PORT") => of_port(PortRegister::Output),
+        "TCCRnA" => of_timer(TimerRegister::ControlA),
+        "TCCRnB" => of_timer(TimerRegister::ControlB),
+        "TCCRnC" => of_timer(TimerRegister::ControlC),
+        "TCNTn" | "TCNTnL" => of_timer(TimerRegister::Count),
+        "TCNTnH" => of_timer(TimerRegister::CountHigh),
+        "ICRnL" => of_timer(TimerRegister::Capture),
+        "ICRnH" => of_timer(TimerRegister::CaptureHigh),
+        "OCRnA" | "OCRnAL" => of_timer(TimerRegister::Compare(0)),
+        "OCRnB" | "OCRnBL" => of_timer(TimerRegister::Compare(1)),
+        "OCRnCL" => of_timer(TimerRegister::Compare(2)),
+        "OCRnAH" => of_timer(TimerRegister::CompareHigh(0)),
+        "OCRnBH" => of_timer(TimerRegister::CompareHigh(1)),
+        "OCRnCH" => of_timer(TimerRegister::CompareHigh(2)),
+        "TIFRn" => of_timer(TimerRegister::Flags),
+        "TIMSKn" => of_timer(TimerRegister::Enabled),
+        "ASSR" => model.timers[2].register(address) == Some(TimerRegister::Asynchronous),
+        "UCSRnA" => of_usart(UsartRegister::StatusA),
+        "UCSRnB" => of_usart(UsartRegister::ControlB),
+        "UCSRnC" => of_usart(UsartRegister::ControlC),
+        "UBRRnL" => of_usart(UsartRegister::RateLow),
+        "UBRRnH" => of_usart(UsartRegister::RateHigh),
+        "UDRn" => of_usart(UsartRegister::Data),
         _ => {
             // Two have another name on the smaller chip, and for a debugger.
             let name = match name {

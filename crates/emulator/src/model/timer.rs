@@ -26,7 +26,7 @@ const BASES: [u16; 6] = [
 
 /// A register of a timer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Register {
+pub(crate) enum TimerRegister {
     ControlA,
     ControlB,
     ControlC,
@@ -41,15 +41,15 @@ pub(crate) enum Register {
     Asynchronous,
 }
 
-impl Register {
+impl TimerRegister {
     /// The bit of ASSR that is set while a new value waits for the clock.
     pub(crate) const fn busy(self) -> Option<u8> {
         match self {
-            Register::Count => Some(0x10),
-            Register::Compare(0) => Some(0x08),
-            Register::Compare(_) => Some(0x04),
-            Register::ControlA => Some(0x02),
-            Register::ControlB => Some(0x01),
+            TimerRegister::Count => Some(0x10),
+            TimerRegister::Compare(0) => Some(0x08),
+            TimerRegister::Compare(_) => Some(0x04),
+            TimerRegister::ControlA => Some(0x02),
+            TimerRegister::ControlB => Some(0x01),
             _ => None,
         }
     }
@@ -57,7 +57,7 @@ impl Register {
 
 /// The place of one timer.
 #[derive(Debug)]
-pub(crate) struct Place {
+pub(crate) struct TimerInstance {
     pub(crate) number: usize,
     /// 16 bits.
     pub(crate) wide: bool,
@@ -73,9 +73,9 @@ pub(crate) struct Place {
     pub(crate) capture: Option<Pin>,
 }
 
-impl Place {
+impl TimerInstance {
     /// With a pin that may clock it, and one whose edges it captures.
-    pub(crate) const fn with(mut self, clock: Pin, capture: Option<Pin>) -> Place {
+    pub(crate) const fn with(mut self, clock: Pin, capture: Option<Pin>) -> TimerInstance {
         self.clock = Some(clock);
         self.capture = capture;
         self
@@ -87,35 +87,35 @@ impl Place {
     }
 
     /// The register at an address.
-    pub(crate) fn register(&self, address: u16) -> Option<Register> {
+    pub(crate) fn register(&self, address: u16) -> Option<TimerRegister> {
         if address == self.flags {
-            return Some(Register::Flags);
+            return Some(TimerRegister::Flags);
         }
         if address == self.enabled {
-            return Some(Register::Enabled);
+            return Some(TimerRegister::Enabled);
         }
         let offset = address.checked_sub(self.base)?;
         if !self.wide {
             return Some(match offset {
-                0 => Register::ControlA,
-                1 => Register::ControlB,
-                2 => Register::Count,
-                3 => Register::Compare(0),
-                4 => Register::Compare(1),
-                6 if self.number == ASYNCHRONOUS => Register::Asynchronous,
+                0 => TimerRegister::ControlA,
+                1 => TimerRegister::ControlB,
+                2 => TimerRegister::Count,
+                3 => TimerRegister::Compare(0),
+                4 => TimerRegister::Compare(1),
+                6 if self.number == ASYNCHRONOUS => TimerRegister::Asynchronous,
                 _ => return None,
             });
         }
         Some(match offset {
-            0 => Register::ControlA,
-            1 => Register::ControlB,
-            2 => Register::ControlC,
-            4 => Register::Count,
-            5 => Register::CountHigh,
-            6 => Register::Capture,
-            7 => Register::CaptureHigh,
-            8 | 10 | 12 => Register::Compare(usize::from(offset - 8) / 2),
-            9 | 11 | 13 => Register::CompareHigh(usize::from(offset - 9) / 2),
+            0 => TimerRegister::ControlA,
+            1 => TimerRegister::ControlB,
+            2 => TimerRegister::ControlC,
+            4 => TimerRegister::Count,
+            5 => TimerRegister::CountHigh,
+            6 => TimerRegister::Capture,
+            7 => TimerRegister::CaptureHigh,
+            8 | 10 | 12 => TimerRegister::Compare(usize::from(offset - 8) / 2),
+            9 | 11 | 13 => TimerRegister::CompareHigh(usize::from(offset - 9) / 2),
             _ => return None,
         })
     }
@@ -128,8 +128,8 @@ impl Place {
 }
 
 /// A timer of 16 bits with three outputs and vectors in this order: capture, the matches, overflow.
-pub(crate) const fn wide(number: usize, first_vector: u8, outputs: [Pin; 3]) -> Place {
-    Place {
+pub(crate) const fn wide(number: usize, vector: u8, outputs: [Pin; 3]) -> TimerInstance {
+    TimerInstance {
         number,
         wide: true,
         channels: 3,
@@ -137,11 +137,11 @@ pub(crate) const fn wide(number: usize, first_vector: u8, outputs: [Pin; 3]) -> 
         flags: registers::TIFR0 + number as u16,
         enabled: registers::TIMSK0 + number as u16,
         vectors: [
-            (CAPTURE, first_vector),
-            (MATCH[0], first_vector + 1),
-            (MATCH[1], first_vector + 2),
-            (MATCH[2], first_vector + 3),
-            (OVERFLOW, first_vector + 4),
+            (CAPTURE, vector),
+            (MATCH[0], vector + 1),
+            (MATCH[1], vector + 2),
+            (MATCH[2], vector + 3),
+            (OVERFLOW, vector + 4),
         ],
         outputs,
         clock: None,
@@ -150,34 +150,34 @@ pub(crate) const fn wide(number: usize, first_vector: u8, outputs: [Pin; 3]) -> 
 }
 
 /// The same with two outputs.
-pub(crate) const fn wide_of_two(number: usize, first_vector: u8, [a, b]: [Pin; 2]) -> Place {
-    let overflow = (OVERFLOW, first_vector + 3);
-    Place {
+pub(crate) const fn wide_of_two(number: usize, vector: u8, [a, b]: [Pin; 2]) -> TimerInstance {
+    let overflow = (OVERFLOW, vector + 3);
+    TimerInstance {
         channels: 2,
         vectors: [
-            (CAPTURE, first_vector),
-            (MATCH[0], first_vector + 1),
-            (MATCH[1], first_vector + 2),
+            (CAPTURE, vector),
+            (MATCH[0], vector + 1),
+            (MATCH[1], vector + 2),
             overflow,
             overflow,
         ],
-        ..wide(number, first_vector, [a, b, b])
+        ..wide(number, vector, [a, b, b])
     }
 }
 
 /// A timer of 8 bits with two outputs and vectors in this order: the matches, overflow.
-pub(crate) const fn narrow(number: usize, first_vector: u8, [a, b]: [Pin; 2]) -> Place {
-    let overflow = (OVERFLOW, first_vector + 2);
-    Place {
+pub(crate) const fn narrow(number: usize, vector: u8, [a, b]: [Pin; 2]) -> TimerInstance {
+    let overflow = (OVERFLOW, vector + 2);
+    TimerInstance {
         wide: false,
         channels: 2,
         vectors: [
-            (MATCH[0], first_vector),
-            (MATCH[1], first_vector + 1),
+            (MATCH[0], vector),
+            (MATCH[1], vector + 1),
             overflow,
             overflow,
             overflow,
         ],
-        ..wide(number, first_vector, [a, b, b])
+        ..wide(number, vector, [a, b, b])
     }
 }

@@ -5,7 +5,7 @@ use crate::registers;
 
 /// A register of a USART.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Register {
+pub(crate) enum UsartRegister {
     StatusA,
     ControlB,
     ControlC,
@@ -16,7 +16,7 @@ pub(crate) enum Register {
 
 /// The place of one USART.
 #[derive(Debug)]
-pub(crate) struct Place {
+pub(crate) struct UsartInstance {
     pub(crate) number: usize,
     /// Address of UCSRA.
     base: u16,
@@ -36,11 +36,11 @@ const BASES: [u16; 4] = [
     registers::UCSR3A,
 ];
 
-impl Place {
+impl UsartInstance {
     /// With the vector of reception, and the pins RXD, TXD and XCK.
-    pub(crate) const fn new(number: usize, vector: u8, pins: [Pin; 3]) -> Place {
+    pub(crate) const fn new(number: usize, vector: u8, pins: [Pin; 3]) -> UsartInstance {
         let [receive, transmit, clock] = pins;
-        Place {
+        UsartInstance {
             number,
             base: BASES[number],
             vector,
@@ -55,14 +55,14 @@ impl Place {
         [self.receive, self.clock]
     }
 
-    pub(crate) const fn register(&self, address: u16) -> Option<Register> {
+    pub(crate) const fn register(&self, address: u16) -> Option<UsartRegister> {
         Some(match address.wrapping_sub(self.base) {
-            0 => Register::StatusA,
-            1 => Register::ControlB,
-            2 => Register::ControlC,
-            4 => Register::RateLow,
-            5 => Register::RateHigh,
-            6 => Register::Data,
+            0 => UsartRegister::StatusA,
+            1 => UsartRegister::ControlB,
+            2 => UsartRegister::ControlC,
+            4 => UsartRegister::RateLow,
+            5 => UsartRegister::RateHigh,
+            6 => UsartRegister::Data,
             _ => return None,
         })
     }

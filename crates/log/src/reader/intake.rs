@@ -11,7 +11,7 @@ use crate::digest::{Digest, NO_END};
 use crate::entry::{Burst, Said};
 use crate::event::{Level, LoggedEvent};
 use crate::frames::Frames;
-use crate::log::{Log, Place};
+use crate::log::{Log, SentIndex};
 use crate::reading::{Reading, ReadingSource};
 use crate::scene::Scene;
 use crate::schema::Topic;
@@ -283,7 +283,7 @@ impl Intake {
                 let Bytes { data, pieces } = serde_json::from_slice(data)?;
                 let to_robot = topic == Topic::ToRobot;
                 if to_robot {
-                    log.order.push(Place::Link(log.link.len()));
+                    log.order.push(SentIndex::Link(log.link.len()));
                 }
                 self.filled += size_of::<Burst>() * pieces.len();
                 let bursts = bursts(to_robot, t_us, decoded(&data)?, &pieces);
@@ -298,7 +298,7 @@ impl Intake {
                     data,
                 } = serde_json::from_slice(data)?;
                 if to_chip {
-                    log.order.push(Place::Said(log.said.len()));
+                    log.order.push(SentIndex::Said(log.said.len()));
                 }
                 log.said.push(Said {
                     t_us,

@@ -1,25 +1,14 @@
 //! Devices on the two-wire bus of a sketch's board, a remote control and a motor shield, driven register by register.
 
-use super::kits::{column, drive, driven_by, kit, last, there_and_back, to_and_fro};
-use super::sketch::rumbo;
+use super::kits::{
+    column, drive, driven_by, is_repeated, kit, last, there_and_back, to_and_fro, usb,
+};
+use super::sketch::{ino, rumbo};
 use crate::support::{stderr, stdout};
 use std::path::Path;
 
 pub(super) const DRIVES: &str = "left_enable = 5\nleft_forward = 7\nleft_backward = 8\nright_enable = 6\nright_forward = 12\n\
                       right_backward = 11\ndebug_tx = 1\ndebug_rx = 0\n";
-
-/// A master of the two-wire bus at 400 kHz: `send` tells whether it was acknowledged.
-pub(super) const BUS: &str = "
-void wait() { while (!(TWCR & _BV(TWINT))) {} }
-bool send(byte value) {
-  TWDR = value; TWCR = _BV(TWINT) | _BV(TWEN); wait();
-  byte status = TWSR & 0xF8;
-  return status == 0x18 || status == 0x28 || status == 0x40;
-}
-bool start(byte address) { TWCR = _BV(TWINT) | _BV(TWSTA) | _BV(TWEN); wait(); return send(address); }
-void stop() { TWCR = _BV(TWINT) | _BV(TWSTO) | _BV(TWEN); while (TWCR & _BV(TWSTO)) {} }
-byte receive(bool more) { TWCR = _BV(TWINT) | _BV(TWEN) | (more ? _BV(TWEA) : 0); wait(); return TWDR; }
-";
 
 /// What a display has shown, one content after the other.
 pub(super) fn shown(bench: &Path, name: &str) -> Vec<serde_json::Value> {
@@ -33,45 +22,12 @@ pub(super) fn shown(bench: &Path, name: &str) -> Vec<serde_json::Value> {
 
 #[test]
 fn a_sketch_that_integrates_the_gyroscope_knows_how_far_the_robot_has_turned() {
-    let sketch = "
-void set(byte reg, byte value) { start(0xD0); send(reg); send(value); stop(); }
-int words[7];
-void measure() {
-  start(0xD0); send(0x3B); start(0xD1);
-  for (byte at = 0; at < 7; at++) { words[at] = receive(true) << 8; words[at] |= receive(at < 6); }
-  stop();
-}
-void setup() {
-  Serial.begin(115200);
-  TWBR = 12;
-  start(0xD0); send(0x75); start(0xD1); Serial.println(receive(false), HEX); stop();
-  Serial.println(start(0xD2) ? \"there\" : \"nobody\"); stop();
-  for (byte pin = 5; pin <= 12; pin++) pinMode(pin, OUTPUT);
-  set(0x6B, 1); set(0x1B, 0x08); set(0x1C, 0x08); set(0x1A, 3); set(0x19, 4);
-  delay(100);
-  long rest = 0, up = 0;
-  for (int n = 0; n < 200; n++) { measure(); rest += words[6]; up += words[2]; delay(2); }
-  rest /= 200;
-  digitalWrite(8, HIGH); digitalWrite(12, HIGH); analogWrite(5, 110); analogWrite(6, 110);
-  float degrees = 0;
-  unsigned long before = micros(), end = millis() + 1200;
-  while (millis() < end) {
-    measure();
-    unsigned long now = micros();
-    degrees += (words[6] - rest) / 65.5 * (now - before) * 1e-6;
-    before = now;
-    if (millis() + 400 > end) { digitalWrite(8, LOW); digitalWrite(12, LOW); }
-  }
-  Serial.println(degrees);
-  Serial.println(up / 200 / 8192.0);
-}
-void loop() {}";
     let wiring = format!("{DRIVES}parts.imu = {{ mpu6050 = 0x68 }}\n");
-    let Some(bench) = kit("gyroscope", &wiring, &format!("{BUS}{sketch}")) else {
+    let Some(bench) = kit("gyroscope", &wiring, &(ino("bus") + &ino("gyroscope"))) else {
         return;
     };
     let run = drive(&bench, &[]);
-    let said = std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
+    let said = usb(&bench);
     let lines: Vec<&str> = said.lines().collect();
     assert_eq!(lines[..2], ["68", "nobody"], "{said}{}", stderr(&run));
     let turned = last(&bench, "heading_rad").to_degrees();
@@ -87,11 +43,7 @@ void loop() {}";
     ] {
         assert!(told.contains(note), "{told}");
     }
-    assert!(
-        rumbo(&bench, &["rerun", "out/floor-1.mcap"])
-            .status
-            .success()
-    );
+    is_repeated(&bench);
     let export = rumbo(&bench, &["export", "out/floor-1.mcap", "--format", "csv"]);
     assert!(export.status.success(), "{}", stderr(&export));
     let csv = std::fs::read_to_string(bench.join("floor-1.instruments.csv")).unwrap();
@@ -104,49 +56,20 @@ void loop() {}";
 
 #[test]
 fn an_interrupt_comes_with_every_value_of_the_inertial_sensor() {
-    let sketch = "
-volatile int count;
-void ready() { count++; }
-void set(byte reg, byte value) { start(0xD0); send(reg); send(value); stop(); }
-void setup() {
-  Serial.begin(115200);
-  attachInterrupt(digitalPinToInterrupt(2), ready, RISING);
-  set(0x6B, 1); set(0x1A, 3); set(0x19, 9); set(0x38, 1);
-  delay(1000);
-  Serial.println(count);
-}
-void loop() {}";
     let wiring = format!("{DRIVES}parts.imu = {{ mpu6050 = 0x68, interrupt = 2 }}\n");
-    let Some(bench) = kit("data_ready", &wiring, &format!("{BUS}{sketch}")) else {
+    let Some(bench) = kit("data_ready", &wiring, &(ino("bus") + &ino("data_ready"))) else {
         return;
     };
     drive(&bench, &[]);
-    let said = std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
+    let said = usb(&bench);
     let count: i64 = said.trim().parse().unwrap();
     assert!((99..=101).contains(&count), "{said}");
 }
 
 #[test]
 fn a_screen_of_dots_shows_what_a_sketch_draws_and_the_run_says_so() {
-    let sketch = "
-const byte begin_[] = {0, 0xAE, 0xA8, 63, 0xD3, 0, 0x40, 0x8D, 0x14, 0x20, 0, 0xA1, 0xC8, 0xDA, 0x12, 0xA6, 0xAF};
-void window(byte left, byte right, byte top, byte bottom) {
-  start(0x78); send(0); send(0x21); send(left); send(right); send(0x22); send(top); send(bottom); stop();
-}
-void fill(byte dots, int count) { start(0x78); send(0x40); while (count--) send(dots); stop(); }
-void setup() {
-  TWBR = 12;
-  start(0x78); for (byte each : begin_) send(each); stop();
-  window(0, 127, 0, 7); fill(0, 1024);
-  window(8, 11, 1, 1); fill(0x81, 4);
-  delay(1000);
-  start(0x78); send(0x80); send(0xA7); send(0x80); send(0xE3); stop();
-  delay(1000);
-  start(0x78); send(0); send(0xA6); stop();
-}
-void loop() {}";
     let wiring = format!("{DRIVES}parts.screen = {{ ssd1306 = 0x3c }}\n");
-    let Some(bench) = kit("dots", &wiring, &format!("{BUS}{sketch}")) else {
+    let Some(bench) = kit("dots", &wiring, &(ino("bus") + &ino("dots"))) else {
         return;
     };
     let run = drive(&bench, &[]);
@@ -169,37 +92,13 @@ void loop() {}";
         "{told}{}",
         stderr(&run)
     );
-    let again = rumbo(&bench, &["rerun", "out/floor-1.mcap"]);
-    assert!(
-        again.status.success(),
-        "{}{}",
-        stdout(&again),
-        stderr(&again)
-    );
+    is_repeated(&bench);
 }
 
 #[test]
 fn a_display_of_letters_shows_text_and_characters_of_the_sketch_s_own() {
-    let sketch = "
-const byte arrow[] = {4, 14, 31, 4, 4, 4, 0, 0};
-void lines(byte value) { start(0x4E); send(value); stop(); }
-void half(byte value) { lines(value | 0x0C); lines(value | 0x08); delayMicroseconds(50); }
-void put(byte value, byte rs) { half(value & 0xF0 | rs); half(value << 4 | rs); }
-void print(byte at, const char *text) { put(0x80 | at, 0); while (*text) put(*text++, 1); }
-void setup() {
-  TWBR = 72;
-  delay(50);
-  half(0x30); delay(5); half(0x30); delay(1); half(0x30); half(0x20);
-  put(0x28, 0); put(0x0C, 0); put(0x06, 0); put(0x01, 0); delay(2);
-  put(0x40, 0);
-  for (byte row : arrow) put(row, 1);
-  print(0x00, \"Rumbo\");
-  print(0x14, \"third row\");
-  print(0x40, \"\"); put(0, 1); put(0xDF, 1);
-}
-void loop() {}";
     let wiring = format!("{DRIVES}parts.text = {{ hd44780 = 0x27, size = \"20x4\" }}\n");
-    let Some(bench) = kit("letters_shown", &wiring, &format!("{BUS}{sketch}")) else {
+    let Some(bench) = kit("letters_shown", &wiring, &(ino("bus") + &ino("text"))) else {
         return;
     };
     let run = drive(&bench, &[]);
@@ -224,91 +123,16 @@ void loop() {}";
 }
 
 #[test]
-fn an_address_that_is_taken_or_is_none_and_a_bus_on_taken_pins_are_named() {
-    for (number, (parts, why)) in [
-        (
-            "parts.eye = { ssd1306 = 0x3c }\nparts.screen = { ssd1306 = 0x3c }",
-            "ssd1306 = 0x3c: eye has that address already: set another one by its jumpers, 0x3c to 0x3d",
-        ),
-        (
-            "parts.imu = { mpu6050 = 0xD0 }",
-            "mpu6050 = 0xd0: is not within 7 bits: it is 0x68 with the bit for reading and writing behind it; write 0x68",
-        ),
-        (
-            "parts.text = { hd44780 = 0x68 }",
-            "hd44780 = 0x68: must be an address that it can have, 0x20 to 0x27 or 0x38 to 0x3f",
-        ),
-        (
-            "parts.text = { hd44780 = 0x27, size = \"40x4\" }",
-            "size = 40x4: did you mean `16x2` or `20x4`?",
-        ),
-        (
-            "parts.imu = { mpu6050 = 0x68, axes = \"up left forward\" }",
-            "axes = \"up left forward\": must be where x, y and z of the chip point, right-handed",
-        ),
-        (
-            "servo = \"A4\"\nparts.imu = { mpu6050 = 0x68 }",
-            "servo on its pin A4 (SDA): put servo on another pin",
-        ),
-        (
-            "parts.imu = { mpu6050 = 0x68 }\nparts.start = { button = \"A5\" }",
-            "button = A5: the two-wire bus is on that pin already",
-        ),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        let wiring = format!("{DRIVES}{parts}\n");
-        let Some(bench) = kit(&format!("address{number}"), &wiring, "void setup() {}\nvoid loop() {}\n")
-        else {
-            return;
-        };
-        let refused = drive(&bench, &[]);
-        assert_eq!(refused.status.code(), Some(2));
-        let said = stderr(&refused);
-        assert!(said.contains(why), "{said}");
-    }
-}
-
-/// Drives by the keys of a remote, told by the time from one falling edge to the next.
-const REMOTE: &str = "
-volatile unsigned long last, bits;
-volatile byte count = 99;
-volatile int got = -1, repeats = 0;
-void fall() {
-  unsigned long now = micros(), gap = now - last;
-  last = now;
-  if (gap > 13000 && gap < 14000) { count = 0; return; }
-  if (gap > 11000 && gap < 11500) { repeats++; return; }
-  if (count > 31 || gap < 1000 || gap > 2400) { count = 99; return; }
-  bits = bits >> 1 | (gap > 1700 ? 0x80000000 : 0);
-  if (++count == 32 && (bits & 0xFFFF) == 0xFF00 && (byte)(bits >> 16) == (byte)~(bits >> 24)) got = bits >> 16 & 0xFF;
-}
-void setup() {
-  Serial.begin(115200);
-  for (byte pin = 5; pin <= 12; pin++) pinMode(pin, OUTPUT);
-  attachInterrupt(digitalPinToInterrupt(2), fall, FALLING);
-}
-void loop() {
-  if (repeats) { repeats--; Serial.println(\"again\"); }
-  if (got < 0) return;
-  Serial.println(got, HEX);
-  digitalWrite(7, got == 0x18); digitalWrite(12, got == 0x18);
-  analogWrite(5, 150); analogWrite(6, 150);
-  got = -1;
-}";
-
-#[test]
 fn a_remote_control_drives_the_robot_and_repeats_while_its_key_is_held() {
     let wiring = format!("{DRIVES}parts.remote = {{ infrared = 2 }}\n");
-    let Some(bench) = kit("remote", &wiring, REMOTE) else {
+    let Some(bench) = kit("remote", &wiring, &ino("remote")) else {
         return;
     };
     let run = drive(
         &bench,
         &["--press", "remote=up@0.5", "--press", "remote=0@2"],
     );
-    let said = || std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
+    let said = || usb(&bench);
     assert_eq!(
         said(),
         "18\nagain\n19\nagain\n",
@@ -318,11 +142,7 @@ fn a_remote_control_drives_the_robot_and_repeats_while_its_key_is_held() {
     );
     let (way_m, speed) = (last(&bench, "x_m"), last(&bench, "left_rad_s"));
     assert!(way_m > 0.3 && speed.abs() < 0.1, "{way_m} {speed}");
-    assert!(
-        rumbo(&bench, &["rerun", "out/floor-1.mcap"])
-            .status
-            .success()
-    );
+    is_repeated(&bench);
     let tests = "sketch = \"car.ino\"\nscenario = \"floor.toml\"\n[[test]]\nname = \"drives\"\n\
                  step = [{ press = \"remote\", to = \"up\" }, { expect = \"18\" }, { press = \"remote\", to = 5, for_s = 0.5 }, { expect = \"40\" }, \
                  { expect = \"again\" }, { expect = \"again\" }, { expect = \"again\" }]\n";
@@ -369,34 +189,9 @@ fn a_remote_control_drives_the_robot_and_repeats_while_its_key_is_held() {
 #[test]
 fn a_remote_of_a_car_radio_is_read_by_samples_of_the_line() {
     // As the common library does: a timer looks at the line every 50 us.
-    let sketch = "
-volatile byte state, bits;
-volatile unsigned int ticks;
-volatile unsigned long value;
-volatile bool done;
-ISR(TIMER2_COMPA_vect) {
-  bool mark = !(PINB & _BV(3));
-  ticks++;
-  if (done) return;
-  if (state == 0 && mark) { state = 1; ticks = 0; }
-  else if (state == 1 && !mark) { state = ticks > 160 ? 2 : 0; ticks = 0; }
-  else if (state == 2 && mark) { state = ticks > 70 ? 3 : 0; bits = 0; ticks = 0; }
-  else if (state == 3 && !mark) { state = 4; ticks = 0; }
-  else if (state == 4 && mark) {
-    value = value << 1 | (ticks > 22);
-    state = 3; ticks = 0;
-    if (++bits == 32) { done = true; state = 0; }
-  }
-}
-void setup() {
-  Serial.begin(115200);
-  pinMode(11, INPUT);
-  TCCR2A = _BV(WGM21); TCCR2B = _BV(CS21); OCR2A = 99; TIMSK2 = _BV(OCIE2A);
-}
-void loop() { if (done) { Serial.println(value, HEX); delay(150); done = false; } }";
     let wiring = "left_enable = 5\nleft_forward = 7\ndebug_tx = 1\ndebug_rx = 0\n\
                   parts.remote = { infrared = 11, keys = 21 }\n";
-    let Some(bench) = kit("radio", wiring, sketch) else {
+    let Some(bench) = kit("radio", wiring, &ino("radio")) else {
         return;
     };
     let keys = [
@@ -408,7 +203,7 @@ void loop() { if (done) { Serial.println(value, HEX); delay(150); done = false; 
         "remote=9@1.5",
     ];
     let run = drive(&bench, &keys);
-    let said = std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
+    let said = usb(&bench);
     assert_eq!(
         said,
         "FFA25D\nFF9867\nFF52AD\n",
@@ -429,30 +224,10 @@ void loop() { if (done) { Serial.println(value, HEX); delay(150); done = false; 
         "raw_keys = { go = 0x27D8FB04, mute = 0xBA45FF00 }",
     ] {
         with(keys, &go);
-        let said = std::fs::read_to_string(bench.join("out/floor-1-usart0.txt")).unwrap();
+        let said = usb(&bench);
         assert_eq!(said, "20DF1BE4\nFFA25D\n", "{keys}");
     }
-    for (keys, why) in [
-        ("keys = 20", "there is one with arrows, 17 keys"),
-        ("keys = {}", "needs a key, e.g. forward = 0xFF18E7"),
-        ("keys = { go = 0x1FFFFFFFF }", "within 0..4294967295"),
-    ] {
-        let refused = stderr(&with(keys, &[]));
-        assert!(refused.contains(why), "{refused}");
-    }
 }
-
-/// Shifts eight bits into the register of a motor shield.
-const SHIFT: &str = "
-void put(byte bits) {
-  digitalWrite(12, LOW);
-  for (int bit = 7; bit >= 0; bit--) {
-    digitalWrite(4, LOW); digitalWrite(8, bits >> bit & 1); digitalWrite(4, HIGH);
-  }
-  digitalWrite(12, HIGH);
-  digitalWrite(7, LOW);
-}
-";
 
 #[test]
 fn a_motor_shield_drives_the_motors_that_the_wheels_are_on() {
@@ -462,7 +237,7 @@ fn a_motor_shield_drives_the_motors_that_the_wheels_are_on() {
         "put(0x21); analogWrite(6, 150); analogWrite(5, 150);",
         "put(0xC0);",
     );
-    let sketch = format!("{SHIFT}{sketch}");
+    let sketch = ino("shift") + &sketch;
     let wiring = "left_forward = \"M3\"\nright_forward = \"M4\"\n";
     there_and_back(driven_by("motor-shield", "shield", wiring, &sketch));
     // One motor's wires exchanged: it turns on the spot.
@@ -483,49 +258,6 @@ fn a_motor_shield_drives_the_motors_that_the_wheels_are_on() {
         told.contains("it never drove the left motor: left_forward of M3"),
         "{told}"
     );
-}
-
-#[test]
-fn a_pin_that_a_motor_shield_has_and_a_motor_that_it_has_not_are_named() {
-    for (number, (wiring, why)) in [
-        (
-            "left_forward = \"M5\"",
-            "left_forward = M5: must be a motor of the shield, \"M1\" to \"M4\"",
-        ),
-        ("left_forward = 6", "must be a motor of the shield"),
-        (
-            "left_forward = \"M1\"\nleft_backward = \"M1\"",
-            "left_backward: a wheel is on one motor",
-        ),
-        (
-            "left_forward = \"M1\"\nservo = 12",
-            "servo = 12: the motor shield has that pin",
-        ),
-        (
-            "left_forward = \"M1\"\nfront_echo = 11\nfront_trigger = 2",
-            "front_echo = 11: the motor shield has that pin",
-        ),
-        (
-            "left_forward = \"M1\"\nparts.start = { button = 8 }",
-            "the motor shield is on that pin already",
-        ),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        let name = format!("shield{number}");
-        let Some(bench) = driven_by(
-            "motor-shield",
-            &name,
-            wiring,
-            "void setup() {}\nvoid loop() {}\n",
-        ) else {
-            return;
-        };
-        let refused = drive(&bench, &[]);
-        assert_eq!(refused.status.code(), Some(2), "{wiring}");
-        assert!(stderr(&refused).contains(why), "{}", stderr(&refused));
-    }
 }
 
 #[test]
@@ -556,15 +288,6 @@ fn a_new_robot_with_a_motor_shield_has_its_wheels_on_motors() {
     );
     let parts = "parts.remote = { infrared = 2, raw_keys = { go = 0xBA45FF00, \"100+\" = 7 } }\nparts.knob = { potentiometer = \"A2\" }\nparts.screen = { ssd1306 = 0x3c }\n";
     assert!(text.contains(parts), "{text}");
-    let bare = rumbo(
-        &folder,
-        &["new", "robot", "bare", "--driver", "motor-shield"],
-    );
-    assert!(
-        stderr(&bare).contains("needs the pins left_forward, right_forward"),
-        "{}",
-        stderr(&bare)
-    );
 }
 
 #[test]
@@ -576,15 +299,7 @@ fn a_new_robot_on_continuous_servos_drives_at_the_speed_of_their_data_sheet() {
         "new robot car --board uno --driver continuous-servos --pins left_servo=13,right_servo=12";
     let made = rumbo(&bench, &new.split(' ').collect::<Vec<_>>());
     assert!(made.status.success(), "{}", stderr(&made));
-    let sketch = "#include <Servo.h>
-Servo left, right;
-void setup() {
-  left.attach(13); right.attach(12);
-  left.writeMicroseconds(1700); right.writeMicroseconds(1300); delay(2000);
-  left.write(90); right.write(90);
-}
-void loop() {}";
-    std::fs::write(bench.join("car.ino"), sketch).unwrap();
+    std::fs::write(bench.join("car.ino"), ino("servos")).unwrap();
     let scenario =
         "title = \"On the floor\"\nrobot = \"car.toml\"\nworld = \"open\"\nduration_s = 3\n";
     std::fs::write(bench.join("floor.toml"), scenario).unwrap();
@@ -600,34 +315,9 @@ void loop() {}";
 #[test]
 fn a_motor_shield_on_the_two_wire_bus_drives_and_turns_as_it_is_told() {
     // M3 and M4: PWM, and the inputs of forward and backward.
-    let sketch = "
-void set(byte output, unsigned int on, unsigned int off) {
-  start(0xC0); send(6 + 4 * output); send(on); send(on >> 8); send(off); send(off >> 8); stop();
-}
-void run(bool forward) {
-  set(2, 0, 2400); set(7, 0, 2400);
-  set(4, forward ? 4096 : 0, 0); set(3, forward ? 0 : 4096, 0);
-  set(5, forward ? 4096 : 0, 0); set(6, forward ? 0 : 4096, 0);
-}
-void setup() {
-  TWBR = 72;
-  start(0xC0); send(0xFE); send(3); stop();
-  start(0xC0); send(0); send(0x20); stop();
-  delay(1);
-}
-void loop() { run(true); delay(1500); run(false); delay(100000); }";
-    let sketch = format!("{BUS}{sketch}");
+    let sketch = ino("bus") + &ino("shield_v2");
     let wiring = "left_forward = \"M3\"\nright_forward = \"M4\"\n";
     there_and_back(driven_by("motor-shield-v2", "shield_v2", wiring, &sketch));
-    let taken = format!("{wiring}servo = \"A4\"\n");
-    let Some(bench) = driven_by("motor-shield-v2", "shield_v2_taken", &taken, &sketch) else {
-        return;
-    };
-    let refused = stderr(&drive(&bench, &[]));
-    assert!(
-        refused.contains("servo = A4: the motor shield has that pin"),
-        "{refused}"
-    );
 }
 
 #[test]

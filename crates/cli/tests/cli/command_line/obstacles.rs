@@ -1,6 +1,6 @@
 //! Infrared sensors for obstacles, and what else people's robots have that a new robot's options say.
 
-use super::sketch::{bench, rumbo};
+use super::sketch::{bench, ino, rumbo};
 use crate::support::{stderr, stdout};
 use serde_json::Value;
 use std::path::PathBuf;
@@ -119,10 +119,7 @@ fn an_echo_that_the_program_drives_itself_is_named() {
     };
     let pins = "--pins=left_forward=5,left_backward=6,right_forward=9,right_backward=10,front_trigger=2,front_echo=3";
     new(&bench, "own", "bts7960-jumpers", &[pins]);
-    let sketch = "const byte pins[] = {2, 5, 6, 9, 10};\nvoid setup() { for (byte pin : pins) pinMode(pin, OUTPUT); pinMode(3, MODE); }\n\
-                  void loop() {\n  digitalWrite(2, HIGH); delayMicroseconds(10); digitalWrite(2, LOW);\n\
-                  bool far = pulseIn(3, HIGH, 30000) > 3000;\n\
-                  digitalWrite(5, far); digitalWrite(9, far); delay(50);\n}\n";
+    let sketch = &ino("own_echo");
     let named = "front_echo: pin 3 is an output of the program";
     let (metrics, said) = run(&bench, "own.toml", &sketch.replace("MODE", "OUTPUT"), &[]);
     assert_eq!(metrics["path_m"], Value::Null, "{said}");
@@ -150,14 +147,7 @@ fn a_pair_of_sonars_and_what_was_measured_are_options_of_a_new_robot() {
     ];
     new(&bench, "own", "bts7960-jumpers", &more);
     // A turn of the left wheel along a wall on the left, which both see.
-    let sketch = "volatile int edges;\nvoid count() { edges++; }\n\
-                  bool near(int trigger, int echo) {\n  digitalWrite(trigger, HIGH); delayMicroseconds(10);\n\
-                  \x20 digitalWrite(trigger, LOW);\n  long us = pulseIn(echo, HIGH, 30000); delay(20);\n\
-                  \x20 return us > 2000 && us < 4500;\n}\n\
-                  const byte pins[] = {4, 5, 6, 7, 9, 10};\nvoid setup() {\n  for (byte pin : pins) pinMode(pin, OUTPUT);\n\
-                  \x20 attachInterrupt(digitalPinToInterrupt(2), count, CHANGE);\n}\n\
-                  void loop() {\n  bool drives = near(4, A0) && near(7, A1) && edges < 748;\n\
-                  \x20 analogWrite(5, drives ? 100 : 0); analogWrite(9, drives ? 100 : 0);\n}\n";
+    let sketch = &ino("along_a_wall");
     std::fs::write(bench.join("car.ino"), sketch).unwrap();
     let run = rumbo(
         &bench,
@@ -189,20 +179,6 @@ fn a_pair_of_sonars_and_what_was_measured_are_options_of_a_new_robot() {
         text.contains("scrub_n_m") && text.contains("gear_ratio = 250\n"),
         "{text}"
     );
-    let unwired = [
-        "new",
-        "robot",
-        "b",
-        "--board=uno",
-        "--driver=l298n-jumpers",
-        "--sensors=front=0.1:0",
-        motors,
-    ];
-    let refused = stderr(&rumbo(&bench, &unwired));
-    assert!(
-        refused.contains("--sensors front: that sensor has no pins; say --pins front_trigger="),
-        "{refused}"
-    );
 }
 
 #[test]
@@ -226,9 +202,7 @@ fn gears_of_metal_a_battery_s_divider_and_a_starter_kit_s_remote_are_options() {
         &[&[pins, remote], &own[..]].concat(),
     );
     // Drives by a PWM of 20 while 12 V, divided by 4, are at A0, and for a moment by more.
-    let sketch = "const byte pins[] = {5, 6, 9, 10};\nvoid setup() { for (byte pin : pins) pinMode(pin, OUTPUT); }\n\
-                  void loop() {\n  int volts = analogRead(A0);\n  int pwm = volts < 530 || volts > 690 ? 0 : millis() < 300 ? 120 : 20;\n\
-                  \x20 analogWrite(5, pwm); analogWrite(9, pwm);\n}\n";
+    let sketch = &ino("weak");
     let press = ["--press", "remote=power@1"];
     let (metrics, said) = run(&bench, "metal.toml", sketch, &press);
     assert!(metrics["path_m"].as_f64().unwrap() > 0.1, "{said}");
@@ -240,8 +214,7 @@ fn gears_of_metal_a_battery_s_divider_and_a_starter_kit_s_remote_are_options() {
     );
     // One input high, the other by PWM: what is left of it stirs the wheels and turns none.
     new(&bench, "braked", "l298n-jumpers", &[pins]);
-    let sketch = "void setup() {\n  pinMode(5, OUTPUT); digitalWrite(5, HIGH); analogWrite(6, 200);\n\
-                  \x20 pinMode(9, OUTPUT); digitalWrite(9, HIGH); analogWrite(10, 200);\n}\nvoid loop() {}\n";
+    let sketch = &ino("braked");
     let (_, said) = run(&bench, "braked.toml", sketch, &[]);
     assert!(said.contains("of 255, and no wheel turned"), "{said}");
 }

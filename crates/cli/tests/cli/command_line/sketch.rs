@@ -16,6 +16,12 @@ pub(super) fn bench(name: &str) -> Option<PathBuf> {
     Some(bench)
 }
 
+/// A sketch of `tests/programs/sketches`.
+pub(super) fn ino(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs/sketches");
+    std::fs::read_to_string(folder.join(format!("{name}.ino"))).unwrap()
+}
+
 pub(super) fn rumbo(bench: &PathBuf, arguments: &[&str]) -> Output {
     let mut command = program();
     command.current_dir(bench).args(arguments);

@@ -10,20 +10,8 @@ mod limits;
 mod logs;
 mod model;
 
-use crate::support;
-use std::path::Path;
+use crate::support::rumbo_in;
 use std::process::Output;
-
-/// `rumbo` in a folder of the test's own, which also has its logs.
-fn rumbo_in(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = support::program();
-    command.env("RUMBO_LOGS", folder.join("logs"));
-    command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap()
-}
 
 /// Its exit status.
 fn status(output: &Output) -> i32 {

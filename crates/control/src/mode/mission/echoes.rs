@@ -58,7 +58,7 @@ const SHORT_M: f32 = 0.18;
 
 /// A remembered point of an obstacle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Echo {
+pub(super) struct ObstaclePoint {
     at: Place,
     /// The beam's axis at its last echo, in 256ths of a turn.
     axis: i8,
@@ -66,7 +66,7 @@ pub(super) struct Echo {
     belief: u8,
 }
 
-impl Echo {
+impl ObstaclePoint {
     const NONE: Self = Self {
         at: Place { x_mm: 0, y_mm: 0 },
         axis: 0,
@@ -135,7 +135,7 @@ struct Silence {
 /// The memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Echoes {
-    points: [Echo; CAPACITY],
+    points: [ObstaclePoint; CAPACITY],
     /// Silences of the front sonar, the oldest first: their number, and how many of them are confirmed.
     silences: [Silence; SILENCES],
     silent: u8,
@@ -146,7 +146,7 @@ impl Default for Echoes {
     #[inline]
     fn default() -> Self {
         Self {
-            points: [Echo::NONE; CAPACITY],
+            points: [ObstaclePoint::NONE; CAPACITY],
             silences: [Silence::default(); SILENCES],
             silent: 0,
             confirmed: 0,
@@ -157,7 +157,7 @@ impl Default for Echoes {
 impl Echoes {
     /// All points by their numbers, free slots included.
     #[inline]
-    pub(super) fn points(&self) -> &[Echo; CAPACITY] {
+    pub(super) fn points(&self) -> &[ObstaclePoint; CAPACITY] {
         &self.points
     }
 
@@ -317,7 +317,7 @@ impl Echoes {
             far_mm,
             (far_mm * BEAM_TANGENT) >> 8,
         );
-        let mut best: Option<&mut Echo> = None;
+        let mut best: Option<&mut ObstaclePoint> = None;
         for point in &mut self.points {
             if point.belief == 0 || !bounds.hold(point.at) {
                 continue;
@@ -364,7 +364,7 @@ impl Echoes {
     }
 
     /// The point that a new one at this place is merged with.
-    fn merging(&mut self, at: Place) -> Option<&mut Echo> {
+    fn merging(&mut self, at: Place) -> Option<&mut ObstaclePoint> {
         let around = Bounds::around(at, MERGE_MM);
         let mut points = self.points.iter_mut();
         points.find(|point| {
@@ -384,7 +384,7 @@ impl Echoes {
             .take(at)
             .and_then(|number| self.points.get_mut(usize::from(number)))
         {
-            *point = Echo {
+            *point = ObstaclePoint {
                 at,
                 axis,
                 belief: FRESH,

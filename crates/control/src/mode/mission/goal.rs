@@ -5,7 +5,7 @@ use super::gaze::look;
 use super::moving::{BESIDE_M_S, UNKNOWN_M_S, WARY_M_S};
 use super::obstacle::Among;
 use super::{
-    Action, CREEP_M_S, DOUBT_M_S, Drive, Mission, Movement, PROGRESS_M, ParamId, Phase, Place,
+    Action, CREEP_M_S, DOUBT_M_S, Drive, Mission, MotionMemory, PROGRESS_M, ParamId, Phase, Place,
     Pose, SWEEP_RAD, Segment, State, Turn, Way, abs, min, sqrt,
 };
 use crate::estimate::Estimate;
@@ -148,7 +148,7 @@ impl Mission<'_> {
                 state.laps = 0;
                 state.last = None;
                 state.detour = None;
-                state.movement = Movement::default();
+                state.movement = MotionMemory::default();
                 self.face(state, pose, goal_m, FACED_RAD);
                 Drive::Release
             }

@@ -69,7 +69,7 @@ enum Stage {
 /// A face that looks in a row have agreed on is not gone by silence, nor by looks that disagree: it is missing, until
 /// it is seen again, looks agree on one behind it, or the robot has been where it was.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Ahead {
+struct FaceAhead {
     last_m: [f32; 5],
     count: u8,
     /// Distance to the face that looks have agreed on; [`FAR_M`]: none.
@@ -78,7 +78,7 @@ struct Ahead {
     agreeing: u8,
 }
 
-impl Default for Ahead {
+impl Default for FaceAhead {
     #[inline]
     fn default() -> Self {
         Self {
@@ -90,7 +90,7 @@ impl Default for Ahead {
     }
 }
 
-impl Ahead {
+impl FaceAhead {
     /// One tick of a lane in this direction.
     fn step(&mut self, estimate: &Estimate, heading_rad: f32) {
         for range_m in &mut self.last_m {
@@ -144,7 +144,7 @@ impl Ahead {
 
 /// One side of a sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Sweep {
+struct SweepSide {
     /// Looks in a row beyond the jump.
     beyond: u8,
     /// Where the first of them was, without sign [rad].
@@ -161,7 +161,7 @@ enum Swept {
     Closed,
 }
 
-impl Sweep {
+impl SweepSide {
     /// One tick towards `sign`; `jump_m` is the range that is beyond the face.
     fn step(&mut self, estimate: &Estimate, sign: f32, jump_m: f32) -> Swept {
         if self.target_rad == 0.0 {
@@ -199,11 +199,11 @@ impl Sweep {
 pub(super) struct Lane {
     stage: Stage,
     heading_rad: f32,
-    ahead: Ahead,
+    ahead: FaceAhead,
     stop: StopState,
     line: LineState,
     turn: TurnState,
-    sweep: Sweep,
+    sweep: SweepSide,
     face_m: f32,
     right_rad: Option<f32>,
     left_rad: Option<f32>,
@@ -314,7 +314,7 @@ impl Mission<'_> {
             }
             Stopping::Done => {
                 lane.stage = Stage::SweepRight;
-                lane.sweep = Sweep::default();
+                lane.sweep = SweepSide::default();
                 lane.face_m = range_m;
                 return Drive::Release;
             }
@@ -357,7 +357,7 @@ impl Lane {
             Swept::Open(angle_rad) => Some(angle_rad),
             Swept::Closed => None,
         };
-        self.sweep = Sweep::default();
+        self.sweep = SweepSide::default();
         if right {
             self.right_rad = found;
             self.stage = Stage::SweepLeft;
@@ -397,7 +397,7 @@ impl Lane {
             (None, None) => PI,
         };
         self.heading_rad = wrap_angle(self.heading_rad + change_rad);
-        self.ahead = Ahead::default();
+        self.ahead = FaceAhead::default();
         self.turn = TurnState::default();
         self.stage = Stage::Turn;
     }

@@ -45,7 +45,7 @@ use beam::Beam;
 use echoes::Echoes;
 use gaze::Gaze;
 use goal::CAREFUL_M;
-use moving::Movement;
+use moving::MotionMemory;
 use obstacle::Way;
 use place::Place;
 use plan::Plan;
@@ -336,7 +336,7 @@ pub struct State {
     /// The front sonar is put to the proof.
     proof: Option<Proof>,
     /// What moves.
-    movement: Movement,
+    movement: MotionMemory,
 }
 
 impl Phase {

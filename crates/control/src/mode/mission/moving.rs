@@ -138,7 +138,7 @@ pub(super) struct Approach {
 
 /// What is known of things that move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Movement {
+pub(super) struct MotionMemory {
     /// The last that approached, and how long that still counts.
     last: Approach,
     lively_ticks: u16,
@@ -226,7 +226,7 @@ impl Track {
     }
 }
 
-impl Movement {
+impl MotionMemory {
     /// One tick, in which something was seen to approach, or to move before a robot that stands, or not.
     pub(super) fn step(&mut self, approach: Option<&Approach>, moves: bool, turned_rad: f32) {
         self.lively_ticks = self.lively_ticks.saturating_sub(1);

@@ -13,12 +13,12 @@ fn pin(letter: char, bit: u8) -> Pin {
 #[test]
 fn registers_lie_where_the_datasheet_has_them() {
     for (address, expected) in [
-        (0x20, (0, Register::Pin)),
-        (0x25, (1, Register::Output)),
-        (0x34, (6, Register::Output)),
-        (0x100, (7, Register::Pin)),
-        (0x104, (8, Register::Direction)),
-        (0x10B, (10, Register::Output)),
+        (0x20, (0, PortRegister::Pin)),
+        (0x25, (1, PortRegister::Output)),
+        (0x34, (6, PortRegister::Output)),
+        (0x100, (7, PortRegister::Pin)),
+        (0x104, (8, PortRegister::Direction)),
+        (0x10B, (10, PortRegister::Output)),
     ] {
         assert_eq!(register(address), Some(expected));
     }

@@ -11,7 +11,7 @@ use super::ports::Pin;
 use super::prescaler::Prescaler;
 use super::schedule::Source;
 use super::{Core, Event, Pwm};
-use crate::model::timer::{ASYNCHRONOUS, CAPTURE, CHANNELS, MATCH, OVERFLOW, Place};
+use crate::model::timer::{ASYNCHRONOUS, CAPTURE, CHANNELS, MATCH, OVERFLOW, TimerInstance};
 pub(crate) use registers::{read_general_control, write_general_control};
 use wave::{Top, Wave};
 
@@ -38,7 +38,7 @@ enum Clock {
 /// One timer.
 #[derive(Clone, Debug)]
 pub(crate) struct Timer {
-    place: &'static Place,
+    place: &'static TimerInstance,
     wave: Wave,
     clock: Clock,
     control: [u8; 3],
@@ -64,7 +64,7 @@ pub(crate) struct Timer {
 }
 
 /// After reset.
-pub(crate) fn new(place: &'static Place) -> Timer {
+pub(crate) fn new(place: &'static TimerInstance) -> Timer {
     Timer {
         place,
         wave: Wave::new(place.wide, place.channels),

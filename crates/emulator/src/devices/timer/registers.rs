@@ -7,7 +7,7 @@ use super::wave::{Mode, Top};
 use super::{AS2, Clock, Timer};
 use crate::devices::Core;
 use crate::io::{Access, Counter};
-use crate::model::timer::{ASYNCHRONOUS, CAPTURE, CHANNELS, OVERFLOW, Register};
+use crate::model::timer::{ASYNCHRONOUS, CAPTURE, CHANNELS, OVERFLOW, TimerRegister as Register};
 
 /// In GTCCR: hold, and the prescalers' resets.
 const TSM: u8 = 0x80;

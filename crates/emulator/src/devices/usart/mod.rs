@@ -16,7 +16,7 @@ use super::ports::{Force, Pin};
 use super::schedule::Source;
 use super::{CLOCK_HZ, Core, Event};
 use crate::io::Access;
-use crate::model::usart::{Place, Register};
+use crate::model::usart::{UsartInstance, UsartRegister};
 use clocked::Clocked;
 use format::Format;
 use line::Line;
@@ -43,7 +43,7 @@ const TXB8: u8 = 0x01;
 /// One USART.
 #[derive(Clone, Debug)]
 pub(crate) struct Usart {
-    place: &'static Place,
+    place: &'static UsartInstance,
     /// U2X and MPCM.
     settings: u8,
     control_b: u8,
@@ -64,7 +64,7 @@ pub(crate) struct Usart {
 }
 
 /// After reset.
-pub(crate) fn new(place: &'static Place) -> Usart {
+pub(crate) fn new(place: &'static UsartInstance) -> Usart {
     Usart {
         place,
         settings: 0,
@@ -309,7 +309,7 @@ impl Usart {
 
     /// A register reads the same until something happens, and a read changes nothing.
     pub(crate) fn is_steady(&self, address: u16) -> bool {
-        let data = matches!(self.place.register(address), Some(Register::Data));
+        let data = matches!(self.place.register(address), Some(UsartRegister::Data));
         !data && !self.is_clocked()
     }
 
@@ -320,12 +320,12 @@ impl Usart {
             .first()
             .is_some_and(|first| first.data >= 0x100);
         match self.place.register(address) {
-            Some(Register::StatusA) => self.flags() | self.settings,
-            Some(Register::ControlB) => self.control_b | if ninth { RXB8 } else { 0 },
-            Some(Register::ControlC) => self.control_c,
-            Some(Register::RateLow) => self.divisor.to_le_bytes()[0],
-            Some(Register::RateHigh) => self.divisor.to_le_bytes()[1],
-            Some(Register::Data) => {
+            Some(UsartRegister::StatusA) => self.flags() | self.settings,
+            Some(UsartRegister::ControlB) => self.control_b | if ninth { RXB8 } else { 0 },
+            Some(UsartRegister::ControlC) => self.control_c,
+            Some(UsartRegister::RateLow) => self.divisor.to_le_bytes()[0],
+            Some(UsartRegister::RateHigh) => self.divisor.to_le_bytes()[1],
+            Some(UsartRegister::Data) => {
                 let received = self.receiver.take();
                 self.request(core);
                 received.data.to_le_bytes()[0]
@@ -338,33 +338,33 @@ impl Usart {
         self.catch_up(core, at.cycle);
         let [low, high] = self.divisor.to_le_bytes();
         match self.place.register(address) {
-            Some(Register::StatusA) => {
+            Some(UsartRegister::StatusA) => {
                 self.transmitter.complete &= value & TXC == 0;
                 self.settings = value & (U2X | MPCM);
                 self.set_rate(self.rate.origin, at.cycle);
             }
-            Some(Register::ControlB) => self.set_control(core, value, at.cycle),
-            Some(Register::ControlC) => {
+            Some(UsartRegister::ControlB) => self.set_control(core, value, at.cycle),
+            Some(UsartRegister::ControlC) => {
                 self.control_c = value;
                 self.set_format();
                 self.set_rate(self.rate.origin, at.cycle);
                 self.drive_pins(core, at.cycle);
             }
-            Some(Register::RateLow) => {
+            Some(UsartRegister::RateLow) => {
                 self.divisor = u16::from_le_bytes([value, high]);
                 self.set_rate(at.cycle, at.cycle);
             }
-            Some(Register::RateHigh) => {
+            Some(UsartRegister::RateHigh) => {
                 self.divisor = u16::from_le_bytes([low, value & 0x0F]);
                 self.set_rate(at.cycle, at.cycle);
             }
-            Some(Register::Data) if self.control_b & TXEN != 0 => {
+            Some(UsartRegister::Data) if self.control_b & TXEN != 0 => {
                 let ninth = u8::from(self.control_b & TXB8 != 0);
                 let data = u16::from_le_bytes([value, ninth]);
                 self.transmitter
                     .write(data, self.format, self.rate, at.cycle);
             }
-            Some(Register::Data) => {
+            Some(UsartRegister::Data) => {
                 self.unsent_at.get_or_insert(at.program_counter);
             }
             None => {}

@@ -2,7 +2,7 @@
 
 use super::setup;
 use rumbo_control::Pose;
-use rumbo_control::odometry::{Piece, Uncertainty};
+use rumbo_control::odometry::{PathStep, Uncertainty};
 use rumbo_control::params::Params;
 use rumbo_experiment::files::Setup;
 use rumbo_experiment::run::{prepare, run};
@@ -21,8 +21,8 @@ fn end_of(setup: &Setup, seed: u64) -> (Pose, [[f64; 3]; 3], [f64; 3]) {
         let FromRobot::Telemetry(telemetry) = message.what else {
             continue;
         };
-        let piece = Piece::between(&pose, &telemetry.pose, errors.base_m);
-        uncertainty.advance(&errors, &piece);
+        let step = PathStep::between(&pose, &telemetry.pose, errors.base_m);
+        uncertainty.advance(&errors, &step);
         pose = telemetry.pose;
     }
     let last = result.trace.samples.last().unwrap();

@@ -36,7 +36,7 @@ fn after(answers: &[(Range, f32)]) -> Echoes {
 
 /// All points.
 fn places(echoes: &Echoes) -> impl Iterator<Item = Place> + '_ {
-    echoes.points().iter().filter_map(Echo::place)
+    echoes.points().iter().filter_map(ObstaclePoint::place)
 }
 
 fn count(echoes: &Echoes) -> usize {

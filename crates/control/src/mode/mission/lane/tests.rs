@@ -27,7 +27,7 @@ fn between(left: Range, right: Range) -> Estimate {
 
 #[test]
 fn one_wrong_look_ahead_changes_nothing_and_way_rolled_counts() {
-    let mut ahead = Ahead::default();
+    let mut ahead = FaceAhead::default();
     ahead.step(&hears(Range::Valid(0.8), 0.0), 0.0);
     ahead.step(&hears(Range::Valid(0.8), 0.0), 0.0);
     assert_eq!(ahead.range_m(), None, "two looks are too few");
@@ -47,8 +47,8 @@ fn one_wrong_look_ahead_changes_nothing_and_way_rolled_counts() {
 
 #[test]
 fn a_face_that_looks_agreed_on_is_missing_until_it_is_seen_again_or_one_behind_it_is() {
-    let look = |ahead: &mut Ahead, range: Range| ahead.step(&hears(range, 0.0), 0.0);
-    let mut ahead = Ahead::default();
+    let look = |ahead: &mut FaceAhead, range: Range| ahead.step(&hears(range, 0.0), 0.0);
+    let mut ahead = FaceAhead::default();
     (0..5).for_each(|_| look(&mut ahead, Range::Valid(0.5)));
     assert!(!ahead.is_missing());
     for (range_m, missing) in [(1.9, false), (2.4, false), (0.9, false), (1.4, true)] {
@@ -66,14 +66,14 @@ fn a_face_that_looks_agreed_on_is_missing_until_it_is_seen_again_or_one_behind_i
 
 #[test]
 fn a_look_across_the_lane_is_none_ahead() {
-    let mut ahead = Ahead::default();
+    let mut ahead = FaceAhead::default();
     (0..5).for_each(|_| ahead.step(&hears(Range::Valid(0.5), 0.0), 0.3));
     assert_eq!(ahead.range_m(), None);
 }
 
 /// A sweep over a face that ends at `end_rad`, with a look lost at `lost_rad`.
 fn swept(sign: f32, end_rad: f32, lost_rad: f32) -> Swept {
-    let mut sweep = Sweep::default();
+    let mut sweep = SweepSide::default();
     for _ in 0..100 {
         let at_rad = sweep.target_rad;
         let lost = (at_rad - lost_rad).abs() < 0.5 * STEP_RAD;
@@ -107,7 +107,7 @@ fn a_lost_echo_is_no_opening_and_a_face_without_end_is_closed() {
 
 #[test]
 fn a_look_of_before_the_servo_got_there_does_not_count() {
-    let mut sweep = Sweep::default();
+    let mut sweep = SweepSide::default();
     sweep.step(&hears(Range::Clear, 0.0), 1.0, 0.6);
     let target_rad = sweep.target_rad;
     sweep.step(&hears(Range::Clear, 0.0), 1.0, 0.6);

@@ -114,7 +114,7 @@ fn pause_ticks(x_m: f32, moves: impl Fn(u16) -> bool) -> u16 {
         estimate.motion.left.standing,
         estimate.motion.right.standing,
     ) = (true, true);
-    let mut movement = Movement::default();
+    let mut movement = MotionMemory::default();
     movement.pause(x_m);
     let mut tick = 0;
     loop {
@@ -139,7 +139,7 @@ fn a_pause_before_a_detour_is_as_long_as_the_place_says_and_longer_where_somethi
 
 #[test]
 fn the_servo_stays_with_something_new_and_looks_ahead_for_a_while() {
-    let mut movement = Movement::default();
+    let mut movement = MotionMemory::default();
     assert_eq!(movement.swing(false), None);
     movement.wonder(0.7);
     assert_eq!(movement.swing(false), Some((-AROUND_RAD, 0.7)));
