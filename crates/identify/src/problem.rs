@@ -330,38 +330,26 @@ pub(crate) fn dead_zone_pwm(params: &Params, on_floor: bool) -> f64 {
     let mut params = *params;
     params.floor.roughness = 0.0;
     let drivetrain = Drivetrain::new(&params, Noise::new(0, 0), on_floor);
-    let moves = |side: Side, forward: bool, duty: f64| {
-        let bridge = if forward {
-            Bridge::Forward(duty)
-        } else {
-            Bridge::Backward(duty)
-        };
+    let moves = |side: Side, duty: f64| {
+        let bridge = Bridge::driven(duty);
         let mut state = drivetrain.start();
         drivetrain.set_bridge(&mut state, Side::Left, bridge);
         drivetrain.set_bridge(&mut state, Side::Right, bridge);
         drivetrain.step(&mut state, 0.001, [0.0; 2]);
         state.wheels[side.index()].speed_rad_s != 0.0
     };
-    let threshold = |side: Side, forward: bool| {
+    let threshold = |(side, direction): (Side, f64)| {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..30 {
             let middle = 0.5 * (low + high);
-            if moves(side, forward, middle) {
-                high = middle
-            } else {
-                low = middle
+            match moves(side, direction * middle) {
+                true => high = middle,
+                false => low = middle,
             }
         }
         high * 255.0
     };
-    let all = [
-        (Side::Left, true),
-        (Side::Left, false),
-        (Side::Right, true),
-        (Side::Right, false),
-    ];
-    all.map(|(side, forward)| threshold(side, forward))
-        .iter()
-        .sum::<f64>()
-        / 4.0
+    let wheels = [Side::Left, Side::Right].into_iter();
+    let ways = wheels.flat_map(|side| [(side, 1.0), (side, -1.0)]);
+    ways.map(threshold).sum::<f64>() / 4.0
 }

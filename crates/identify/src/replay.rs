@@ -278,14 +278,7 @@ impl<'a> Replay<'a> {
 
     fn apply(&self, state: &mut State, row: &LogRow) {
         for side in [Side::Left, Side::Right] {
-            let duty = row.duty[side.index()];
-            let bridge = if duty > 0.0 {
-                Bridge::Forward(duty)
-            } else if duty < 0.0 {
-                Bridge::Backward(-duty)
-            } else {
-                Bridge::Released
-            };
+            let bridge = Bridge::driven(row.duty[side.index()]);
             self.drivetrain.set_bridge(state, side, bridge);
         }
     }

@@ -21,6 +21,20 @@ pub enum Bridge {
     Brake(f64),
 }
 
+impl Bridge {
+    /// Driven by a duty of -1 to 1: backward below 0, released at 0.
+    #[must_use]
+    pub fn driven(duty: f64) -> Bridge {
+        if duty > 0.0 {
+            Bridge::Forward(duty)
+        } else if duty < 0.0 {
+            Bridge::Backward(-duty)
+        } else {
+            Bridge::Released
+        }
+    }
+}
+
 /// How the current of a motor falls between the pulses of its PWM.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Decay {

@@ -486,14 +486,7 @@ impl Sim {
 }
 
 fn bridge(duty: Duty) -> Bridge {
-    let share = f64::from(duty.counts()) / f64::from(Duty::MAX);
-    if duty == Duty::RELEASED {
-        Bridge::Released
-    } else if share > 0.0 {
-        Bridge::Forward(share)
-    } else {
-        Bridge::Backward(-share)
-    }
+    Bridge::driven(f64::from(duty.counts()) / f64::from(Duty::MAX))
 }
 
 fn plant_side(side: rumbo_control::Side) -> Side {
