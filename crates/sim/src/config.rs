@@ -1,6 +1,7 @@
 //! What a simulation is made from, in plain values.
 
 use crate::floor::DarkLine;
+use crate::light::Light;
 use crate::mega::firmware::Firmware;
 use crate::sonar_fault::TimedSonarFault;
 use crate::wire_fault::TimedWireFault;
@@ -24,6 +25,8 @@ pub struct Config {
     pub world: World,
     /// The dark lines on its floor.
     pub lines: Arc<[DarkLine]>,
+    /// Its lamps, and the light of the room.
+    pub light: Arc<Light>,
     /// Start pose in the world.
     pub start: Pose,
     /// The wheels turn freely: no floor, the body stays where it is.

@@ -16,6 +16,7 @@ mod error;
 pub mod fleet;
 pub mod floor;
 mod instruments;
+pub mod light;
 pub mod mega;
 mod notes;
 pub mod obstacle;

@@ -87,13 +87,8 @@ impl ObstacleSensor {
             Sight::Volts if before.is_some() && now_us % READING_US >= 1_000 => return None,
             Sight::Volts => (BEAM_RAD, VOLTS[VOLTS.len() - 1].0),
         };
-        let (sin, cos) = libm::sincos(pose.heading_rad);
-        let [x_m, y_m] = self.at_m;
         let cone = Cone {
-            apex: [
-                pose.x_m + cos * x_m - sin * y_m,
-                pose.y_m + sin * x_m + cos * y_m,
-            ],
+            apex: pose.place(self.at_m),
             axis_rad: pose.heading_rad + self.angle_rad,
             half_angle_rad,
         };

@@ -4,6 +4,7 @@ use crate::boards::Board;
 use crate::bus::{BusDevice, DeviceKind};
 use crate::drivers::Driver;
 use crate::floor::LineSensor;
+use crate::light::LightSensor;
 use crate::obstacle::ObstacleSensor;
 use crate::remote::Key;
 use std::collections::BTreeMap;
@@ -57,6 +58,8 @@ pub struct Wiring {
     pub line_sensors: Vec<LineSensor>,
     /// Infrared sensors for obstacles.
     pub obstacle_sensors: Vec<ObstacleSensor>,
+    /// Light sensors.
+    pub light_sensors: Vec<LightSensor>,
     /// What else is at pins: what a person works, and what shows something.
     pub parts: Vec<Part>,
     /// The devices on the two-wire bus.
@@ -105,6 +108,8 @@ impl Wiring {
         let sensors = sensors.map(|sensor| (sensor.name.as_str(), sensor.pin));
         let obstacles = self.obstacle_sensors.iter();
         let obstacles = obstacles.map(|sensor| (sensor.name.as_str(), sensor.pin));
+        let lights = self.light_sensors.iter();
+        let lights = lights.map(|sensor| (sensor.name.as_str(), sensor.pin));
         let interrupts = self.bus.iter().filter_map(|device| match device.kind {
             DeviceKind::Mpu6050 { interrupt, .. } => Some((device.name.as_str(), interrupt?)),
             _ => None,
@@ -117,6 +122,7 @@ impl Wiring {
             .chain(parts)
             .chain(sensors)
             .chain(obstacles)
+            .chain(lights)
             .chain(interrupts)
             .chain(lines);
         all.find(|(_, on)| *on == pin).map(|(name, _)| name)

@@ -3,8 +3,7 @@
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
 use rumbo_experiment::files::new_robot::{
-    BATTERY, GearMotor, JUMPERS, LINE, LINK_BAUD, MOTORS, OBSTACLE, SERVO_AHEAD, SERVO_REVERSED,
-    SHARP, is_of_sonar,
+    BATTERY, GearMotor, JUMPERS, LINK_BAUD, MOTORS, NAMED, SERVO_AHEAD, SERVO_REVERSED, is_of_sonar,
 };
 use rumbo_experiment::files::{TimedText, TypedPort, check_line, parameters, placed, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
@@ -57,8 +56,7 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
         "right_servo" => "right_backward",
         other => other,
     };
-    let named = [LINE, OBSTACLE, SHARP];
-    let is_named = named.iter().any(|begin| signal.starts_with(begin));
+    let is_named = NAMED.iter().any(|(begin, _)| signal.starts_with(begin));
     let said = [
         LINK_BAUD,
         SERVO_AHEAD,
@@ -68,10 +66,11 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
     ];
     if !SIGNALS.contains(&signal) && !is_named && !said.contains(&signal) && !is_of_sonar(signal) {
         return Err(format!(
-            "no signal `{signal}`; there are {}, {}, and with a name of yours {LINE}NAME, {OBSTACLE}NAME, {SHARP}NAME, \
-             NAME_trigger and NAME_echo of a sonar",
+            "no signal `{signal}`; there are {}, {}, and with a name of yours {}, NAME_trigger and NAME_echo of a \
+             sonar",
             SIGNALS.join(", "),
-            said.join(", ")
+            said.join(", "),
+            NAMED.map(|(begin, _)| format!("{begin}NAME")).join(", ")
         ));
     }
     if signal == SERVO_AHEAD
@@ -125,7 +124,7 @@ pub(super) fn sensor(text: &str) -> Result<(String, [f64; 3]), &'static str> {
     });
     read.ok_or(
         "write it as left=0.05:0.07:90 or line_rear=-0.05:0, x and y in m and the direction in degrees; of a sonar by its name, and \
-         of line_NAME, obstacle_NAME, sharp_NAME",
+         of line_NAME, obstacle_NAME, sharp_NAME, light_NAME",
     )
 }
 

@@ -14,6 +14,7 @@ pub mod firmware;
 mod fit;
 mod kept;
 mod library;
+mod light;
 mod line;
 mod mover;
 mod names;

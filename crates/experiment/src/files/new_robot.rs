@@ -2,16 +2,14 @@
 
 use super::error::FileError;
 use super::new_plant::{encoder, plant};
-use super::new_sensors::{
-    line_sensors, obstacle_sensors, place_of, quoted, signals, sonars, usual_place,
-};
+use super::new_sensors::{place_of, quoted, rows, signals, sonars, usual_place};
 use super::{Kind, Library, RobotFile};
 use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::{Direction, Driver};
 use rumbo_sim::wiring::{Wiring, is_driver_input};
 
 pub use super::new_plant::{GearMotor, MOTORS, Measured, counted};
-pub use super::new_sensors::{LINE, OBSTACLE, SHARP};
+pub use super::new_sensors::NAMED;
 pub use super::sonars::is_of_sonar;
 
 /// A driver that is chosen with its enables held by jumpers.
@@ -223,8 +221,7 @@ impl NewRobot {
             };
             put(format!("parts.{name} = {{ {kind} = {place}{more} }}"));
         }
-        text.push_str(&line_sensors(OWN, &self.pins, &self.sensors));
-        text.push_str(&obstacle_sensors(OWN, &self.pins, &self.sensors));
+        text.push_str(&rows(OWN, &self.pins, &self.sensors));
         text.push_str(&plant(driver, self.four_wheels, &self.measured));
         if given("left_encoder") || given("right_encoder") {
             text.push_str(&encoder(&self.measured));

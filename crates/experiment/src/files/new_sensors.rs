@@ -5,31 +5,71 @@ use super::sonars::{self, is_of_sonar};
 use rumbo_sim::wiring::SONARS;
 use std::fmt::Write;
 
-/// How the name of a line sensor begins among the pins, before a name of its own.
-pub const LINE: &str = "line_";
-/// How the name of an infrared switch for obstacles begins.
-pub const OBSTACLE: &str = "obstacle_";
-/// How that of a Sharp begins, which gives a voltage.
-pub const SHARP: &str = "sharp_";
-
-/// What may be said of all sensors of a kind in place of one, and the key that says it: `line_dark=low`.
-const OF_LINES: [(&str, &str); 4] = [
-    ("line_dark", "dark"),
-    ("line_rc", "rc"),
-    ("line_light_v", "light_v"),
-    ("line_dark_v", "dark_v"),
+/// How the names of sensors begin among the pins, before a name of its own, and their table in a wiring: a Sharp gives a
+/// voltage.
+pub const NAMED: [(&str, &str); 4] = [
+    ("line_", "line"),
+    ("obstacle_", "obstacle"),
+    ("sharp_", "obstacle"),
+    ("light_", "light"),
 ];
-const OF_OBSTACLES: [(&str, &str); 2] =
-    [("obstacle_seen", "seen"), ("obstacle_reach_m", "reach_m")];
 
-/// Line sensors are so far ahead, and so far apart \[m\]; two stand beside the tape, one on each side.
-const LINE_AHEAD_M: f64 = 0.09;
-const PITCH_M: f64 = 0.015;
-const ASTRIDE_M: f64 = 0.04;
-/// Those for obstacles are so far ahead, so far apart \[m\], and look so far apart \[deg\].
-const AHEAD_M: f64 = 0.11;
-const APART_M: f64 = 0.05;
-const APART_DEG: f64 = 30.0;
+/// Sensors of a kind, which stand in a row from left to right.
+struct InRow {
+    /// Their table in a wiring.
+    table: &'static str,
+    /// Its comment.
+    about: &'static str,
+    /// What may be said of all of them in place of one, and the key that says it: `line_dark=low`.
+    of_all: &'static [(&'static str, &'static str)],
+    /// So far ahead \[m\].
+    ahead_m: f64,
+    /// From one to the next of so many \[m\].
+    apart_m: fn(usize) -> f64,
+    /// They look so far apart \[deg\].
+    apart_deg: f64,
+}
+
+/// Two stand beside the tape, one on each side.
+const LINES: InRow = InRow {
+    table: "line",
+    about: "Sensors that look down, from left to right: measure where they are. Over a dark floor they are high, unless\n\
+            # dark = \"low\".",
+    of_all: &[
+        ("line_dark", "dark"),
+        ("line_rc", "rc"),
+        ("line_light_v", "light_v"),
+        ("line_dark_v", "dark_v"),
+    ],
+    ahead_m: 0.09,
+    apart_m: |count| if count == 2 { 0.04 } else { 0.015 },
+    apart_deg: 0.0,
+};
+
+const OBSTACLES: InRow = InRow {
+    table: "obstacle",
+    about: "Infrared sensors for obstacles, from left to right: measure where they are and look. One is low where something \
+            is\n# nearer than reach_m = 0.15, unless seen = \"high\"; an analogue one is a Sharp GP2Y0A21YK.",
+    of_all: &[("obstacle_seen", "seen"), ("obstacle_reach_m", "reach_m")],
+    ahead_m: 0.11,
+    apart_m: |_| 0.05,
+    apart_deg: 30.0,
+};
+
+const LIGHTS: InRow = InRow {
+    table: "light",
+    about: "Light sensors, from left to right: measure where they are and look. An analogue one is a photoresistor at 5 V \
+            with\n# 10 kOhm to GND, higher where it is bright, unless bright = \"low\"; another one is low above switch_lux = 50.",
+    of_all: &[
+        ("light_bright", "bright"),
+        ("light_resistor_kohm", "resistor_kohm"),
+        ("light_rated_kohm", "rated_kohm"),
+        ("light_switch_lux", "switch_lux"),
+    ],
+    ahead_m: 0.08,
+    apart_m: |_| 0.08,
+    apart_deg: 60.0,
+};
 
 /// Signals and their pins, or what is said of all sensors of a kind.
 type Pins = [(String, String)];
@@ -85,85 +125,91 @@ pub(super) fn usual_place(sonar: &str) -> Option<[f64; 3]> {
     }
 }
 
-/// The table of the line sensors, empty without any.
-pub(super) fn line_sensors(wiring: &str, pins: &Pins, places: &Places) -> String {
-    let rc = pins.iter().any(|(signal, _)| signal == "line_rc");
-    let sensors = of_kind(pins, &OF_LINES, |signal| signal.starts_with(LINE));
-    let row = in_row(&sensors, places);
-    let pitch_m = if row.len() == 2 { ASTRIDE_M } else { PITCH_M };
-    let mut text = String::new();
-    if !sensors.is_empty() {
-        let _ = write!(
-            text,
-            "\n# Sensors that look down, from left to right: measure where they are. Over a dark floor they are high, unless\n\
-             # dark = \"low\".\n[wiring.{wiring}.line]\n"
-        );
-    }
-    for (signal, pin) in sensors {
-        let usual = || [LINE_AHEAD_M, pitch_m * aside(signal, &row), 0.0];
-        let [x_m, y_m, _] = place_of(places, signal).unwrap_or_else(usual);
-        let analogue = pin.parse::<u8>().is_err() && !rc;
-        let kind = if analogue { ", analogue = true" } else { "" };
-        // Voltages are those of the analogue ones.
-        let said = said(pins, &OF_LINES, |key| analogue || !key.ends_with("_v"));
-        let (name, pin) = (&signal[LINE.len()..], quoted(pin));
-        let _ = writeln!(
-            text,
-            "{name} = {{ pin = {pin}, x_m = {x_m}, y_m = {y_m:.4}{kind}{said} }}"
-        );
-    }
-    text
+/// The tables of the sensors that stand in rows, each empty without any.
+pub(super) fn rows(wiring: &str, pins: &Pins, places: &Places) -> String {
+    let said_of_all = |key: &str| pins.iter().any(|(signal, _)| signal == key);
+    let rc = said_of_all("line_rc");
+    // What else one says of itself, and which keys that are said of all it has.
+    let is_analogue = |pin: &str| pin.parse::<u8>().is_err();
+    let line = |_: &str, pin: &str| match is_analogue(pin) && !rc {
+        true => (ANALOGUE, &[][..]),
+        false => ("", &["light_v", "dark_v"][..]),
+    };
+    let obstacle = |signal: &str, _: &str| match signal.starts_with("sharp_") {
+        true => (ANALOGUE, &["seen", "reach_m"][..]),
+        false => ("", &[][..]),
+    };
+    let modules = said_of_all("light_switch_lux");
+    let light = |_: &str, pin: &str| match is_analogue(pin) && !modules {
+        true => (ANALOGUE, &[][..]),
+        false => ("", &["resistor_kohm"][..]),
+    };
+    [
+        LINES.text(wiring, pins, places, line),
+        OBSTACLES.text(wiring, pins, places, obstacle),
+        LIGHTS.text(wiring, pins, places, light),
+    ]
+    .concat()
 }
 
-/// The table of the infrared sensors for obstacles, empty without any.
-pub(super) fn obstacle_sensors(wiring: &str, pins: &Pins, places: &Places) -> String {
-    let sensors = of_kind(pins, &OF_OBSTACLES, |signal| {
-        signal.starts_with(OBSTACLE) || signal.starts_with(SHARP)
-    });
-    let row = in_row(&sensors, places);
-    let mut text = String::new();
-    if !sensors.is_empty() {
-        let _ = write!(
-            text,
-            "\n# Infrared sensors for obstacles, from left to right: measure where they are and look. One is low where something is\n\
-             # nearer than reach_m = 0.15, unless seen = \"high\"; an analogue one is a Sharp GP2Y0A21YK.\n[wiring.{wiring}.obstacle]\n"
-        );
-    }
-    for (signal, pin) in sensors {
-        let aside = aside(signal, &row);
-        let usual = [AHEAD_M, APART_M * aside, APART_DEG * aside];
-        let [x_m, y_m, angle_deg] = place_of(places, signal).unwrap_or(usual);
-        let (name, more) = match signal.strip_prefix(SHARP) {
-            Some(name) => (name, ", analogue = true".to_owned()),
-            None => (
-                &signal[OBSTACLE.len()..],
-                said(pins, &OF_OBSTACLES, |_| true),
-            ),
-        };
-        let pin = quoted(pin);
-        let _ = writeln!(
-            text,
-            "{name} = {{ pin = {pin}, x_m = {x_m}, y_m = {y_m:.3}, angle_deg = {angle_deg}{more} }}"
-        );
-    }
-    text
-}
+const ANALOGUE: &str = ", analogue = true";
 
-/// Sensors of a kind, without what is said of all of them.
-fn of_kind<'a>(
-    pins: &'a Pins,
-    of_all: &[(&str, &str)],
-    is_kind: impl Fn(&str) -> bool,
-) -> Vec<(&'a str, &'a str)> {
-    let signals = pins.iter().map(|(signal, pin)| (&signal[..], &pin[..]));
-    let own = signals
-        .filter(|(signal, _)| is_kind(signal) && of_all.iter().all(|(all, _)| all != signal));
-    own.collect()
+impl InRow {
+    /// Their table, empty without any; `more` is what one says of itself, and which keys of all it has not.
+    fn text<'k>(
+        &self,
+        wiring: &str,
+        pins: &Pins,
+        places: &Places,
+        more: impl Fn(&str, &str) -> (&'k str, &'k [&'k str]),
+    ) -> String {
+        let sensors = self.sensors(pins);
+        let row = in_row(&sensors, places);
+        let mut text = String::new();
+        if !sensors.is_empty() {
+            let Self { about, table, .. } = self;
+            let _ = write!(text, "\n# {about}\n[wiring.{wiring}.{table}]\n");
+        }
+        for (signal, name, pin) in sensors {
+            let aside = aside(signal, &row);
+            let usual = [
+                self.ahead_m,
+                (self.apart_m)(row.len()) * aside,
+                self.apart_deg * aside,
+            ];
+            let [x_m, y_m, angle_deg] = place_of(places, signal).unwrap_or(usual);
+            let looks = match self.apart_deg {
+                0.0 => String::new(),
+                _ => format!(", angle_deg = {angle_deg}"),
+            };
+            let (more, lacks) = more(signal, pin);
+            let said = said(pins, self.of_all, |key| !lacks.contains(&key));
+            let pin = quoted(pin);
+            let _ = writeln!(
+                text,
+                "{name} = {{ pin = {pin}, x_m = {x_m}, y_m = {y_m:.4}{looks}{more}{said} }}"
+            );
+        }
+        text
+    }
+
+    /// Signal, own name and pin of each, without what is said of all of them.
+    fn sensors<'a>(&self, pins: &'a Pins) -> Vec<(&'a str, &'a str, &'a str)> {
+        let begins = NAMED.iter().filter(|(_, table)| *table == self.table);
+        let sensors = pins.iter().filter_map(|(signal, pin)| {
+            let name = begins
+                .clone()
+                .find_map(|(begin, _)| signal.strip_prefix(begin))?;
+            let is_one = self.of_all.iter().all(|(all, _)| all != signal);
+            is_one.then_some((&signal[..], name, &pin[..]))
+        });
+        sensors.collect()
+    }
 }
 
 /// The signals whose place is that in a row, as nobody said another.
-fn in_row<'a>(sensors: &[(&'a str, &str)], places: &Places) -> Vec<&'a str> {
-    let signals = sensors.iter().map(|(signal, _)| *signal);
+fn in_row<'a>(sensors: &[(&'a str, &str, &str)], places: &Places) -> Vec<&'a str> {
+    let signals = sensors.iter().map(|(signal, ..)| *signal);
     signals
         .filter(|signal| place_of(places, signal).is_none())
         .collect()

@@ -18,6 +18,7 @@
 //! ```
 
 use super::error::{FileError, did_you_mean};
+use super::light::read_light_sensors;
 use super::line::read_line_sensors;
 use super::obstacle::read_obstacle_sensors;
 use super::parameters::read_parameters;
@@ -243,6 +244,7 @@ fn read_wiring(
     read_parts(&table.table("parts"), &mut wiring);
     read_line_sensors(&table.table("line"), &mut wiring);
     read_obstacle_sensors(&table.table("obstacle"), &mut wiring);
+    read_light_sensors(&table.table("light"), &mut wiring);
     suits_driver(table, &wiring);
     for (signal, pin) in &wiring.pins {
         if wiring.shield_pins().any(|taken| taken == *pin) {

@@ -229,6 +229,7 @@ impl Setup {
             rig: setup.rig,
             world,
             lines: setup.world.lines.clone().into(),
+            light: setup.world.light.clone().into(),
             start: pose(&scenario.start),
             wheels_in_air: scenario.wheels_in_air,
             program,

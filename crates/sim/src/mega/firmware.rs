@@ -6,6 +6,7 @@ use crate::boards::Board;
 use crate::bus::BusDevice;
 use crate::error::SimError;
 use crate::floor::LineSensor;
+use crate::light::LightSensor;
 use crate::obstacle::ObstacleSensor;
 use crate::wiring::{Motor, Part, Wiring};
 use rumbo_emulator::chip::Chip;
@@ -52,6 +53,7 @@ pub struct Firmware {
     parts: Vec<Part>,
     line_sensors: Vec<LineSensor>,
     obstacle_sensors: Vec<ObstacleSensor>,
+    light_sensors: Vec<LightSensor>,
     bus: Vec<BusDevice>,
     motors: [Option<Motor>; 2],
 }
@@ -78,6 +80,7 @@ impl Firmware {
             parts: pins.parts.clone(),
             line_sensors: pins.line_sensors.clone(),
             obstacle_sensors: pins.obstacle_sensors.clone(),
+            light_sensors: pins.light_sensors.clone(),
             bus: pins.bus.clone(),
             motors: pins.motors,
             link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
@@ -131,6 +134,11 @@ impl Firmware {
     /// Its infrared sensors for obstacles.
     pub fn obstacle_sensors(&self) -> &[ObstacleSensor] {
         &self.obstacle_sensors
+    }
+
+    /// Its light sensors.
+    pub fn light_sensors(&self) -> &[LightSensor] {
+        &self.light_sensors
     }
 
     /// The devices on its two-wire bus.

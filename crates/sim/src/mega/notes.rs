@@ -133,12 +133,16 @@ impl Mega {
             "sensors for obstacles: by what their sellers and Sharp's data sheet say, not identified"
                 .to_owned()
         });
+        let lights = (!self.firmware.light_sensors().is_empty())
+            .then(|| "light sensors: GL5528 by its data sheet, not identified".to_owned());
         let mut bus = self.firmware.bus().iter();
         let imu = bus.any(|device| matches!(device.kind, DeviceKind::Mpu6050 { .. }));
         let imu = imu.then(|| {
             "accelerometer and gyroscope: MPU-6050 by its data sheet, not identified".to_owned()
         });
-        let all = [driver, sensors, obstacles, imu].into_iter().flatten();
+        let all = [driver, sensors, obstacles, lights, imu]
+            .into_iter()
+            .flatten();
         let all: Vec<String> = all.collect();
         (!all.is_empty()).then(|| all.join("; "))
     }

@@ -29,6 +29,10 @@ impl Sim {
             if !mega.firmware().obstacle_sensors().is_empty() {
                 mega.see_obstacles(self.world(), &self.pose(), self.now_us());
             }
+            if !mega.firmware().light_sensors().is_empty() {
+                let (now_us, pose) = (self.now_us(), self.pose());
+                mega.see_light(&self.light, self.world(), &pose, now_us, &self.noise);
+            }
             if !mega.firmware().bus().is_empty() {
                 let [forward_m_s, yaw_rad_s] = self.state.speed();
                 let motion = Motion {

@@ -21,6 +21,7 @@ use crate::baseline::Baseline;
 use crate::config::{Config, Program};
 use crate::error::SimError;
 use crate::floor::DarkLine;
+use crate::light::Light;
 use crate::mega::Mega;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
 use crate::tape::{LinkBurst, LinkTape};
@@ -70,6 +71,7 @@ pub struct Sim {
     noise: Noise,
     /// The dark lines on the floor.
     lines: Arc<[DarkLine]>,
+    light: Arc<Light>,
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
     /// The chip is without power: its program does not run, and its pins drive nothing.
@@ -94,6 +96,7 @@ impl Sim {
             rig,
             world,
             lines,
+            light,
             start,
             wheels_in_air,
             program,
@@ -169,6 +172,7 @@ impl Sim {
             wire_faults,
             noise,
             lines,
+            light,
             outputs_us: (0, 0, 0),
             off: false,
             motors_cut: false,

@@ -7,6 +7,7 @@ mod devices;
 mod import;
 mod information;
 mod kits;
+mod lights;
 mod observe;
 mod obstacles;
 mod run;
