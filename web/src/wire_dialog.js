@@ -24,7 +24,7 @@ const PLACES = { left: 'left|wiring', right: 'right|wiring', front: 'front|wirin
 /** @type {Record<string, string>} */
 const PARTS = {
   enable: 'enable', forward: 'forward input', backward: 'backward input', encoder: 'encoder', encoder_b: 'encoder, output B', trigger: 'sonar, Trig', echo: 'sonar, Echo',
-  rx: 'the board receives', tx: 'the board sends', standby: 'standby', fault: 'fault, low', servo: 'servo', line: 'line sensor', obstacle: 'obstacle sensor', sharp: 'Sharp', light: 'light sensor',
+  rx: 'the board receives', tx: 'the board sends', standby: 'standby', fault: 'fault, low', servo: 'servo', line: 'line sensor', obstacle: 'obstacle sensor', sharp: 'Sharp', light: 'light sensor', maxsonar: 'MaxSonar',
   button: 'button', switch: 'switch|part', potentiometer: 'potentiometer', led: 'LED', buzzer: 'buzzer', infrared: 'infrared receiver', mpu6050: 'MPU-6050', ssd1306: 'display SSD1306', hd44780: 'display HD44780',
 };
 

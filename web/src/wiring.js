@@ -11,7 +11,7 @@
 /** Signals that a robot need not have. */
 export const OPTIONAL = ['left_encoder', 'left_encoder_b', 'right_encoder', 'right_encoder_b', 'servo', 'front_trigger', 'front_echo', 'left_trigger', 'left_echo', 'right_trigger', 'right_echo', 'rear_trigger', 'rear_echo', 'left_fault', 'right_fault', 'link_rx', 'link_tx'];
 /** Sensors of which there may be several, from left to right. */
-export const SENSORS = ['line', 'obstacle', 'sharp', 'light'];
+export const SENSORS = ['line', 'obstacle', 'sharp', 'light', 'maxsonar'];
 /** Where a device on the two-wire bus usually is. @type {Record<string, string>} */
 const ADDRESSES = { mpu6050: '0x68', ssd1306: '0x3c', hd44780: '0x27' };
 

@@ -17,6 +17,7 @@ pub mod fleet;
 pub mod floor;
 mod instruments;
 pub mod light;
+pub mod maxsonar;
 pub mod mega;
 mod notes;
 pub mod obstacle;

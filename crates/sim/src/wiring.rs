@@ -5,6 +5,7 @@ use crate::bus::{BusDevice, DeviceKind};
 use crate::drivers::Driver;
 use crate::floor::LineSensor;
 use crate::light::LightSensor;
+use crate::maxsonar::MaxSonar;
 use crate::obstacle::ObstacleSensor;
 use crate::remote::Key;
 use std::collections::BTreeMap;
@@ -60,6 +61,8 @@ pub struct Wiring {
     pub obstacle_sensors: Vec<ObstacleSensor>,
     /// Light sensors.
     pub light_sensors: Vec<LightSensor>,
+    /// Range finders that measure by themselves.
+    pub maxsonars: Vec<MaxSonar>,
     /// What else is at pins: what a person works, and what shows something.
     pub parts: Vec<Part>,
     /// The devices on the two-wire bus.
@@ -110,6 +113,12 @@ impl Wiring {
         let obstacles = obstacles.map(|sensor| (sensor.name.as_str(), sensor.pin));
         let lights = self.light_sensors.iter();
         let lights = lights.map(|sensor| (sensor.name.as_str(), sensor.pin));
+        let ranges = self.maxsonars.iter().flat_map(|sensor| {
+            let pins = [Some(sensor.pin), sensor.rx];
+            pins.into_iter()
+                .flatten()
+                .map(|pin| (sensor.name.as_str(), pin))
+        });
         let interrupts = self.bus.iter().filter_map(|device| match device.kind {
             DeviceKind::Mpu6050 { interrupt, .. } => Some((device.name.as_str(), interrupt?)),
             _ => None,
@@ -123,6 +132,7 @@ impl Wiring {
             .chain(sensors)
             .chain(obstacles)
             .chain(lights)
+            .chain(ranges)
             .chain(interrupts)
             .chain(lines);
         all.find(|(_, on)| *on == pin).map(|(name, _)| name)

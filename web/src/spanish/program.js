@@ -50,6 +50,7 @@ export const PROGRAM = {
   'line sensors: QTR-RC by what Pololu says of it, not identified': 'sensores de línea: QTR-RC según lo que dice Pololu, sin identificar',
   'accelerometer and gyroscope: MPU-6050 by its data sheet, not identified': 'acelerómetro y giróscopo: MPU-6050 según su hoja de datos, sin identificar',
   'light sensors: GL5528 by its data sheet, not identified': 'sensores de luz: GL5528 según su hoja de datos, sin identificar',
+  'range finders: LV-MaxSonar-EZ1 by its data sheet, not identified': 'telémetros: LV-MaxSonar-EZ1 según su hoja de datos, sin identificar',
   'sensors for obstacles: by what their sellers and Sharp\'s data sheet say, not identified': 'sensores de obstáculos: según sus vendedores y la hoja de datos de Sharp, sin identificar',
   'continuous-rotation servos': 'servos de rotación continua', 'the data sheet of Parallax\'s 900-00008, 2.0': 'la hoja de datos del 900-00008 de Parallax, 2.0',
   '{} had no pulse that turns it, shorter or longer than 1.5 ms': '{} no tuvo ningún pulso que lo haga girar, más corto o más largo que 1,5 ms',

@@ -17,7 +17,7 @@ export const WIRING = {
   'left|wiring': 'izquierda', 'right|wiring': 'derecha', 'front|wiring': 'delante', Bluetooth: 'Bluetooth',
   'rear|wiring': 'detrás', 'fault, low': 'fallo, nivel bajo', enable: 'habilitación', 'forward input': 'entrada de avance', 'backward input': 'entrada de retroceso', encoder: 'encoder', 'encoder, output B': 'encoder, salida B',
   'sonar, Trig': 'sónar, Trig', 'sonar, Echo': 'sónar, Echo', 'the board receives': 'la placa recibe', 'the board sends': 'la placa envía',
-  standby: 'standby', 'line sensor': 'sensor de línea', 'obstacle sensor': 'sensor de obstáculos', Sharp: 'Sharp', 'light sensor': 'sensor de luz',
+  standby: 'standby', 'line sensor': 'sensor de línea', 'obstacle sensor': 'sensor de obstáculos', Sharp: 'Sharp', 'light sensor': 'sensor de luz', MaxSonar: 'MaxSonar',
   button: 'pulsador', 'switch|part': 'interruptor', potentiometer: 'potenciómetro', LED: 'LED', buzzer: 'zumbador', 'infrared receiver': 'receptor de infrarrojos',
   'MPU-6050': 'MPU-6050', 'display SSD1306': 'pantalla SSD1306', 'display HD44780': 'pantalla HD44780',
 };

@@ -124,7 +124,7 @@ pub(super) fn sensor(text: &str) -> Result<(String, [f64; 3]), &'static str> {
     });
     read.ok_or(
         "write it as left=0.05:0.07:90 or line_rear=-0.05:0, x and y in m and the direction in degrees; of a sonar by its name, and \
-         of line_NAME, obstacle_NAME, sharp_NAME, light_NAME",
+         of line_NAME, obstacle_NAME, sharp_NAME, light_NAME, maxsonar_NAME",
     )
 }
 

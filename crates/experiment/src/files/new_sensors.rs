@@ -7,11 +7,12 @@ use std::fmt::Write;
 
 /// How the names of sensors begin among the pins, before a name of its own, and their table in a wiring: a Sharp gives a
 /// voltage.
-pub const NAMED: [(&str, &str); 4] = [
+pub const NAMED: [(&str, &str); 5] = [
     ("line_", "line"),
     ("obstacle_", "obstacle"),
     ("sharp_", "obstacle"),
     ("light_", "light"),
+    ("maxsonar_", "maxsonar"),
 ];
 
 /// Sensors of a kind, which stand in a row from left to right.
@@ -49,8 +50,12 @@ const LINES: InRow = InRow {
 const OBSTACLES: InRow = InRow {
     table: "obstacle",
     about: "Infrared sensors for obstacles, from left to right: measure where they are and look. One is low where something \
-            is\n# nearer than reach_m = 0.15, unless seen = \"high\"; an analogue one is a Sharp GP2Y0A21YK.",
-    of_all: &[("obstacle_seen", "seen"), ("obstacle_reach_m", "reach_m")],
+            is\n# nearer than reach_m = 0.15, unless seen = \"high\"; an analogue one is a Sharp GP2Y0A21YK, or\n# model = \"gp2y0a02\" or \"gp2y0a41\".",
+    of_all: &[
+        ("obstacle_seen", "seen"),
+        ("obstacle_reach_m", "reach_m"),
+        ("sharp_model", "model"),
+    ],
     ahead_m: 0.11,
     apart_m: |_| 0.05,
     apart_deg: 30.0,
@@ -69,6 +74,16 @@ const LIGHTS: InRow = InRow {
     ahead_m: 0.08,
     apart_m: |_| 0.08,
     apart_deg: 60.0,
+};
+
+const MAXSONARS: InRow = InRow {
+    table: "maxsonar",
+    about: "Range finders that measure by themselves, from left to right: measure where they are and look. One gives a pulse \
+            (PW),\n# an analogue one a voltage (AN).",
+    of_all: &[("maxsonar_rx", "rx")],
+    ahead_m: 0.11,
+    apart_m: |_| 0.06,
+    apart_deg: 45.0,
 };
 
 /// Signals and their pins, or what is said of all sensors of a kind.
@@ -137,17 +152,22 @@ pub(super) fn rows(wiring: &str, pins: &Pins, places: &Places) -> String {
     };
     let obstacle = |signal: &str, _: &str| match signal.starts_with("sharp_") {
         true => (ANALOGUE, &["seen", "reach_m"][..]),
-        false => ("", &[][..]),
+        false => ("", &["model"][..]),
     };
     let modules = said_of_all("light_switch_lux");
     let light = |_: &str, pin: &str| match is_analogue(pin) && !modules {
         true => (ANALOGUE, &[][..]),
         false => ("", &["resistor_kohm"][..]),
     };
+    let range = |_: &str, pin: &str| match is_analogue(pin) {
+        true => (ANALOGUE, &[][..]),
+        false => ("", &[][..]),
+    };
     [
         LINES.text(wiring, pins, places, line),
         OBSTACLES.text(wiring, pins, places, obstacle),
         LIGHTS.text(wiring, pins, places, light),
+        MAXSONARS.text(wiring, pins, places, range),
     ]
     .concat()
 }

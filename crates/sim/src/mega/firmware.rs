@@ -7,6 +7,7 @@ use crate::bus::BusDevice;
 use crate::error::SimError;
 use crate::floor::LineSensor;
 use crate::light::LightSensor;
+use crate::maxsonar::MaxSonar;
 use crate::obstacle::ObstacleSensor;
 use crate::wiring::{Motor, Part, Wiring};
 use rumbo_emulator::chip::Chip;
@@ -54,6 +55,7 @@ pub struct Firmware {
     line_sensors: Vec<LineSensor>,
     obstacle_sensors: Vec<ObstacleSensor>,
     light_sensors: Vec<LightSensor>,
+    maxsonars: Vec<MaxSonar>,
     bus: Vec<BusDevice>,
     motors: [Option<Motor>; 2],
 }
@@ -81,6 +83,7 @@ impl Firmware {
             line_sensors: pins.line_sensors.clone(),
             obstacle_sensors: pins.obstacle_sensors.clone(),
             light_sensors: pins.light_sensors.clone(),
+            maxsonars: pins.maxsonars.clone(),
             bus: pins.bus.clone(),
             motors: pins.motors,
             link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
@@ -139,6 +142,11 @@ impl Firmware {
     /// Its light sensors.
     pub fn light_sensors(&self) -> &[LightSensor] {
         &self.light_sensors
+    }
+
+    /// Its range finders that measure by themselves.
+    pub fn maxsonars(&self) -> &[MaxSonar] {
+        &self.maxsonars
     }
 
     /// The devices on its two-wire bus.

@@ -20,6 +20,7 @@
 //! | `meters` | what instruments at the wired pins show |
 //! | `marks` | when the program reaches some of its functions |
 //! | `floor`, `obstacle`, `light` | sensors for lines, for obstacles, for light |
+//! | `maxsonar` | range finders that measure by themselves |
 //! | `parts` | buttons, switches, potentiometers and remote controls |
 //! | `register` | the register of a motor shield |
 //! | `wheels` | what the program did with each motor |
@@ -40,6 +41,7 @@ mod floor;
 mod inputs;
 mod light;
 mod marks;
+mod maxsonar;
 mod meters;
 mod module;
 mod notes;
@@ -55,6 +57,7 @@ pub use notes::Note;
 
 use crate::bus::Bus;
 use crate::light::Lit;
+use crate::maxsonar::Ranging;
 use crate::obstacle::Seen;
 use crate::remote::Remote;
 use crate::sonar_fault::SonarFaults;
@@ -161,6 +164,8 @@ pub struct Mega {
     obstacles: Vec<Option<Seen>>,
     /// What each light sensor sees and gives.
     light: Vec<Option<Lit>>,
+    /// What each range finder does that measures by itself.
+    ranging: Vec<Ranging>,
     /// What has been set of each part.
     worked: Vec<f64>,
     /// The remote controls, each with the number of its part.
@@ -214,6 +219,7 @@ impl Mega {
             charges: floor::Charge::of(&firmware),
             obstacles: Vec::new(),
             light: Vec::new(),
+            ranging: Vec::new(),
             worked: Vec::new(),
             remotes: Vec::new(),
             verdict: None,
@@ -245,6 +251,7 @@ impl Mega {
         self.look_ahead();
         self.echoes = Echoes::default();
         self.light.clear();
+        self.ranging.clear();
         self.encoders = encoders;
         let wires = self.wires();
         let encoders = wires.encoders.into_iter().zip(encoders);
@@ -350,6 +357,7 @@ impl Mega {
         shown.extend(self.read_floor());
         shown.extend(self.read_obstacles());
         shown.extend(self.read_light());
+        shown.extend(self.read_ranges());
         shown.extend(self.read_imus());
         shown
     }

@@ -135,12 +135,14 @@ impl Mega {
         });
         let lights = (!self.firmware.light_sensors().is_empty())
             .then(|| "light sensors: GL5528 by its data sheet, not identified".to_owned());
+        let ranges = (!self.firmware.maxsonars().is_empty())
+            .then(|| "range finders: LV-MaxSonar-EZ1 by its data sheet, not identified".to_owned());
         let mut bus = self.firmware.bus().iter();
         let imu = bus.any(|device| matches!(device.kind, DeviceKind::Mpu6050 { .. }));
         let imu = imu.then(|| {
             "accelerometer and gyroscope: MPU-6050 by its data sheet, not identified".to_owned()
         });
-        let all = [driver, sensors, obstacles, lights, imu]
+        let all = [driver, sensors, obstacles, lights, ranges, imu]
             .into_iter()
             .flatten();
         let all: Vec<String> = all.collect();

@@ -33,6 +33,10 @@ impl Sim {
                 let (now_us, pose) = (self.now_us(), self.pose());
                 mega.see_light(&self.light, self.world(), &pose, now_us, &self.noise);
             }
+            if !mega.firmware().maxsonars().is_empty() {
+                let (from, sound) = ((self.world(), &self.pose()), &self.params.sonar);
+                mega.range(from, sound, self.now_us(), end_us);
+            }
             if !mega.firmware().bus().is_empty() {
                 let [forward_m_s, yaw_rad_s] = self.state.speed();
                 let motion = Motion {
