@@ -20,6 +20,10 @@ const POINTER_M = 0.25;
 const DEVIATIONS_95 = 1.96;
 /** Size of a goal's mark [px]. */
 const GOAL_PX = 9;
+const LAMP_PX = 5;
+/** Radius of the glow of a lamp of 1 lm, and the widest [m]. */
+const GLOW_M = 0.02;
+const MOST_GLOW_M = 1.5;
 
 /** Draws the parts of the map. */
 export class Sketch {
@@ -149,6 +153,7 @@ export class Sketch {
   /** @param {number} px @param {import('./types.js').Obstacle[]} outlines of what stands and moves */
   drawWorld(px, outlines) {
     this.drawLines();
+    this.drawLamps(px, this.scene?.lamps ?? []);
     this.drawOutlines(px, outlines);
   }
 
@@ -161,6 +166,25 @@ export class Sketch {
       context.lineWidth = width_m;
       tracePath(context, points_m, false);
       context.stroke();
+    }
+  }
+
+  /** Lamps, each with a glow as wide as it is bright. @param {number} px @param {{at_m: [number, number], lumen: number}[]} lamps */
+  drawLamps(px, lamps) {
+    const context = this.context;
+    for (const { at_m: [x, y], lumen } of lamps) {
+      const glow_m = Math.min(GLOW_M * Math.sqrt(lumen), MOST_GLOW_M);
+      const glow = context.createRadialGradient(x, y, 0, x, y, glow_m);
+      glow.addColorStop(0, colours.lamp);
+      glow.addColorStop(1, 'transparent');
+      context.globalAlpha = 0.4;
+      context.fillStyle = glow;
+      context.fillRect(x - glow_m, y - glow_m, 2 * glow_m, 2 * glow_m);
+      context.globalAlpha = 1;
+      context.fillStyle = colours.lamp;
+      context.beginPath();
+      context.arc(x, y, LAMP_PX * px, 0, 2 * Math.PI);
+      context.fill();
     }
   }
 

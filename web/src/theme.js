@@ -4,7 +4,7 @@
  * distinguishable for colour-blind people too (Okabe and Ito, 2008).
  */
 const NAMES = /** @type {const} */ ([
-  'text', 'dim', 'grid', 'line', 'panel', 'left', 'right', 'front', 'reference', 'bad', 'wall', 'robot', 'goal', 'state-0', 'state-1', 'state-2',
+  'text', 'dim', 'grid', 'line', 'panel', 'left', 'right', 'front', 'reference', 'bad', 'wall', 'robot', 'goal', 'lamp', 'state-0', 'state-1', 'state-2',
   'state-3', 'state-4', 'state-5',
 ]);
 

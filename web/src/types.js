@@ -51,6 +51,7 @@
  * @property {Pose} start Origin of the odometry in the world.
  * @property {Obstacle[]} obstacles
  * @property {{points_m: [number, number][], width_m: number}[]} [lines] Dark lines on the floor.
+ * @property {{at_m: [number, number], lumen: number}[]} [lamps]
  * @property {Mover[]} [movers] What moves, whatever the robot does.
  * @property {{name: string, footprint_m: [number, number][]}[]} [others] The other robots in the world.
  * @property {[number, number][]} footprint_m

@@ -25,7 +25,7 @@ const PLACES = { left: 'left|wiring', right: 'right|wiring', front: 'front|wirin
 /** @type {Record<string, string>} */
 const PARTS = {
   enable: 'enable', forward: 'forward input', backward: 'backward input', encoder: 'encoder', encoder_b: 'encoder, output B', trigger: 'sonar, Trig', echo: 'sonar, Echo',
-  battery: 'divider of the battery', sonar: 'sonar', other_sonar: 'sonar of another name', link: 'Bluetooth', encoders: 'encoders', encoders_b: 'encoders, output B', faults: 'faults of the driver', rx: 'the board receives', tx: 'the board sends', standby: 'standby', fault: 'fault, low', servo: 'servo', line: 'line sensor', obstacle: 'obstacle sensor', sharp: 'Sharp',
+  battery: 'divider of the battery', sonar: 'sonar', other_sonar: 'sonar of another name', link: 'Bluetooth', encoders: 'encoders', encoders_b: 'encoders, output B', faults: 'faults of the driver', rx: 'the board receives', tx: 'the board sends', standby: 'standby', fault: 'fault, low', servo: 'servo', line: 'line sensor', obstacle: 'obstacle sensor', sharp: 'Sharp', light: 'light sensor', maxsonar: 'MaxSonar',
   button: 'button', switch: 'switch|part', potentiometer: 'potentiometer', led: 'LED', buzzer: 'buzzer', infrared: 'infrared receiver', mpu6050: 'MPU-6050', vl53l0x: 'VL53L0X, distance by light', qmc5883l: 'compass QMC5883L', hmc5883l: 'compass HMC5883L', ssd1306: 'display SSD1306', hd44780: 'display HD44780',
 };
 

@@ -25,7 +25,7 @@ export const OPTIONAL = new Map([
 const SONAR = 'other_sonar';
 const AHEAD = '0.11:0:0';
 /** Sensors of which there may be several, from left to right. */
-export const SENSORS = ['line', 'obstacle', 'sharp'];
+export const SENSORS = ['line', 'obstacle', 'sharp', 'light', 'maxsonar'];
 /** Where a device on the two-wire bus usually is. @type {Record<string, string>} */
 const ADDRESSES = { mpu6050: '0x68', vl53l0x: '0x29', qmc5883l: '0x0d', hmc5883l: '0x1e', ssd1306: '0x3c', hd44780: '0x27' };
 

@@ -9,7 +9,7 @@ import { complaint, fileButton, saveFile } from './dialog.js';
 import { clickable, create, element, setText } from './dom.js';
 import { said, t } from './text.js';
 import { colours } from './theme.js';
-import { ARENA, Draft, added, anchor, arenaOf, changed, grips, has, items, met, moved, outlines, poseOf, pulled, sameItem, turned, without } from './world_shapes.js';
+import { ARENA, Draft, added, anchor, arenaOf, changed, grips, has, items, lampsOf, met, moved, outlines, poseOf, pulled, sameItem, turned, without } from './world_shapes.js';
 
 /** @typedef {import('./types.js').EditedWorld} EditedWorld */
 /** @typedef {import('./panel.js').Send} Send */
@@ -67,7 +67,7 @@ export class WorldEditor {
       this.#select({ kind: /** @type {Item['kind']} */ (kind), index: Number(index) });
     });
     this.#root.append(
-      create('div', { className: 'row' }, this.#undo, this.#redo, button(t('+ Wall'), t('Add a wall in the middle of the map'), () => this.#add('wall')), button(t('+ Box'), t('Add a box in the middle of the map'), () => this.#add('box')), this.#goal, this.#remove),
+      create('div', { className: 'row' }, this.#undo, this.#redo, button(t('+ Wall'), t('Add a wall in the middle of the map'), () => this.#add('wall')), button(t('+ Box'), t('Add a box in the middle of the map'), () => this.#add('box')), button(t('+ Lamp'), t('Add a lamp in the middle of the map'), () => this.#add('lamp')), this.#goal, this.#remove),
       create('div', { className: 'row' }, create('label', {}, `${t('selected')} `, this.#chosen), create('label', {}, `${t('grid')} `, this.#grid)),
       this.#fields,
       this.#problem,
@@ -164,7 +164,7 @@ export class WorldEditor {
     this.#show();
   }
 
-  /** @param {'wall' | 'box' | 'goal'} kind */
+  /** @param {import('./world_shapes.js').Many | 'goal'} kind */
   #add(kind) {
     if (!this.#draft) return;
     const [world, item] = added(this.#draft.world, kind, this.#map.middle(), this.#snap);
@@ -211,7 +211,7 @@ export class WorldEditor {
     for (const [index, input] of this.#fields.querySelectorAll('input.decimal').entries()) {
       const field = fields[index];
       if (!field || !(input instanceof HTMLInputElement)) continue;
-      setLimits(input, -1e3, 1e3);
+      setLimits(input, -1e3, field.unit === 'lm' ? 2e4 : 1e3);
       if (read(input) !== field.value) write(input, field.value);
     }
     const [title, walled] = ['editor-title', 'editor-walled'].map((id) => document.getElementById(id));
@@ -291,6 +291,7 @@ export class WorldEditor {
     const { world } = this.#draft;
     const { context } = sketch;
     sketch.drawArena(...arenaOf(world), px);
+    sketch.drawLamps(px, lampsOf(world));
     sketch.drawOutlines(px, outlines(world));
     sketch.drawOutlines(px, inWorld(sketch.scene && { ...sketch.scene, obstacles: [] }, { placeOf: () => null }, 0));
     const start = poseOf(world.start);
@@ -322,6 +323,7 @@ function button(text, title, act) {
 function nameOf({ kind, index }) {
   if (kind === 'wall') return t('wall {}', index + 1);
   if (kind === 'box') return t('box {}', index + 1);
+  if (kind === 'lamp') return t('lamp {}', index + 1);
   return kind === 'start' ? t('start') : kind === 'goal' ? t('goal') : t('the world');
 }
 
@@ -338,6 +340,8 @@ function fieldsOf(world, { kind, index }) {
   if (kind === 'wall' && wall) return [...two([t('from x'), 'y'], 'from_m', wall.from_m), ...two([t('to x'), 'y'], 'to_m', wall.to_m), one(t('thickness'), 'thickness_m', wall.thickness_m ?? 0)];
   const box = world.box?.[index];
   if (kind === 'box' && box) return [...two([t('middle x'), 'y'], 'centre_m', box.centre_m), ...two([t('length'), t('width')], 'size_m', box.size_m), one(t('angle'), 'angle_deg', box.angle_deg ?? 0, '°')];
+  const lamp = lampsOf(world)[index];
+  if (kind === 'lamp' && lamp) return [...two(['x', 'y'], 'at_m', lamp.at_m), one(t('height'), 'height_m', lamp.height_m), one(t('luminous flux'), 'lumen', lamp.lumen, 'lm')];
   const { x_m = 0, y_m = 0, heading_deg = 0 } = world.start ?? {};
   if (kind === 'start') return [one('x', 'x_m', x_m), one('y', 'y_m', y_m), one(t('heading'), 'heading_deg', heading_deg, '°')];
   if (kind === 'goal' && world.goal_m) return two(['x', 'y'], 'goal_m', world.goal_m);

@@ -8,6 +8,7 @@ import { compose, inverse, place } from './geometry.js';
 /** @typedef {[number, number]} Point World frame [m]. */
 /** @typedef {{from_m: Point, to_m: Point, thickness_m?: number}} Wall */
 /** @typedef {{centre_m: Point, size_m: Point, angle_deg?: number}} Box */
+/** @typedef {{at_m: Point, height_m?: number, lumen?: number}} Lamp */
 /** @typedef {{x_m?: number, y_m?: number, heading_deg?: number}} Start */
 /**
  * @typedef {object} World
@@ -15,10 +16,12 @@ import { compose, inverse, place } from './geometry.js';
  * @property {{from_m?: Point, to_m?: Point, walled?: boolean}} [arena]
  * @property {Wall[]} [wall]
  * @property {Box[]} [box]
+ * @property {Lamp[]} [lamp]
  * @property {Start} [start]
  * @property {Point} [goal_m]
  */
-/** A shape of it; `arena` is the world itself. @typedef {{kind: 'wall' | 'box' | 'start' | 'goal' | 'arena', index: number}} Item */
+/** A shape of it; `arena` is the world itself. @typedef {{kind: 'wall' | 'box' | 'lamp' | 'start' | 'goal' | 'arena', index: number}} Item */
+/** Of these a world may have several. @typedef {'wall' | 'box' | 'lamp'} Many */
 /** What is held of a shape: all of it, an end, a corner (which signs of x and y), or what turns it. @typedef {'all' | 'from' | 'to' | 'turn' | Point} Grip */
 /** @typedef {{step_m: number, step_deg: number}} Snap 0: to a millimetre, to a tenth of a degree. */
 
@@ -70,6 +73,9 @@ function cornersOfWall({ from_m, to_m, thickness_m = 0 }) {
   return [[from_m[0] + nx, from_m[1] + ny], [to_m[0] + nx, to_m[1] + ny], [to_m[0] - nx, to_m[1] - ny], [from_m[0] - nx, from_m[1] - ny]];
 }
 
+/** The lamps with what they are where they do not say it: a bulb that replaces one of 60 W, on the floor. @param {World} world */
+export const lampsOf = ({ lamp = [] }) => lamp.map(({ at_m, height_m = 0.1, lumen = 806 }) => ({ at_m, height_m, lumen }));
+
 /** Every wall and box with its corners, and the sides of a walled arena. @param {World} world */
 export function outlines(world) {
   const [[x0, y0], [x1, y1]] = arenaOf(world);
@@ -85,9 +91,9 @@ export function outlines(world) {
 
 /** All shapes that can be chosen. @param {World} world @returns {Item[]} */
 export function items(world) {
-  /** @param {'wall' | 'box'} kind @returns {Item[]} */
+  /** @param {Many} kind @returns {Item[]} */
   const all = (kind) => (world[kind] ?? []).map((_shape, index) => ({ kind, index }));
-  return [ARENA, ...all('box'), ...all('wall'), { kind: 'start', index: 0 }, ...(world.goal_m ? [/** @type {Item} */ ({ kind: 'goal', index: 0 })] : [])];
+  return [ARENA, ...all('box'), ...all('wall'), ...all('lamp'), { kind: 'start', index: 0 }, ...(world.goal_m ? [/** @type {Item} */ ({ kind: 'goal', index: 0 })] : [])];
 }
 
 /** Whether it is there. @param {World} world @param {Item} item */
@@ -121,6 +127,8 @@ export function met(world, chosen, at, reach_m) {
   const held = grips(world, chosen).find((each) => near(each.at));
   if (held) return { item: chosen, grip: held.grip };
   const { x_m, y_m } = poseOf(world.start);
+  const lamp = (world.lamp ?? []).findLastIndex(({ at_m }) => near(at_m));
+  if (lamp >= 0) return { item: { kind: 'lamp', index: lamp }, grip: 'all' };
   if (world.goal_m && near(world.goal_m)) return { item: { kind: 'goal', index: 0 }, grip: 'all' };
   if (Math.hypot(x_m - at[0], y_m - at[1]) <= Math.max(reach_m, 0.1)) return { item: { kind: 'start', index: 0 }, grip: 'all' };
   const shape = outlines(world).reverse().find(({ item, corners_m, closed }) => item.kind !== 'arena' && isAt(corners_m, closed, at, reach_m));
@@ -148,13 +156,14 @@ export function anchor(world, { kind, index }) {
   const { x_m, y_m } = poseOf(world.start);
   if (kind === 'wall') return world.wall?.[index]?.from_m ?? [0, 0];
   if (kind === 'box') return world.box?.[index]?.centre_m ?? [0, 0];
+  if (kind === 'lamp') return world.lamp?.[index]?.at_m ?? [0, 0];
   return kind === 'goal' ? world.goal_m ?? [0, 0] : [x_m, y_m];
 }
 
 /** The world with these keys of a shape changed. @param {World} world @param {Item} item @param {Record<string, unknown>} keys @returns {World} */
 export function changed(world, { kind, index }, keys) {
   if (kind === 'goal') return { ...world, ...keys };
-  if (kind === 'wall' || kind === 'box') return { ...world, [kind]: (world[kind] ?? []).map((shape, each) => (each === index ? { ...shape, ...keys } : shape)) };
+  if (kind === 'wall' || kind === 'box' || kind === 'lamp') return { ...world, [kind]: (world[kind] ?? []).map((shape, each) => (each === index ? { ...shape, ...keys } : shape)) };
   return { ...world, [kind]: { ...world[kind], ...keys } };
 }
 
@@ -167,6 +176,7 @@ export function moved(world, item, at, snap) {
     return changed(world, item, { from_m: [x_m, y_m], to_m: [snapped(wall.to_m[0] + dx, 0), snapped(wall.to_m[1] + dy, 0)] });
   }
   if (item.kind === 'box') return changed(world, item, { centre_m: [x_m, y_m] });
+  if (item.kind === 'lamp') return changed(world, item, { at_m: [x_m, y_m] });
   if (item.kind === 'goal') return changed(world, item, { goal_m: [x_m, y_m] });
   return item.kind === 'start' ? changed(world, item, { x_m, y_m }) : world;
 }
@@ -202,12 +212,12 @@ export function turned(world, item, by_deg) {
   return changed(world, item, { [key]: snapped(next_deg > 180 ? next_deg - 360 : next_deg <= -180 ? next_deg + 360 : next_deg, 0) });
 }
 
-/** The world with a new shape at a place, and the shape. @param {World} world @param {'wall' | 'box' | 'goal'} kind @param {Point} at @param {Snap} snap @returns {[World, Item]} */
+/** The world with a new shape at a place, and the shape. @param {World} world @param {Many | 'goal'} kind @param {Point} at @param {Snap} snap @returns {[World, Item]} */
 export function added(world, kind, at, snap) {
   const [x, y] = toGrid(at, snap);
   if (kind === 'goal') return [{ ...world, goal_m: [x, y] }, { kind, index: 0 }];
   const index = world[kind]?.length ?? 0;
-  const shape = kind === 'wall' ? { from_m: [x, y], to_m: [snapped(x + 0.5, 0), y] } : { centre_m: [x, y], size_m: [0.3, 0.3], angle_deg: 0 };
+  const shape = { wall: { from_m: [x, y], to_m: [snapped(x + 0.5, 0), y] }, box: { centre_m: [x, y], size_m: [0.3, 0.3], angle_deg: 0 }, lamp: { at_m: [x, y] } }[kind];
   return [{ ...world, [kind]: [...(world[kind] ?? []), shape] }, { kind, index }];
 }
 
@@ -217,7 +227,7 @@ export function without(world, { kind, index }) {
     const { goal_m: _gone, ...rest } = world;
     return rest;
   }
-  return kind === 'wall' || kind === 'box' ? { ...world, [kind]: (world[kind] ?? []).filter((_shape, each) => each !== index) } : world;
+  return kind === 'wall' || kind === 'box' || kind === 'lamp' ? { ...world, [kind]: (world[kind] ?? []).filter((_shape, each) => each !== index) } : world;
 }
 
 /** A world with its past: changes can be taken back. */

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { pack, readLink, unpack, writeLink } from '../src/run_link.js';
-import { ARENA, Draft, added, changed, met, moved, pulled, turned, without } from '../src/world_shapes.js';
+import { ARENA, Draft, added, changed, lampsOf, met, moved, pulled, turned, without } from '../src/world_shapes.js';
 
 /** @typedef {import('../src/world_shapes.js').World} World */
 /** @typedef {import('../src/world_shapes.js').Item} Item */
@@ -67,4 +67,12 @@ test('a world of twenty boxes fits into a link, and comes out as it was', async 
   assert.equal(await unpack(readLink(new URL(link).hash).start.edited ?? ''), text);
   await assert.rejects(unpack(await pack('x'.repeat(200_000))), /too large/);
   await assert.rejects(unpack('no such thing'));
+});
+
+test('a lamp is added, met, moved and taken away like what stands, and gives what a bulb does', () => {
+  const [world, lamp] = added(WORLD, 'lamp', [0.51, 0.52], GRID);
+  assert.deepEqual(lampsOf(world), [{ at_m: [0.5, 0.5], height_m: 0.1, lumen: 806 }]);
+  assert.deepEqual(met(world, ARENA, [0.5, 0.51], 0.02), { item: lamp, grip: 'all' });
+  assert.deepEqual(moved(world, lamp, [-0.3, 0.2], GRID).lamp, [{ at_m: [-0.3, 0.2] }]);
+  assert.deepEqual(without(world, lamp).lamp, []);
 });

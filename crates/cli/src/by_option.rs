@@ -1,6 +1,6 @@
 //! What is wrong with the file of a new robot, said of the options that were to make it: that file was never written.
 
-use rumbo_experiment::files::new_robot::{LINE, NewRobot, OBSTACLE, SHARP};
+use rumbo_experiment::files::new_robot::{NAMED, NewRobot};
 use rumbo_experiment::files::{About, FileError, FileProblem};
 
 /// The problems by option and entry; those that come from no option alone as they are.
@@ -58,17 +58,15 @@ fn entry(robot: &NewRobot, path: &[&str]) -> Option<String> {
             let [name, kind, place] = robot.parts.iter().find(|[own, ..]| own == name)?;
             Some(format!("--parts {name}={kind}:{place}"))
         }
-        ["wiring", _, kind @ ("line" | "obstacle"), name, key @ ..] => {
-            let begins: &[&str] = if *kind == "line" {
-                &[LINE]
-            } else {
-                &[OBSTACLE, SHARP]
-            };
-            let mut sensors = begins.iter().map(|begin| format!("{begin}{name}"));
-            let sensor = sensors.find(|sensor| pin(sensor).is_some())?;
+        ["wiring", _, kind, name, key @ ..] => {
+            let begins = NAMED.iter().filter(|(_, table)| table == kind);
+            let mut begins = begins.map(|(begin, _)| begin);
+            let sensor =
+                |begin: &str| Some(format!("{begin}{name}")).filter(|own| pin(own).is_some());
+            let sensor = begins.clone().find_map(|begin| sensor(begin))?;
             match key {
                 ["x_m" | "y_m" | "angle_deg"] => place(&sensor),
-                [said] => pin(&format!("{kind}_{said}")),
+                [said] => begins.find_map(|begin| pin(&format!("{begin}{said}"))),
                 _ => None,
             }
             .or_else(|| pin(&sensor))

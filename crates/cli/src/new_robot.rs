@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::output;
 use crate::place;
 use rumbo_experiment::files::new_robot::{
-    ASKED, Asked, JUMPERS, LINE, Measured, NewRobot, OBSTACLE, SHARP, counted, has_place,
-    looks_like, meaning, needed, remarks,
+    ASKED, Asked, JUMPERS, Measured, NAMED, NewRobot, counted, has_place, looks_like, meaning,
+    needed, remarks,
 };
 use rumbo_experiment::files::{Kind, Library};
 use rumbo_sim::boards::{BOARDS, Board};
@@ -176,7 +176,7 @@ fn made_of(args: &NewArgs, name: String) -> Result<NewRobot, Failure> {
             None => "pins, by number or as A0; nothing where there is none",
         })?;
         output::line(
-            "line and infrared sensors, buttons, a remote control: options, `rumbo new --help`",
+            "sensors for lines, obstacles and light, buttons, a remote control: options, `rumbo new --help`",
         )?;
         let motors = needed(driver, jumpers);
         for signal in motors.iter().map(String::as_str).chain(MORE) {
@@ -280,8 +280,8 @@ fn sensors(args: &NewArgs, pins: &[(String, String)]) -> Result<Vec<(String, [f6
     match args.sensors.iter().find(|(sensor, _)| !is_wired(sensor)) {
         None => Ok(args.sensors.clone()),
         Some((sensor, _)) => {
-            let mut others = [LINE, OBSTACLE, SHARP].iter();
-            let pins = match others.any(|begin| sensor.starts_with(begin)) {
+            let mut others = NAMED.iter();
+            let pins = match others.any(|(begin, _)| sensor.starts_with(begin)) {
                 true => format!("{sensor}=4"),
                 false => format!("{sensor}_trigger=4,{sensor}_echo=A0"),
             };

@@ -3,8 +3,8 @@
 use rumbo_experiment::files::TimedCommand;
 use rumbo_experiment::files::{FileError, Kind, Library, ScenarioFile, Setup, goal_seen_from};
 use rumbo_log::{
-    Choice, FloorLine, MapPose, Other, Repeat, RoutePlan, ScenarioOffer, Scene, SceneMover,
-    SceneObstacle, SonarMount, TimedPose,
+    Choice, FloorLine, MapPose, Other, Repeat, RoutePlan, ScenarioOffer, Scene, SceneLamp,
+    SceneMover, SceneObstacle, SonarMount, TimedPose,
 };
 use rumbo_plant::contact::{Footprint, Pose};
 use rumbo_plant::moving;
@@ -48,6 +48,7 @@ pub fn scene(library: &Library, setup: &Setup, choice: Choice) -> Result<Scene, 
             .map(|it| obstacle(it.corners()))
             .collect(),
         lines: world.lines.iter().map(floor_line).collect(),
+        lamps: world.light.lamps.iter().map(lamp).collect(),
         movers: world.movers.iter().map(mover).collect(),
         others: Vec::new(),
         footprint_m: footprint.corners(&Pose::default()).to_vec(),
@@ -113,6 +114,13 @@ fn floor_line(line: &rumbo_sim::floor::DarkLine) -> FloorLine {
     FloorLine {
         points_m: line.points_m.clone(),
         width_m: line.width_m,
+    }
+}
+
+fn lamp(lamp: &rumbo_sim::light::Lamp) -> SceneLamp {
+    SceneLamp {
+        at_m: lamp.at_m,
+        lumen: lamp.lumen,
     }
 }
 

@@ -61,7 +61,7 @@ pub use reading::{Names, Reading, ReadingSource};
 pub use recorded::{CSV, recorded_csv};
 pub use scene::{
     Choice, FloorLine, MapPose, Other, Repeat, RoutePlace, RoutePlan, ScenarioOffer, Scene,
-    SceneMover, SceneObstacle, SonarMount, TimedPose, Truth, compose,
+    SceneLamp, SceneMover, SceneObstacle, SonarMount, TimedPose, Truth, compose,
 };
 pub use signals::{EARLIER_MS, Row, RowValue, SIGNALS, Sample, Signal, Spread};
 pub use state::{

@@ -75,6 +75,9 @@ pub struct Scene {
     /// Dark lines on the floor.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lines: Vec<FloorLine>,
+    /// Lamps.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lamps: Vec<SceneLamp>,
     /// What moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub movers: Vec<SceneMover>,
@@ -104,6 +107,15 @@ pub struct FloorLine {
     pub points_m: Vec<[f64; 2]>,
     /// Its width \[m\].
     pub width_m: f64,
+}
+
+/// A lamp.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SceneLamp {
+    /// Where it is \[m\].
+    pub at_m: [f64; 2],
+    /// How much it shines \[lm\].
+    pub lumen: f64,
 }
 
 /// A scenario to choose.

@@ -221,14 +221,26 @@ impl Query {
 
 /// True if nothing that stands crosses the way between two points; what one of them lies on does not.
 pub(crate) fn is_clear(world: &World, from: Point, to: Point) -> bool {
+    !hidden(world.obstacles().iter(), usize::MAX, from, &end(from, to))
+}
+
+/// The same of what moves, too, at an instant.
+#[must_use]
+pub fn is_in_sight(world: &World, now_us: u64, from: Point, to: Point) -> bool {
+    let moving = world.outlines(now_us, |_, _| true);
+    let all = world.obstacles().iter().chain(&moving);
+    !hidden(all, usize::MAX, from, &end(from, to))
+}
+
+/// The end of a way from the apex.
+fn end(from: Point, to: Point) -> Candidate {
     let way = sub(to, from);
-    let candidate = Candidate {
+    Candidate {
         at: to,
         range_m: sqrt(dot(way, way)),
         facing: 1.0,
         corner: false,
-    };
-    !hidden(world.obstacles().iter(), usize::MAX, from, &candidate)
+    }
 }
 
 /// True if another obstacle crosses the way from the apex to the candidate.

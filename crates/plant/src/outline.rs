@@ -228,6 +228,13 @@ pub struct Pose {
 }
 
 impl Pose {
+    /// Where a point of the body is in the world.
+    #[must_use]
+    pub fn place(&self, [x_m, y_m]: Point) -> Point {
+        let (s, c) = sincos(self.heading_rad);
+        [self.x_m + c * x_m - s * y_m, self.y_m + s * x_m + c * y_m]
+    }
+
     pub(crate) fn shift(&mut self, by_m: Point) {
         [self.x_m, self.y_m] = add([self.x_m, self.y_m], by_m);
     }

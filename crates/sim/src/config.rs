@@ -1,6 +1,7 @@
 //! What a simulation is made from, in plain values.
 
 use crate::floor::DarkLine;
+use crate::light::Light;
 use crate::mega::firmware::Firmware;
 use crate::sonar_fault::TimedSonarFault;
 use crate::wire_fault::TimedWireFault;
@@ -26,6 +27,8 @@ pub struct Config {
     pub lines: Arc<[DarkLine]>,
     /// Where magnetic north is, counter-clockwise from the world's x axis \[rad\].
     pub north_rad: f64,
+    /// Its lamps, and the light of the room.
+    pub light: Arc<Light>,
     /// Start pose in the world.
     pub start: Pose,
     /// The wheels turn freely: no floor, the body stays where it is.

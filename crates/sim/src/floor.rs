@@ -68,12 +68,7 @@ impl LineSensor {
     /// Where it is in the world \[m\].
     #[must_use]
     pub fn place(&self, pose: &Pose) -> [f64; 2] {
-        let (sin, cos) = libm::sincos(pose.heading_rad);
-        let [x_m, y_m] = self.at_m;
-        [
-            pose.x_m + cos * x_m - sin * y_m,
-            pose.y_m + sin * x_m + cos * y_m,
-        ]
+        pose.place(self.at_m)
     }
 
     /// The voltage of an analogue one, of what it gives over a light and over a dark floor.

@@ -16,6 +16,8 @@ mod error;
 pub mod fleet;
 pub mod floor;
 mod instruments;
+pub mod light;
+pub mod maxsonar;
 pub mod mega;
 mod notes;
 pub mod obstacle;

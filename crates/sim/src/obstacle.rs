@@ -4,6 +4,8 @@
 //! |---|---|---|
 //! | switch | an emitter, a receiver and a comparator (FC-51 and copies) | its sellers: 2 cm to 30 cm by a potentiometer, 35° wide |
 //! | voltage | Sharp GP2Y0A21YK | its data sheet: 0.4 V at 80 cm, 2.3 V at 10 cm, a reading each 38.3 ms; in between published fits |
+//! | | GP2Y0A02YK | the same: 0.4 V at 150 cm, 2.45 V at 20 cm |
+//! | | GP2Y0A41SK | the same: 0.4 V at 30 cm, 2.65 V at 4 cm, a reading each 16.5 ms |
 //!
 //! Neither is identified from recordings; colour and slant of what they see do not count.
 
@@ -16,24 +18,93 @@ const HYSTERESIS: f64 = 0.05;
 /// Half of what a switch sees, and of a narrow beam \[rad\].
 const SWITCH_RAD: f64 = 0.305;
 const BEAM_RAD: f64 = 0.02;
-/// A reading of the voltage takes so long \[us\].
-const READING_US: u64 = 38_300;
-/// Distance \[m\] and voltage \[V\] of the sensor; nearer than 6 cm the voltage falls again.
-const VOLTS: [(f64, f64); 13] = [
-    (0.00, 1.00),
-    (0.06, 3.10),
-    (0.08, 2.75),
-    (0.10, 2.30),
-    (0.15, 1.63),
-    (0.20, 1.30),
-    (0.30, 0.92),
-    (0.40, 0.74),
-    (0.50, 0.60),
-    (0.60, 0.51),
-    (0.70, 0.45),
-    (0.80, 0.40),
-    (1.20, 0.25),
+/// A sensor that gives a voltage.
+#[derive(Debug, PartialEq)]
+pub struct Sharp {
+    /// Its name in robot files.
+    pub name: &'static str,
+    /// A reading takes so long \[us\].
+    reading_us: u64,
+    /// Distance \[m\] and voltage \[V\]; nearer than its range the voltage falls again.
+    volts: &'static [(f64, f64)],
+}
+
+/// Those there are; the usual one first.
+pub const SHARPS: [&Sharp; 3] = [
+    &Sharp {
+        name: "gp2y0a21",
+        reading_us: 38_300,
+        volts: &[
+            (0.00, 1.00),
+            (0.06, 3.10),
+            (0.08, 2.75),
+            (0.10, 2.30),
+            (0.15, 1.63),
+            (0.20, 1.30),
+            (0.30, 0.92),
+            (0.40, 0.74),
+            (0.50, 0.60),
+            (0.60, 0.51),
+            (0.70, 0.45),
+            (0.80, 0.40),
+            (1.20, 0.25),
+        ],
+    },
+    &Sharp {
+        name: "gp2y0a02",
+        reading_us: 38_300,
+        volts: &[
+            (0.00, 0.80),
+            (0.15, 2.75),
+            (0.20, 2.45),
+            (0.30, 1.66),
+            (0.40, 1.27),
+            (0.50, 1.03),
+            (0.60, 0.87),
+            (0.80, 0.68),
+            (1.00, 0.56),
+            (1.20, 0.48),
+            (1.50, 0.40),
+            (2.00, 0.32),
+        ],
+    },
+    &Sharp {
+        name: "gp2y0a41",
+        reading_us: 16_500,
+        volts: &[
+            (0.00, 1.20),
+            (0.03, 3.10),
+            (0.04, 2.65),
+            (0.05, 2.13),
+            (0.06, 1.79),
+            (0.08, 1.35),
+            (0.10, 1.09),
+            (0.12, 0.92),
+            (0.15, 0.75),
+            (0.20, 0.57),
+            (0.25, 0.47),
+            (0.30, 0.40),
+            (0.50, 0.26),
+        ],
+    },
 ];
+
+impl Sharp {
+    /// The voltage at a distance.
+    fn volts_at(&self, range_m: f64) -> f64 {
+        let last = self.reach();
+        let pair = self.volts.windows(2).find(|pair| range_m < pair[1].0);
+        pair.map_or(last.1, |pair| {
+            let ((near_m, high_v), (far_m, low_v)) = (pair[0], pair[1]);
+            high_v + (low_v - high_v) * (range_m - near_m) / (far_m - near_m)
+        })
+    }
+
+    /// From where on the voltage does not change, and that.
+    fn reach(&self) -> (f64, f64) {
+        self.volts.last().copied().unwrap_or_default()
+    }
+}
 
 /// What a sensor gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +117,7 @@ pub enum Sight {
         seen_high: bool,
     },
     /// A voltage by distance.
-    Volts,
+    Volts(&'static Sharp),
 }
 
 /// An infrared sensor for obstacles.
@@ -84,8 +155,10 @@ impl ObstacleSensor {
     ) -> Option<Seen> {
         let (half_angle_rad, reach_m) = match self.sight {
             Sight::Switch { reach_m, .. } => (SWITCH_RAD, reach_m * (1.0 + HYSTERESIS)),
-            Sight::Volts if before.is_some() && now_us % READING_US >= 1_000 => return None,
-            Sight::Volts => (BEAM_RAD, VOLTS[VOLTS.len() - 1].0),
+            Sight::Volts(sharp) if before.is_some() && now_us % sharp.reading_us >= 1_000 => {
+                return None;
+            }
+            Sight::Volts(sharp) => (BEAM_RAD, sharp.reach().0),
         };
         let cone = cone_at(pose, self.at_m, self.angle_rad, half_angle_rad);
         let found = cone::nearest(world, now_us, &cone, &Hearing::geometric(reach_m));
@@ -104,36 +177,17 @@ impl ObstacleSensor {
                     0.0
                 }
             }
-            Sight::Volts => volts_at(range_m),
+            Sight::Volts(sharp) => sharp.volts_at(range_m),
         };
         Some(Seen { range_m, volts })
     }
 }
 
 /// What is seen from a place on the robot, ahead of the wheels' axis and to the left \[m\], in a direction of its own.
-pub(crate) fn cone_at(
-    pose: &Pose,
-    [x_m, y_m]: [f64; 2],
-    angle_rad: f64,
-    half_angle_rad: f64,
-) -> Cone {
-    let (sin, cos) = libm::sincos(pose.heading_rad);
+pub(crate) fn cone_at(pose: &Pose, at_m: [f64; 2], angle_rad: f64, half_angle_rad: f64) -> Cone {
     Cone {
-        apex: [
-            pose.x_m + cos * x_m - sin * y_m,
-            pose.y_m + sin * x_m + cos * y_m,
-        ],
+        apex: pose.place(at_m),
         axis_rad: pose.heading_rad + angle_rad,
         half_angle_rad,
     }
-}
-
-/// The voltage at a distance.
-fn volts_at(range_m: f64) -> f64 {
-    let last = VOLTS[VOLTS.len() - 1];
-    let pair = VOLTS.windows(2).find(|pair| range_m < pair[1].0);
-    pair.map_or(last.1, |pair| {
-        let ((near_m, high_v), (far_m, low_v)) = (pair[0], pair[1]);
-        high_v + (low_v - high_v) * (range_m - near_m) / (far_m - near_m)
-    })
 }

@@ -4,6 +4,8 @@ use crate::boards::Board;
 use crate::bus::BusDevice;
 use crate::drivers::Driver;
 use crate::floor::LineSensor;
+use crate::light::LightSensor;
+use crate::maxsonar::MaxSonar;
 use crate::obstacle::ObstacleSensor;
 use crate::remote::Key;
 use std::collections::BTreeMap;
@@ -57,6 +59,10 @@ pub struct Wiring {
     pub line_sensors: Vec<LineSensor>,
     /// Infrared sensors for obstacles.
     pub obstacle_sensors: Vec<ObstacleSensor>,
+    /// Light sensors.
+    pub light_sensors: Vec<LightSensor>,
+    /// Range finders that measure by themselves.
+    pub maxsonars: Vec<MaxSonar>,
     /// What else is at pins: what a person works, and what shows something.
     pub parts: Vec<Part>,
     /// The devices on the two-wire bus.
@@ -110,6 +116,14 @@ impl Wiring {
         let sensors = sensors.map(|sensor| (sensor.name.as_str(), sensor.pin));
         let obstacles = self.obstacle_sensors.iter();
         let obstacles = obstacles.map(|sensor| (sensor.name.as_str(), sensor.pin));
+        let lights = self.light_sensors.iter();
+        let lights = lights.map(|sensor| (sensor.name.as_str(), sensor.pin));
+        let ranges = self.maxsonars.iter().flat_map(|sensor| {
+            let pins = [Some(sensor.pin), sensor.rx];
+            pins.into_iter()
+                .flatten()
+                .map(|pin| (sensor.name.as_str(), pin))
+        });
         let beside = self.bus.iter();
         let beside = beside.flat_map(|device| device.pins().map(|pin| (device.name.as_str(), pin)));
         let lines = self.board.two_wire.map(|pin| ("the two-wire bus", pin));
@@ -121,6 +135,8 @@ impl Wiring {
             .chain(sensors)
             .chain(obstacles)
             .chain(beside)
+            .chain(lights)
+            .chain(ranges)
             .chain(lines);
         all.find(|(_, on)| *on == pin).map(|(name, _)| name)
     }

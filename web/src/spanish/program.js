@@ -51,6 +51,8 @@ export const PROGRAM = {
   'accelerometer and gyroscope: MPU-6050 by its data sheet, not identified': 'acelerómetro y giróscopo: MPU-6050 según su hoja de datos, sin identificar',
   'distance by light: VL53L0X by its data sheet, not identified': 'distancia por luz: VL53L0X según su hoja de datos, sin identificar',
   'compass: QMC5883L and HMC5883L by their data sheets, not identified': 'brújula: QMC5883L y HMC5883L según sus hojas de datos, sin identificar',
+  'light sensors: GL5528 by its data sheet, not identified': 'sensores de luz: GL5528 según su hoja de datos, sin identificar',
+  'range finders: LV-MaxSonar-EZ1 by its data sheet, not identified': 'telémetros: LV-MaxSonar-EZ1 según su hoja de datos, sin identificar',
   'sensors for obstacles: by what their sellers and Sharp\'s data sheet say, not identified': 'sensores de obstáculos: según sus vendedores y la hoja de datos de Sharp, sin identificar',
   'continuous-rotation servos': 'servos de rotación continua', 'the data sheet of Parallax\'s 900-00008, 2.0': 'la hoja de datos del 900-00008 de Parallax, 2.0',
   '{} had no pulse that turns it, shorter or longer than 1.5 ms': '{} no tuvo ningún pulso que lo haga girar, más corto o más largo que 1,5 ms',

@@ -9,6 +9,7 @@ export const SCENARIOS = {
   'Mode 6: straight line': 'Modo 6: línea recta', 'Mode 7: waypoints': 'Modo 7: ruta', 'Mode 8: mission': 'Modo 8: misión', 'Mode 9: policy': 'Modo 9: política', 'Motors': 'Motores', 'Movements': 'Movimientos',
   // Worlds.
   'A loop of dark tape on the floor': 'Un circuito de cinta oscura en el suelo',
+  'A dim room with a lamp; a box shades a part of it': 'Una sala en penumbra con una lámpara; una caja hace sombra',
   'A sumo ring: dark, and light around it': 'Un dohyo de sumo: oscuro, y claro alrededor',
   'A walled floor of 2.9 x 1.9 m to calibrate in: along its walls': 'Un suelo de 2,9 x 1,9 m con paredes para calibrar: a lo largo de ellas',
   'A lane of boxes: left, right, right, and out to the left': 'Un carril de cajas: izquierda, derecha, derecha y salida a la izquierda',

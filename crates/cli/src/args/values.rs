@@ -2,9 +2,7 @@
 
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
-use rumbo_experiment::files::new_robot::{
-    ASKED, BATTERY, JUMPERS, LINE, OBSTACLE, SHARP, find, is_of_sonar,
-};
+use rumbo_experiment::files::new_robot::{ASKED, BATTERY, JUMPERS, NAMED, find, is_of_sonar};
 use rumbo_experiment::files::{TimedText, TypedPort, check_line, parameters, placed, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
 use rumbo_sim::drivers::{DRIVERS, Driver};
@@ -56,8 +54,7 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
         "right_servo" => "right_backward",
         other => other,
     };
-    let named = [LINE, OBSTACLE, SHARP];
-    let is_named = named.iter().any(|begin| signal.starts_with(begin));
+    let is_named = NAMED.iter().any(|(begin, _)| signal.starts_with(begin));
     let asked = find(signal).filter(|asked| !asked.is_option());
     let is_pin = SIGNALS.contains(&signal) || signal == BATTERY || is_named || is_of_sonar(signal);
     match asked {
@@ -69,10 +66,11 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
             let said = ASKED.iter().filter(|asked| !asked.is_option());
             let said: Vec<&str> = said.map(|asked| asked.key).collect();
             return Err(format!(
-                "no signal `{signal}`; there are {}, {}, and with a name of yours {LINE}NAME, {OBSTACLE}NAME, {SHARP}NAME, \
-                 NAME_trigger and NAME_echo of a sonar",
+                "no signal `{signal}`; there are {}, {}, and with a name of yours {}, NAME_trigger and \
+                 NAME_echo of a sonar",
                 SIGNALS.join(", "),
-                said.join(", ")
+                said.join(", "),
+                NAMED.map(|(begin, _)| format!("{begin}NAME")).join(", ")
             ));
         }
     }
@@ -102,7 +100,7 @@ pub(crate) fn sensor(text: &str) -> Result<(String, [f64; 3]), &'static str> {
     });
     read.ok_or(
         "write it as left=0.05:0.07:90 or line_rear=-0.05:0, x and y in m and the direction in degrees; of a sonar by its name, and \
-         of line_NAME, obstacle_NAME, sharp_NAME",
+         of line_NAME, obstacle_NAME, sharp_NAME, light_NAME, maxsonar_NAME",
     )
 }
 

@@ -1,10 +1,11 @@
 //! What is asked of a new robot, its answers, and what is taken in their place.
 
+use super::light::{RESISTOR_KOHM, SWITCH_LUX};
 use super::new_asked::{
-    ASKED, Asked, BATTERY_RATIO, LINK_BAUD, SERVO_AHEAD, TOP_SPEED, USUAL_RATIO,
+    ASKED, Asked, BATTERY_RATIO, LINE_PITCH, LINK_BAUD, SERVO_AHEAD, TOP_SPEED, USUAL_RATIO,
 };
 use super::new_robot::NewRobot;
-use super::new_sensors::places;
+use super::new_sensors::{line_pitch_m, places};
 use super::new_speed::top_speed_m_s;
 use super::obstacle::REACH_M;
 use rumbo_sim::drivers::Direction;
@@ -49,6 +50,12 @@ impl NewRobot {
             "line_dark" => "high",
             "line_light_v" => return USUAL_V[0].to_string(),
             "line_dark_v" => return USUAL_V[1].to_string(),
+            LINE_PITCH => return line_pitch_m(&self.pins).to_string(),
+            "sharp_model" => "gp2y0a21",
+            "light_bright" => "high",
+            "light_resistor_kohm" => return RESISTOR_KOHM.to_string(),
+            "light_rated_kohm" => "10 to 20",
+            "light_switch_lux" => return SWITCH_LUX.to_string(),
             "obstacle_seen" => "low",
             "obstacle_reach_m" => return REACH_M.to_string(),
             body => {

@@ -1,15 +1,21 @@
 //! What may be said of a new robot besides its wires: one table, of which options, questions at a terminal and the page's
 //! fields are made. Whatever nobody says has a usual value, which is told.
 
+use super::light::{ILLUMINANCE, RESISTANCE};
 use super::line::SUPPLY;
 use super::obstacle::REACH;
 use super::robot::{BAUD, RATIO};
 use super::value::Allowed;
 
 /// How the name of a line sensor begins among the pins, before a name of its own.
-pub const LINE: &str = "line_";
+pub(super) const LINE: &str = "line_";
 /// How the name of an infrared switch for obstacles begins.
-pub const OBSTACLE: &str = "obstacle_";
+pub(super) const OBSTACLE: &str = "obstacle_";
+/// How that of a Sharp begins, which gives a voltage.
+pub(super) const SHARP: &str = "sharp_";
+/// How that of a light sensor begins, and that of a MaxSonar.
+pub(super) const LIGHT: &str = "light_";
+pub(super) const MAXSONAR: &str = "maxsonar_";
 /// The signal of an analogue input with a divider of the battery's voltage.
 pub const BATTERY: &str = "battery";
 
@@ -64,6 +70,8 @@ pub(super) const BATTERY_RATIO: &str = "battery_ratio";
 /// That of two resistors alike.
 pub(super) const USUAL_RATIO: &str = "2";
 
+/// How far line sensors are apart.
+pub(super) const LINE_PITCH: &str = "line_pitch_m";
 /// The speed that somebody measured.
 pub(super) const TOP_SPEED: &str = "top-speed";
 /// Wheels and motors, on which other usual values depend.
@@ -74,11 +82,13 @@ pub(super) const EDGES: &str = "edges";
 
 const YES_NO: Answer = Answer::Choice(&[("false", "no"), ("true", "yes")]);
 const LEVELS: Answer = Answer::Choice(&[("high", "high"), ("low", "low")]);
+/// From one line sensor to the next.
+const PITCH: Allowed = Allowed::new(0.003, 0.1, "m");
 const VOLTS: Answer = Answer::Number(SUPPLY);
 
 /// The whole list: what belongs to the body first, each an option of `new robot`; then what stands in place of pins.
 /// In their order they are asked.
-pub static ASKED: [Asked; 17] = [
+pub static ASKED: [Asked; 23] = [
     Asked {
         key: WHEELS,
         label: "wheels",
@@ -189,6 +199,13 @@ pub static ASKED: [Asked; 17] = [
         of: Of::Analogue(LINE),
     },
     Asked {
+        key: LINE_PITCH,
+        label: "from one line sensor to the next",
+        about: "Between their middles: 0.0095 m of a QTR-8",
+        answer: Answer::Number(PITCH),
+        of: Of::Signal(LINE),
+    },
+    Asked {
         key: "obstacle_seen",
         label: "before an obstacle",
         about: "The level of the infrared switches before an obstacle",
@@ -201,6 +218,45 @@ pub static ASKED: [Asked; 17] = [
         about: "How near a thing is that the infrared switches see",
         answer: Answer::Number(REACH),
         of: Of::Signal(OBSTACLE),
+    },
+    Asked {
+        key: "sharp_model",
+        label: "Sharps",
+        about: "Infrared sensors that give a voltage: 10 to 80 cm, 20 to 150 cm, or 4 to 30 cm",
+        answer: Answer::Choice(&[
+            ("gp2y0a21", "GP2Y0A21YK"),
+            ("gp2y0a02", "GP2Y0A02YK"),
+            ("gp2y0a41", "GP2Y0A41SK"),
+        ]),
+        of: Of::Signal(SHARP),
+    },
+    Asked {
+        key: "light_bright",
+        label: "in bright light",
+        about: "The light sensors give more or less in bright light: a photoresistor at 5 V more, at GND less",
+        answer: LEVELS,
+        of: Of::Signal(LIGHT),
+    },
+    Asked {
+        key: "light_resistor_kohm",
+        label: "resistor of the divider",
+        about: "The resistor that makes a divider with the photoresistor",
+        answer: Answer::Number(RESISTANCE),
+        of: Of::Analogue(LIGHT),
+    },
+    Asked {
+        key: "light_rated_kohm",
+        label: "photoresistor at 10 lx",
+        about: "Resistance of the photoresistors at 10 lx: 10 to 20 of a GL5528",
+        answer: Answer::Number(RESISTANCE),
+        of: Of::Signal(LIGHT),
+    },
+    Asked {
+        key: "light_switch_lux",
+        label: "modules switch at",
+        about: "Light sensors with a comparator: where their trimmer stands",
+        answer: Answer::Number(ILLUMINANCE),
+        of: Of::Signal(LIGHT),
     },
 ];
 

@@ -6,19 +6,17 @@ use super::new_asked::{
 };
 use super::new_parts::part_of;
 use super::new_plant::{encoder, plant};
-use super::new_sensors::{
-    line_sensors, obstacle_sensors, place_of, quoted, signals, sonars, usual_place,
-};
+use super::new_sensors::{place_of, quoted, rows, signals, sonars, usual_place};
 use super::new_speed::gears;
 use super::{Kind, Library, RobotFile};
 use rumbo_sim::boards::Board;
 use rumbo_sim::drivers::{Direction, Driver};
 use rumbo_sim::wiring::{Wiring, is_driver_input};
 
-pub use super::new_asked::{ASKED, Asked, BATTERY, LINE, OBSTACLE, find};
+pub use super::new_asked::{ASKED, Asked, BATTERY, find};
 pub use super::new_parts::has_place;
 pub use super::new_plant::{Measured, counted};
-pub use super::new_sensors::SHARP;
+pub use super::new_sensors::NAMED;
 pub use super::sonars::is_of_sonar;
 
 /// A driver that is chosen with its enables held by jumpers.
@@ -182,8 +180,7 @@ impl NewRobot {
         for part in &self.parts {
             put(part_of(part, &self.sensors));
         }
-        text.push_str(&line_sensors(OWN, &self.pins, &self.sensors));
-        text.push_str(&obstacle_sensors(OWN, &self.pins, &self.sensors));
+        text.push_str(&rows(OWN, &self.pins, &self.sensors));
         let faster = gears(driver, &self.measured).unwrap_or(1.0);
         text.push_str(&plant(driver, &self.measured, faster));
         if given("left_encoder") || given("right_encoder") {

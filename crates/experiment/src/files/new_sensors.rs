@@ -1,22 +1,77 @@
-//! The sensors of a robot file to start from: sonars at the place that their names say; what looks down or for obstacles in
-//! a row from left to right, as it was given; or where somebody says that they are.
+//! The sensors of a robot file to start from: sonars at the place that their names say; those of other kinds in a row from
+//! left to right, as it was given, `rear` or `back` in one behind; or where somebody says that they are.
 
-use super::new_asked::{self, LINE, OBSTACLE};
+use super::new_asked::{self, LIGHT, LINE, LINE_PITCH, MAXSONAR, OBSTACLE, SHARP};
 use super::sonars::{self, is_of_sonar};
 use rumbo_sim::wiring::SONARS;
 use std::fmt::Write;
 
-/// How that of a Sharp begins, which gives a voltage.
-pub const SHARP: &str = "sharp_";
+/// How the names of sensors begin among the pins, before a name of its own, and their table in a wiring: a Sharp gives a
+/// voltage.
+pub const NAMED: [(&str, &str); 5] = [
+    (LINE, "line"),
+    (OBSTACLE, "obstacle"),
+    (SHARP, "obstacle"),
+    (LIGHT, "light"),
+    (MAXSONAR, "maxsonar"),
+];
+/// The pin of all MaxSonars' RX.
+const MAXSONAR_RX: &str = "maxsonar_rx";
+/// Words for what is behind the wheels.
+const BEHIND: [&str; 2] = ["rear", "back"];
+/// It is so far ahead of them \[m\].
+const REAR_M: f64 = -0.08;
 
-/// Line sensors are so far ahead, and so far apart \[m\]; two stand beside the tape, one on each side.
-const LINE_AHEAD_M: f64 = 0.09;
-const PITCH_M: f64 = 0.015;
-const ASTRIDE_M: f64 = 0.04;
-/// Those for obstacles are so far ahead, so far apart \[m\], and look so far apart \[deg\].
-const AHEAD_M: f64 = 0.11;
-const APART_M: f64 = 0.05;
-const APART_DEG: f64 = 30.0;
+/// Sensors of a kind, which stand in a row from left to right.
+struct InRow {
+    /// Their table in a wiring.
+    table: &'static str,
+    /// Its comment.
+    about: &'static str,
+    /// So far ahead \[m\].
+    ahead_m: f64,
+    /// From one to the next of so many \[m\].
+    apart_m: fn(usize) -> f64,
+    /// They look so far apart \[deg\]; nothing of those that look down.
+    apart_deg: f64,
+}
+
+/// Two stand beside the tape, one on each side.
+const LINES: InRow = InRow {
+    table: "line",
+    about: "Sensors that look down, from left to right: measure where they are. Over a dark floor they are high, unless\n\
+            # dark = \"low\".",
+    ahead_m: 0.09,
+    apart_m: |count| if count == 2 { 0.04 } else { 0.015 },
+    apart_deg: 0.0,
+};
+
+const OBSTACLES: InRow = InRow {
+    table: "obstacle",
+    about: "Infrared sensors for obstacles, from left to right: measure where they are and look. One is low where something \
+            is\n# nearer than reach_m = 0.15, unless seen = \"high\"; an analogue one is a Sharp GP2Y0A21YK, or\n# model = \"gp2y0a02\" or \"gp2y0a41\".",
+    ahead_m: 0.11,
+    apart_m: |_| 0.05,
+    apart_deg: 30.0,
+};
+
+const LIGHTS: InRow = InRow {
+    table: "light",
+    about: "Light sensors, from left to right: measure where they are and look. An analogue one is a photoresistor at 5 V \
+            with\n# 10 kOhm to GND, higher where it is bright, unless bright = \"low\"; another one is low above switch_lux = 50.",
+    ahead_m: 0.08,
+    apart_m: |_| 0.08,
+    apart_deg: 60.0,
+};
+
+const MAXSONARS: InRow = InRow {
+    table: "maxsonar",
+    about: "Range finders that measure by themselves, from left to right: measure where they are and look. One gives a pulse \
+            (PW),\n# an analogue one a voltage (AN).",
+    ahead_m: 0.11,
+    apart_m: |_| 0.06,
+    apart_deg: 45.0,
+};
 
 /// Signals and their pins, or what is said of all sensors of a kind.
 type Pins = [(String, String)];
@@ -60,7 +115,7 @@ pub(super) fn usual_place(sonar: &str) -> Option<[f64; 3]> {
     let side = f64::from(i8::from(says(&["left"])) - i8::from(says(&["right"])));
     let (ahead, behind) = (
         says(&["front", "middle", "center", "centre"]),
-        says(&["rear", "back"]),
+        says(&BEHIND),
     );
     match (ahead, behind, side != 0.0) {
         (true, false, false) => Some([0.11, 0.0, 0.0]),
@@ -72,56 +127,39 @@ pub(super) fn usual_place(sonar: &str) -> Option<[f64; 3]> {
     }
 }
 
-/// The table of the line sensors, empty without any.
-pub(super) fn line_sensors(wiring: &str, pins: &Pins, places: &Places) -> String {
-    let rc = pins.iter().any(|(signal, _)| signal == "line_rc");
-    let sensors = lines(pins, places);
-    let mut text = String::new();
-    if !sensors.is_empty() {
-        let _ = write!(
-            text,
-            "\n# Sensors that look down, from left to right: measure where they are. Over a dark floor they are high, unless\n\
-             # dark = \"low\".\n[wiring.{wiring}.line]\n"
-        );
-    }
-    for (signal, pin, [x_m, y_m, _]) in sensors {
-        let analogue = pin.parse::<u8>().is_err() && !rc;
-        let kind = if analogue { ", analogue = true" } else { "" };
-        // Voltages are those of the analogue ones.
-        let said = said(pins, LINE, |key| analogue || !key.ends_with("_v"));
-        let (name, pin) = (&signal[LINE.len()..], quoted(pin));
-        let _ = writeln!(
-            text,
-            "{name} = {{ pin = {pin}, x_m = {x_m}, y_m = {y_m:.4}{kind}{said} }}"
-        );
-    }
-    text
+/// The tables of the sensors that stand in rows, each empty without any.
+pub(super) fn rows(wiring: &str, pins: &Pins, places: &Places) -> String {
+    let said_of_all = |key: &str| pins.iter().any(|(signal, _)| signal == key);
+    let rc = said_of_all("line_rc");
+    // What else one says of itself, and which keys that are said of all it has.
+    let is_analogue = |pin: &str| pin.parse::<u8>().is_err();
+    let line = |_: &str, pin: &str| match is_analogue(pin) && !rc {
+        true => (ANALOGUE, &[][..]),
+        false => ("", &["light_v", "dark_v"][..]),
+    };
+    let obstacle = |signal: &str, _: &str| match signal.starts_with(SHARP) {
+        true => (ANALOGUE, &["seen", "reach_m"][..]),
+        false => ("", &["model"][..]),
+    };
+    let modules = said_of_all("light_switch_lux");
+    let light = |_: &str, pin: &str| match is_analogue(pin) && !modules {
+        true => (ANALOGUE, &[][..]),
+        false => ("", &["resistor_kohm"][..]),
+    };
+    let range = |_: &str, pin: &str| match is_analogue(pin) {
+        true => (ANALOGUE, &[][..]),
+        false => ("", &[][..]),
+    };
+    [
+        LINES.text(wiring, pins, places, line),
+        OBSTACLES.text(wiring, pins, places, obstacle),
+        LIGHTS.text(wiring, pins, places, light),
+        MAXSONARS.text(wiring, pins, places, range),
+    ]
+    .concat()
 }
 
-/// The table of the infrared sensors for obstacles, empty without any.
-pub(super) fn obstacle_sensors(wiring: &str, pins: &Pins, places: &Places) -> String {
-    let sensors = obstacles(pins, places);
-    let mut text = String::new();
-    if !sensors.is_empty() {
-        let _ = write!(
-            text,
-            "\n# Infrared sensors for obstacles, from left to right: measure where they are and look. One is low where something is\n\
-             # nearer than reach_m = 0.15, unless seen = \"high\"; an analogue one is a Sharp GP2Y0A21YK.\n[wiring.{wiring}.obstacle]\n"
-        );
-    }
-    for (signal, pin, [x_m, y_m, angle_deg]) in sensors {
-        let (name, more) = match signal.strip_prefix(SHARP) {
-            Some(name) => (name, ", analogue = true".to_owned()),
-            None => (&signal[OBSTACLE.len()..], said(pins, OBSTACLE, |_| true)),
-        };
-        let pin = quoted(pin);
-        let _ = writeln!(
-            text,
-            "{name} = {{ pin = {pin}, x_m = {x_m}, y_m = {y_m:.3}, angle_deg = {angle_deg}{more} }}"
-        );
-    }
-    text
-}
+const ANALOGUE: &str = ", analogue = true";
 
 /// Where each sensor is whose place is that of its row or of its name, or was said.
 pub(super) fn places(pins: &Pins, places: &Places) -> Vec<(String, [f64; 3])> {
@@ -129,73 +167,127 @@ pub(super) fn places(pins: &Pins, places: &Places) -> Vec<(String, [f64; 3])> {
         let place = place_of(places, sonar).or_else(|| usual_place(sonar))?;
         Some((sonar, place))
     });
-    let rows = [lines(pins, places), obstacles(pins, places)].concat();
-    let rows = rows.into_iter().map(|(signal, _, place)| (signal, place));
-    let all = sonars.chain(rows);
+    let rows = [LINES, OBSTACLES, LIGHTS, MAXSONARS];
+    let rows = rows.iter().flat_map(|row| row.sensors(pins, places));
+    let all = sonars.chain(rows.map(|sensor| (sensor.signal, sensor.place)));
     all.map(|(sensor, place)| (sensor.to_owned(), place))
         .collect()
 }
 
-/// A sensor's signal, its pin, and where it is.
-type Placed<'a> = (&'a str, &'a str, [f64; 3]);
-
-fn lines<'a>(pins: &'a Pins, places: &Places) -> Vec<Placed<'a>> {
-    let is_line = |signal: &str| signal.starts_with(LINE);
-    in_row(pins, places, is_line, |count| {
-        let pitch_m = if count == 2 { ASTRIDE_M } else { PITCH_M };
-        ([LINE_AHEAD_M, 0.0, 0.0], [0.0, pitch_m, 0.0])
-    })
+/// How far line sensors are apart where nobody says it \[m\].
+pub(super) fn line_pitch_m(pins: &Pins) -> f64 {
+    (LINES.apart_m)(LINES.sensors(pins, &[]).len())
 }
 
-fn obstacles<'a>(pins: &'a Pins, places: &Places) -> Vec<Placed<'a>> {
-    let is_obstacle = |signal: &str| signal.starts_with(OBSTACLE) || signal.starts_with(SHARP);
-    in_row(pins, places, is_obstacle, |_| {
-        ([AHEAD_M, 0.0, 0.0], [0.0, APART_M, APART_DEG])
-    })
+/// A sensor in a row.
+struct Sensor<'a> {
+    signal: &'a str,
+    /// That of its own, behind the beginning.
+    name: &'a str,
+    pin: &'a str,
+    place: [f64; 3],
 }
 
-/// Sensors of a kind where somebody says that they are, the others in a row: its middle and the step to the left, by its length.
-fn in_row<'a>(
-    pins: &'a Pins,
-    places: &Places,
-    is_kind: impl Fn(&str) -> bool,
-    row: impl Fn(usize) -> ([f64; 3], [f64; 3]),
-) -> Vec<Placed<'a>> {
-    let signals = pins.iter().map(|(signal, pin)| (&signal[..], &pin[..]));
-    let own: Vec<_> = signals
-        .filter(|(signal, _)| is_kind(signal) && new_asked::find(signal).is_none())
-        .collect();
-    let elsewhere = |signal: &str| place_of(places, signal);
-    let count = own
-        .iter()
-        .filter(|(signal, _)| elsewhere(signal).is_none())
-        .count();
-    let (middle, step) = row(count);
-    let mut steps = 0.5 * (count as f64 - 1.0);
-    let placed = own.into_iter().map(|(signal, pin)| {
-        let place = elsewhere(signal).unwrap_or_else(|| {
-            let place = [0, 1, 2].map(|axis| middle[axis] + steps * step[axis]);
-            steps -= 1.0;
-            place
+impl InRow {
+    /// Their table, empty without any; `more` is what one says of itself, and which keys of all it has not.
+    fn text<'k>(
+        &self,
+        wiring: &str,
+        pins: &Pins,
+        places: &Places,
+        more: impl Fn(&str, &str) -> (&'k str, &'k [&'k str]),
+    ) -> String {
+        let sensors = self.sensors(pins, places);
+        let mut text = String::new();
+        if !sensors.is_empty() {
+            let Self { about, table, .. } = self;
+            let _ = write!(text, "\n# {about}\n[wiring.{wiring}.{table}]\n");
+        }
+        for sensor in sensors {
+            let [x_m, y_m, angle_deg] = sensor.place;
+            let looks = match self.apart_deg {
+                0.0 => String::new(),
+                _ => format!(", angle_deg = {angle_deg}"),
+            };
+            let (more, lacks) = more(sensor.signal, sensor.pin);
+            let said = self.said(pins, |key| !lacks.contains(&key));
+            let (name, pin) = (sensor.name, quoted(sensor.pin));
+            let _ = writeln!(
+                text,
+                "{name} = {{ pin = {pin}, x_m = {x_m}, y_m = {y_m:.4}{looks}{more}{said} }}"
+            );
+        }
+        text
+    }
+
+    /// What a signal is called behind the beginning of those of this kind.
+    fn own_name<'a>(&self, signal: &'a str) -> Option<&'a str> {
+        let mut begins = NAMED.iter().filter(|(_, table)| *table == self.table);
+        begins.find_map(|(begin, _)| signal.strip_prefix(begin))
+    }
+
+    /// Those among the pins, where somebody says that they are or in a row, ahead or behind.
+    fn sensors<'a>(&self, pins: &'a Pins, places: &Places) -> Vec<Sensor<'a>> {
+        let own = pins.iter().filter_map(|(signal, pin)| {
+            let name = self.own_name(signal)?;
+            (!is_of_all(signal)).then_some((&signal[..], name, &pin[..]))
         });
-        (signal, pin, place)
-    });
-    placed.collect()
+        let own: Vec<_> = own.collect();
+        let pitch = pins.iter().find(|(signal, _)| signal == LINE_PITCH);
+        let pitch_m: Option<f64> = pitch.and_then(|(_, metres)| metres.parse().ok());
+        let usual = |signal: &str| {
+            let with = |other: &str| {
+                is_behind(other) == is_behind(signal) && place_of(places, other).is_none()
+            };
+            let row: Vec<_> = own.iter().filter(|(other, ..)| with(other)).collect();
+            let before = row
+                .iter()
+                .take_while(|(other, ..)| *other != signal)
+                .count();
+            let aside = 0.5 * (row.len() as f64 - 1.0) - before as f64;
+            let apart_m = pitch_m.filter(|_| self.table == LINES.table);
+            let y_m = apart_m.unwrap_or((self.apart_m)(row.len())) * aside;
+            let angle_deg = self.apart_deg * aside;
+            match is_behind(signal) {
+                false => [self.ahead_m, y_m, angle_deg],
+                true => [REAR_M, y_m, 180.0_f64.copysign(angle_deg) - angle_deg],
+            }
+        };
+        let sensors = own.iter().map(|&(signal, name, pin)| Sensor {
+            signal,
+            name,
+            pin,
+            place: place_of(places, signal).unwrap_or_else(|| usual(signal)),
+        });
+        sensors.collect()
+    }
+
+    /// What is said of all of them, as keys of one.
+    fn said(&self, pins: &Pins, has: impl Fn(&str) -> bool) -> String {
+        let said = pins.iter().filter_map(|(signal, value)| {
+            let key = self
+                .own_name(signal)
+                .filter(|key| is_of_all(signal) && has(key))?;
+            let is_plain = value.parse::<bool>().is_ok() || value.parse::<f64>().is_ok();
+            let value = if is_plain {
+                value.clone()
+            } else {
+                format!("{value:?}")
+            };
+            (signal != LINE_PITCH).then(|| format!(", {key} = {value}"))
+        });
+        said.collect()
+    }
 }
 
-/// What is said of all sensors of a kind, as keys of one.
-fn said(pins: &Pins, kind: &str, has: impl Fn(&str) -> bool) -> String {
-    let said = pins.iter().filter_map(|(signal, value)| {
-        let key = signal.strip_prefix(kind)?;
-        let is_plain = value.parse::<bool>().is_ok() || value.parse::<f64>().is_ok();
-        let value = if is_plain {
-            value.clone()
-        } else {
-            format!("{value:?}")
-        };
-        (has(key) && new_asked::find(signal).is_some()).then(|| format!(", {key} = {value}"))
-    });
-    said.collect()
+/// Whether it is said of all sensors of a kind, and is none of them.
+fn is_of_all(signal: &str) -> bool {
+    signal == MAXSONAR_RX || new_asked::find(signal).is_some()
+}
+
+/// Whether a name says that a sensor is behind the wheels.
+fn is_behind(signal: &str) -> bool {
+    signal.split('_').any(|word| BEHIND.contains(&word))
 }
 
 /// A pin as a file has it: a number, or a name in quotes.

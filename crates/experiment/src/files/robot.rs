@@ -17,14 +17,19 @@
 //! open_circuit_v = 7.4
 //! ```
 
-use super::error::{FileError, did_you_mean};
+use super::error::FileError;
+use super::light::read_light_sensors;
 use super::line::read_line_sensors;
+use super::maxsonar::read_maxsonars;
+use super::named::read_named;
 use super::obstacle::read_obstacle_sensors;
 use super::parameters::read_parameters;
 use super::parts::read_parts;
 use super::pin::{Wired, read_pin, read_wired};
 use super::read::{Allowed, Source, Table};
-use super::sonars::{read_other_sonars, read_rig, report_unplaced, report_unwired, signals};
+use super::sonars::{
+    read_other_sonars, read_rig, report_unplaced, report_untriggered, report_unwired, signals,
+};
 use rumbo_control::params::ParamId;
 use rumbo_plant::params::Params;
 use rumbo_plant::plant::Mounts;
@@ -176,25 +181,6 @@ pub(crate) fn read_plant(table: &Table<'_, '_>, prefix: &str) -> BTreeMap<String
     values
 }
 
-/// One of a list by its name; the first one where the key is left out.
-fn read_named<T, const N: usize>(
-    root: &Table<'_, '_>,
-    key: &str,
-    known: &[&'static T; N],
-    name_of: fn(&T) -> &'static str,
-) -> &'static T {
-    let first = known[0];
-    let Some(name) = root.text(key) else {
-        return first;
-    };
-    let found = known.iter().find(|each| name_of(each) == name.value);
-    found.copied().unwrap_or_else(|| {
-        let names = known.map(|each| name_of(each).to_owned());
-        root.complain(key, name.line, &name.value, &did_you_mean(&names));
-        first
-    })
-}
-
 fn read_wiring(
     table: &Table<'_, '_>,
     board: &'static Board,
@@ -243,6 +229,9 @@ fn read_wiring(
     read_parts(&table.table("parts"), &mut wiring);
     read_line_sensors(&table.table("line"), &mut wiring);
     read_obstacle_sensors(&table.table("obstacle"), &mut wiring);
+    read_light_sensors(&table.table("light"), &mut wiring);
+    read_maxsonars(&table.table("maxsonar"), &mut wiring);
+    report_untriggered(table, &wiring);
     suits_driver(table, &wiring);
     for (signal, pin) in &wiring.pins {
         if wiring.shield_pins().any(|taken| taken == *pin) {

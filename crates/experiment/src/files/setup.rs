@@ -230,6 +230,7 @@ impl Setup {
             world,
             lines: setup.world.lines.clone().into(),
             north_rad: setup.world.north_rad,
+            light: setup.world.light.clone().into(),
             start: pose(&scenario.start),
             wheels_in_air: scenario.wheels_in_air,
             program,

@@ -117,6 +117,30 @@ pub(super) fn report_unplaced(table: &Table<'_, '_>, others: &[String]) {
     }
 }
 
+/// Reports the echo of a sonar without a trigger, which never comes.
+pub(super) fn report_untriggered(table: &Table<'_, '_>, wiring: &Wiring) {
+    for signal in wiring.pins.keys() {
+        let Some(sonar) = signal.strip_suffix(ENDS[1]) else {
+            continue;
+        };
+        let trigger = format!("{sonar}{}", ENDS[0]);
+        if wiring.pins.contains_key(&trigger) {
+            continue;
+        }
+        let line = table.value(signal).map_or(0, |(line, _)| line);
+        let remedy = format!(
+            "nothing triggers that sonar: give {trigger} too, the same pin where it has one line for both; one that measures \
+             by itself is maxsonar.{sonar} = {{ pin = 7, x_m = 0.11 }}"
+        );
+        table.complain(
+            signal,
+            line,
+            &wiring.board.shown(wiring.pins[signal]),
+            &remedy,
+        );
+    }
+}
+
 /// Reports the sonars of a rig that nobody can trigger.
 pub(super) fn report_unwired<'a>(
     rigs: &Table<'_, '_>,

@@ -16,6 +16,8 @@
 //! angle_deg = 20
 //! [[line]]               # dark lines on the floor: see `line.rs`
 //! points_m = [[0, 0], [1, 0]]
+//! [[lamp]]               # lamps: see `light.rs`
+//! at_m = [0.9, -0.5]
 //! [[mover]]              # bodies that move: see `mover.rs`
 //! diameter_m = 0.3
 //! path_m = [[0.8, -0.9], [0.8, 0.9]]
@@ -31,6 +33,7 @@
 //! ```
 
 use super::error::FileError;
+use super::light::read_light;
 use super::line::read_lines;
 use super::mover::{MOST_MOVERS, Mover, read_mover};
 use super::read::{Allowed, Source, Table};
@@ -39,6 +42,7 @@ use super::value::{ANGLE, PLACE, SIDE};
 use crate::random_world::{Journey, RandomWorld};
 use rumbo_plant::world::{Block, Point, ShapeError, Wall, World};
 use rumbo_sim::floor::DarkLine;
+use rumbo_sim::light::Light;
 
 /// Each ray of a sonar meets all of them.
 const MOST_SHAPES: usize = 1_000;
@@ -66,6 +70,8 @@ pub struct WorldFile {
     pub boxes: Vec<Block>,
     /// Dark lines on the floor.
     pub lines: Vec<DarkLine>,
+    /// Its lamps, and the light of the room.
+    pub light: Light,
     /// What moves.
     pub movers: Vec<Mover>,
     /// Where the robot starts, in place of the scenario's start.
@@ -118,6 +124,7 @@ impl WorldFile {
             })
             .collect();
         let lines = read_lines(&root);
+        let light = read_light(&root);
         let random = root
             .has("random")
             .then(|| read_random(&root.table("random")));
@@ -137,6 +144,7 @@ impl WorldFile {
             walls,
             boxes,
             lines,
+            light,
             movers,
             start,
             goal_m,

@@ -9,6 +9,7 @@ mod fleet;
 mod floor;
 mod journey;
 mod lane;
+mod light;
 mod mission;
 mod path;
 mod route;
@@ -85,6 +86,7 @@ pub fn compute(setup: &Setup, sim: &Sim, trace: &Trace) -> Metrics {
     metrics.insert("telemetry_hz".into(), frames.count() as f64 / duration_s);
     metrics.insert("control_period_s".into(), sim.control_period_s());
     floor::following(setup, trace, &mut metrics);
+    light::seeking(setup, trace, &mut metrics);
     if trace.drove() {
         of_mode(setup, sim, trace, &mut metrics);
     }

@@ -347,6 +347,7 @@ impl Target for Toy {
             routes: Vec::new(),
             robot: "toy".into(),
             start: MapPose::default(),
+            lamps: Vec::new(),
             obstacles: vec![SceneObstacle {
                 corners_m: vec![[1.3, -1.0], [1.3, 1.0]],
                 closed: false,

@@ -78,7 +78,13 @@ impl Mega {
     }
 
     /// The robot stands there now: its sensors of distance look at the world, as far as a measurement ends before the next time.
-    pub(crate) fn range(&mut self, world: &World, eyes: &Eyes, now_us: u64, noise: &Noise) {
+    pub(crate) fn range_by_light(
+        &mut self,
+        world: &World,
+        eyes: &Eyes,
+        now_us: u64,
+        noise: &Noise,
+    ) {
         let cycle = self.cycle_of(now_us);
         let until = cycle + MEASURING_US * CYCLES_PER_US;
         for (device, ranger) in self.bus.rangers() {

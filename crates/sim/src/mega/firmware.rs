@@ -6,6 +6,8 @@ use crate::boards::Board;
 use crate::bus::BusDevice;
 use crate::error::SimError;
 use crate::floor::LineSensor;
+use crate::light::LightSensor;
+use crate::maxsonar::MaxSonar;
 use crate::obstacle::ObstacleSensor;
 use crate::wiring::{Motor, Part, Wiring};
 use rumbo_emulator::chip::Chip;
@@ -52,6 +54,8 @@ pub struct Firmware {
     parts: Vec<Part>,
     line_sensors: Vec<LineSensor>,
     obstacle_sensors: Vec<ObstacleSensor>,
+    light_sensors: Vec<LightSensor>,
+    maxsonars: Vec<MaxSonar>,
     bus: Vec<BusDevice>,
     motors: [Option<Motor>; 2],
 }
@@ -78,6 +82,8 @@ impl Firmware {
             parts: pins.parts.clone(),
             line_sensors: pins.line_sensors.clone(),
             obstacle_sensors: pins.obstacle_sensors.clone(),
+            light_sensors: pins.light_sensors.clone(),
+            maxsonars: pins.maxsonars.clone(),
             bus: pins.bus.clone(),
             motors: pins.motors,
             link_baud: pins.link_baud.unwrap_or(LINK_BAUD),
@@ -131,6 +137,16 @@ impl Firmware {
     /// Its infrared sensors for obstacles.
     pub fn obstacle_sensors(&self) -> &[ObstacleSensor] {
         &self.obstacle_sensors
+    }
+
+    /// Its light sensors.
+    pub fn light_sensors(&self) -> &[LightSensor] {
+        &self.light_sensors
+    }
+
+    /// Its range finders that measure by themselves.
+    pub fn maxsonars(&self) -> &[MaxSonar] {
+        &self.maxsonars
     }
 
     /// The devices on its two-wire bus.

@@ -19,7 +19,8 @@
 //! | `console` | output of the USARTs, for people |
 //! | `meters` | what instruments at the wired pins show |
 //! | `marks` | when the program reaches some of its functions |
-//! | `floor`, `obstacle` | infrared sensors for lines, for obstacles |
+//! | `floor`, `obstacle`, `light` | sensors for lines, for obstacles, for light |
+//! | `maxsonar` | range finders that measure by themselves |
 //! | `parts` | buttons, switches, potentiometers and remote controls |
 //! | `register` | the register of a motor shield |
 //! | `wheels` | what the program did with each motor |
@@ -38,7 +39,9 @@ mod bus;
 mod echo;
 mod floor;
 mod inputs;
+mod light;
 mod marks;
+mod maxsonar;
 mod meters;
 mod module;
 mod notes;
@@ -53,6 +56,8 @@ mod wheels;
 pub use notes::Note;
 
 use crate::bus::Bus;
+use crate::light::Lit;
+use crate::maxsonar::Ranging;
 use crate::obstacle::Seen;
 use crate::remote::Remote;
 use crate::sonar_fault::SonarFaults;
@@ -157,6 +162,10 @@ pub struct Mega {
     charges: Vec<floor::Charge>,
     /// What each sensor for obstacles sees.
     obstacles: Vec<Option<Seen>>,
+    /// What each light sensor sees and gives.
+    light: Vec<Option<Lit>>,
+    /// What each range finder does that measures by itself.
+    ranging: Vec<Ranging>,
     /// What has been set of each part.
     worked: Vec<f64>,
     /// The remote controls, each with the number of its part.
@@ -210,6 +219,8 @@ impl Mega {
             floor: Vec::new(),
             charges: floor::Charge::of(&firmware),
             obstacles: Vec::new(),
+            light: Vec::new(),
+            ranging: Vec::new(),
             worked: Vec::new(),
             remotes: Vec::new(),
             verdict: None,
@@ -240,6 +251,8 @@ impl Mega {
         self.zero_cycle = cycle;
         self.look_ahead();
         self.echoes = Echoes::default();
+        self.light.clear();
+        self.ranging.clear();
         self.encoders = encoders;
         let wires = self.wires();
         let encoders = wires.encoders.into_iter().zip(encoders);
@@ -344,6 +357,8 @@ impl Mega {
         let mut shown = self.meters.read(self.chip.cycle());
         shown.extend(self.read_floor());
         shown.extend(self.read_obstacles());
+        shown.extend(self.read_light());
+        shown.extend(self.read_ranges());
         shown.extend(self.read_bus());
         shown
     }

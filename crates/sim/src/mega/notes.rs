@@ -138,10 +138,16 @@ impl Mega {
             "sensors for obstacles: by what their sellers and Sharp's data sheet say, not identified"
                 .to_owned()
         });
+        let lights = (!self.firmware.light_sensors().is_empty())
+            .then(|| "light sensors: GL5528 by its data sheet, not identified".to_owned());
+        let ranges = (!self.firmware.maxsonars().is_empty())
+            .then(|| "range finders: LV-MaxSonar-EZ1 by its data sheet, not identified".to_owned());
         let bus = self.firmware.bus().iter();
         let bus = bus.filter_map(|device| device.kind.data_sheet());
         let bus: BTreeSet<String> = bus.map(str::to_owned).collect();
-        let all = [driver, sensors, obstacles].into_iter().flatten();
+        let all = [driver, sensors, obstacles, lights, ranges]
+            .into_iter()
+            .flatten();
         let all: Vec<String> = all.chain(bus).collect();
         (!all.is_empty()).then(|| all.join("; "))
     }

@@ -30,6 +30,14 @@ impl Sim {
             if !mega.firmware().obstacle_sensors().is_empty() {
                 mega.see_obstacles(self.world(), &self.pose(), self.now_us());
             }
+            if !mega.firmware().light_sensors().is_empty() {
+                let (now_us, pose) = (self.now_us(), self.pose());
+                mega.see_light(&self.light, self.world(), &pose, now_us, &self.noise);
+            }
+            if !mega.firmware().maxsonars().is_empty() {
+                let (from, sound) = ((self.world(), &self.pose()), &self.params.sonar);
+                mega.range_by_sound(from, sound, self.now_us(), end_us);
+            }
             if !mega.firmware().bus().is_empty() {
                 let [forward_m_s, yaw_rad_s] = self.state.speed();
                 let motion = Motion {
@@ -43,7 +51,7 @@ impl Sim {
                     pose: self.pose(),
                     servo_rad: self.state.servo_rad(),
                 };
-                mega.range(self.world(), &eyes, self.now_us(), &self.noise);
+                mega.range_by_light(self.world(), &eyes, self.now_us(), &self.noise);
                 mega.look_at_displays(self.now_us());
             }
             mega.send_infrared(self.now_us(), end_us);

@@ -21,6 +21,7 @@ use crate::baseline::Baseline;
 use crate::config::{Config, Program};
 use crate::error::SimError;
 use crate::floor::DarkLine;
+use crate::light::Light;
 use crate::mega::Mega;
 use crate::sonar_fault::{SonarFault, SonarFaults, TimedSonarFault};
 use crate::tape::{LinkBurst, LinkTape};
@@ -72,6 +73,7 @@ pub struct Sim {
     lines: Arc<[DarkLine]>,
     /// Where magnetic north is, counter-clockwise from the world's x axis [rad].
     north_rad: f64,
+    light: Arc<Light>,
     /// When outputs first and last took effect, and how often since the first [us].
     outputs_us: (u64, u64, u64),
     /// The chip is without power: its program does not run, and its pins drive nothing.
@@ -97,6 +99,7 @@ impl Sim {
             world,
             lines,
             north_rad,
+            light,
             start,
             wheels_in_air,
             program,
@@ -173,6 +176,7 @@ impl Sim {
             noise,
             lines,
             north_rad,
+            light,
             outputs_us: (0, 0, 0),
             off: false,
             motors_cut: false,

@@ -8,6 +8,7 @@ mod devices;
 mod import;
 mod information;
 mod kits;
+mod lights;
 mod observe;
 mod obstacles;
 mod run;

@@ -58,14 +58,17 @@ fn a_switch_and_a_sharp_see_the_wall_in_time() {
         "l9110s",
         &[&pins("sharp_front=A0"), "--battery=7.4"],
     );
+    let far = pins("sharp_front=A0,sharp_model=gp2y0a02");
+    new(&bench, "far", "l9110s", &[&far, "--battery=7.4"]);
     // One that is high, beside one that looks back.
     let both = pins("obstacle_front=A0,obstacle_rear=A1,obstacle_seen=high,obstacle_reach_m=0.3");
     let rear = "--sensors=obstacle_rear=-0.1:0:180";
     new(&bench, "high", "l9110s", &[&both, rear, "--battery=7.4"]);
-    // 15 cm, and 30 cm: 0.92 V.
+    // 15 cm, and 30 cm: 0.92 V, 1.66 V.
     for (robot, seen) in [
         ("switch.toml", "digitalRead(A0) == LOW"),
         ("sharp.toml", "analogRead(A0) > 188"),
+        ("far.toml", "analogRead(A0) > 340"),
         (
             "high.toml",
             "digitalRead(A0) == HIGH || digitalRead(A1) == HIGH",
@@ -78,6 +81,50 @@ fn a_switch_and_a_sharp_see_the_wall_in_time() {
     }
     let (metrics, said) = run(&bench, "switch.toml", &until("false"), &[]);
     assert!(metrics["contacts"].as_f64().unwrap() > 0.0, "{said}");
+}
+
+#[test]
+fn a_maxsonar_that_nobody_triggers_sees_the_wall_in_time_unless_it_is_stopped() {
+    let Some(bench) = bench("maxsonar") else {
+        return;
+    };
+    let motors = "left_forward=5,left_backward=6,right_forward=9,right_backward=10";
+    // 16 inches: 2352 us, 32 counts of the converter.
+    let pulse =
+        "([] { unsigned long us = pulseIn(7, HIGH, 60000); return us != 0 && us <= 2352; })()";
+    for (name, sensor, seen) in [
+        ("pulse", "maxsonar_front=7,maxsonar_rx=8", pulse),
+        ("voltage", "maxsonar_front=A0", "analogRead(A0) <= 32"),
+    ] {
+        let pins = format!("--pins={motors},{sensor}");
+        new(&bench, name, "l9110s", &[&pins, "--battery=7.4"]);
+        let (metrics, said) = run(&bench, &format!("{name}.toml"), &until(seen), &[]);
+        assert_eq!(metrics["contacts"], 0.0, "{said}");
+        assert!(metrics["path_m"].as_f64().unwrap() > 0.3, "{said}");
+        assert!(said.contains("range finders: LV-MaxSonar-EZ1 by"), "{said}");
+    }
+    // Its RX is low, so that it measures nothing.
+    let stopped = until(pulse).replace("void setup() {", "void setup() { pinMode(8, OUTPUT);");
+    let (metrics, said) = run(&bench, "pulse.toml", &stopped, &[]);
+    assert!(metrics["contacts"].as_f64().unwrap() > 0.0, "{said}");
+    let alone = format!("--pins={motors},front_echo=7");
+    let refused = rumbo(
+        &bench,
+        &[
+            "new",
+            "robot",
+            "alone",
+            "--board=uno",
+            "--driver=l9110s",
+            &alone,
+        ],
+    );
+    assert_eq!(refused.status.code(), Some(2));
+    let said = stderr(&refused);
+    assert!(
+        said.contains("--pins front_echo=7: nothing triggers that sonar: give front_trigger too"),
+        "{said}"
+    );
 }
 
 #[test]
