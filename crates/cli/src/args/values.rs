@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::manifest::LONGEST_S;
 use rumbo_experiment::files::new_robot::{
-    BATTERY, GearMotor, JUMPERS, LINE, LINK_BAUD, MOTORS, OBSTACLE, SERVO_AHEAD, SERVO_REVERSED,
-    SHARP, is_of_sonar,
+    BATTERY, GearMotor, JUMPERS, LINE, LINK_BAUD, MOTORS, OBSTACLE, PITCH, SERVO_AHEAD,
+    SERVO_REVERSED, SHARP, is_of_sonar,
 };
 use rumbo_experiment::files::{TimedText, TypedPort, check_line, parameters, placed, pressed};
 use rumbo_sim::boards::{BOARDS, Board};
@@ -63,6 +63,7 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
         LINK_BAUD,
         SERVO_AHEAD,
         SERVO_REVERSED,
+        PITCH,
         BATTERY[0],
         BATTERY[1],
     ];
@@ -74,14 +75,23 @@ pub(crate) fn pin(text: &str) -> Result<(String, String), String> {
             said.join(", ")
         ));
     }
-    if signal == SERVO_AHEAD
-        && !pin
-            .parse()
-            .is_ok_and(|deg: f64| (0.0..=180.0).contains(&deg))
-    {
-        return Err(format!(
-            "{SERVO_AHEAD} = {pin}: must be an angle of servo.write(), 0 to 180"
-        ));
+    let numbers = [
+        (
+            SERVO_AHEAD,
+            0.0..=180.0,
+            "an angle of servo.write(), 0 to 180",
+        ),
+        (
+            PITCH,
+            0.003..=0.1,
+            "m from a sensor to the next, 0.003 to 0.1",
+        ),
+    ];
+    let wrong = numbers.into_iter().find(|(key, range, _)| {
+        signal == *key && !pin.parse().is_ok_and(|number: f64| range.contains(&number))
+    });
+    if let Some((key, _, remedy)) = wrong {
+        return Err(format!("{key} = {pin}: must be {remedy}"));
     }
     Ok((signal.to_owned(), pin.to_owned()))
 }

@@ -11,7 +11,7 @@ use rumbo_sim::drivers::{Direction, Driver};
 use rumbo_sim::wiring::{Wiring, is_driver_input};
 
 pub use super::new_plant::{GearMotor, MOTORS, Measured, counted};
-pub use super::new_sensors::{LINE, OBSTACLE, SHARP};
+pub use super::new_sensors::{LINE, OBSTACLE, PITCH, SHARP};
 pub use super::sonars::is_of_sonar;
 
 /// A driver that is chosen with its enables held by jumpers.

@@ -1,5 +1,5 @@
 //! The sensors of a robot file to start from: sonars at the place that their names say; what looks down or for obstacles in
-//! a row from left to right, as it was given; or where somebody says that they are.
+//! a row from left to right, as it was given, `rear` or `back` in one behind; or where somebody says that they are.
 
 use super::sonars::{self, is_of_sonar};
 use rumbo_sim::wiring::SONARS;
@@ -22,12 +22,19 @@ const OF_LINES: [(&str, &str); 4] = [
 const OF_OBSTACLES: [(&str, &str); 2] =
     [("obstacle_seen", "seen"), ("obstacle_reach_m", "reach_m")];
 
+/// In place of a pin, how far apart line sensors are \[m\]: 0.0095 those of a QTR-8.
+pub const PITCH: &str = "line_pitch_m";
+/// Words for what is behind the wheels.
+const BEHIND: [&str; 2] = ["rear", "back"];
+
 /// Line sensors are so far ahead, and so far apart \[m\]; two stand beside the tape, one on each side.
 const LINE_AHEAD_M: f64 = 0.09;
 const PITCH_M: f64 = 0.015;
 const ASTRIDE_M: f64 = 0.04;
 /// Those for obstacles are so far ahead, so far apart \[m\], and look so far apart \[deg\].
 const AHEAD_M: f64 = 0.11;
+/// What is behind the wheels is so far ahead of them \[m\].
+const REAR_M: f64 = -0.08;
 const APART_M: f64 = 0.05;
 const APART_DEG: f64 = 30.0;
 
@@ -73,7 +80,7 @@ pub(super) fn usual_place(sonar: &str) -> Option<[f64; 3]> {
     let side = f64::from(i8::from(says(&["left"])) - i8::from(says(&["right"])));
     let (ahead, behind) = (
         says(&["front", "middle", "center", "centre"]),
-        says(&["rear", "back"]),
+        says(&BEHIND),
     );
     match (ahead, behind, side != 0.0) {
         (true, false, false) => Some([0.11, 0.0, 0.0]),
@@ -88,9 +95,11 @@ pub(super) fn usual_place(sonar: &str) -> Option<[f64; 3]> {
 /// The table of the line sensors, empty without any.
 pub(super) fn line_sensors(wiring: &str, pins: &Pins, places: &Places) -> String {
     let rc = pins.iter().any(|(signal, _)| signal == "line_rc");
-    let sensors = of_kind(pins, &OF_LINES, |signal| signal.starts_with(LINE));
-    let row = in_row(&sensors, places);
-    let pitch_m = if row.len() == 2 { ASTRIDE_M } else { PITCH_M };
+    let sensors = of_kind(pins, &OF_LINES, |signal| {
+        signal.starts_with(LINE) && signal != PITCH
+    });
+    let pitch = pins.iter().find(|(signal, _)| signal == PITCH);
+    let pitch_m: Option<f64> = pitch.and_then(|(_, metres)| metres.parse().ok());
     let mut text = String::new();
     if !sensors.is_empty() {
         let _ = write!(
@@ -99,8 +108,17 @@ pub(super) fn line_sensors(wiring: &str, pins: &Pins, places: &Places) -> String
              # dark = \"low\".\n[wiring.{wiring}.line]\n"
         );
     }
-    for (signal, pin) in sensors {
-        let usual = || [LINE_AHEAD_M, pitch_m * aside(signal, &row), 0.0];
+    for (signal, pin) in &sensors {
+        let usual = || {
+            let row = row_of(signal, &sensors, places);
+            let usual_m = if row.len() == 2 { ASTRIDE_M } else { PITCH_M };
+            let x_m = if is_behind(signal) {
+                REAR_M
+            } else {
+                LINE_AHEAD_M
+            };
+            [x_m, pitch_m.unwrap_or(usual_m) * aside(signal, &row), 0.0]
+        };
         let [x_m, y_m, _] = place_of(places, signal).unwrap_or_else(usual);
         let analogue = pin.parse::<u8>().is_err() && !rc;
         let kind = if analogue { ", analogue = true" } else { "" };
@@ -120,7 +138,6 @@ pub(super) fn obstacle_sensors(wiring: &str, pins: &Pins, places: &Places) -> St
     let sensors = of_kind(pins, &OF_OBSTACLES, |signal| {
         signal.starts_with(OBSTACLE) || signal.starts_with(SHARP)
     });
-    let row = in_row(&sensors, places);
     let mut text = String::new();
     if !sensors.is_empty() {
         let _ = write!(
@@ -129,10 +146,17 @@ pub(super) fn obstacle_sensors(wiring: &str, pins: &Pins, places: &Places) -> St
              # nearer than reach_m = 0.15, unless seen = \"high\"; an analogue one is a Sharp GP2Y0A21YK.\n[wiring.{wiring}.obstacle]\n"
         );
     }
-    for (signal, pin) in sensors {
-        let aside = aside(signal, &row);
-        let usual = [AHEAD_M, APART_M * aside, APART_DEG * aside];
-        let [x_m, y_m, angle_deg] = place_of(places, signal).unwrap_or(usual);
+    for (signal, pin) in &sensors {
+        let usual = || {
+            let aside = aside(signal, &row_of(signal, &sensors, places));
+            let (y_m, angle_deg) = (APART_M * aside, APART_DEG * aside);
+            match is_behind(signal) {
+                true if angle_deg < 0.0 => [REAR_M, y_m, -180.0 - angle_deg],
+                true => [REAR_M, y_m, 180.0 - angle_deg],
+                false => [AHEAD_M, y_m, angle_deg],
+            }
+        };
+        let [x_m, y_m, angle_deg] = place_of(places, signal).unwrap_or_else(usual);
         let (name, more) = match signal.strip_prefix(SHARP) {
             Some(name) => (name, ", analogue = true".to_owned()),
             None => (
@@ -161,11 +185,16 @@ fn of_kind<'a>(
     own.collect()
 }
 
-/// The signals whose place is that in a row, as nobody said another.
-fn in_row<'a>(sensors: &[(&'a str, &str)], places: &Places) -> Vec<&'a str> {
-    let signals = sensors.iter().map(|(signal, _)| *signal);
+/// Whether a name says that a sensor is behind the wheels.
+fn is_behind(signal: &str) -> bool {
+    signal.split('_').any(|word| BEHIND.contains(&word))
+}
+
+/// The signals in the row of one, ahead or behind: those whose place nobody said.
+fn row_of<'a>(signal: &str, sensors: &[(&'a str, &str)], places: &Places) -> Vec<&'a str> {
+    let signals = sensors.iter().map(|(other, _)| *other);
     signals
-        .filter(|signal| place_of(places, signal).is_none())
+        .filter(|other| is_behind(other) == is_behind(signal) && place_of(places, other).is_none())
         .collect()
 }
 
