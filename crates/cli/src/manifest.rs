@@ -55,6 +55,12 @@ fn check_ranges(log: &Path, manifest: &Manifest) -> Result<(), Failure> {
         let range = format!("within {MIN_STEP_US}..{MAX_STEP_US}");
         return Err(wrong("step_us", &step_us, &range));
     }
+    if let Some(duration_s) = manifest.duration_s
+        && !(0.0..=LONGEST_S).contains(&duration_s)
+    {
+        let range = format!("within 0..{LONGEST_S} s");
+        return Err(wrong("duration_s", &duration_s, &range));
+    }
     for (key, texts) in [
         ("texts", &manifest.texts),
         ("usb_texts", &manifest.usb_texts),
@@ -147,6 +153,7 @@ pub(crate) fn setup(log: &Path, manifest: &Manifest) -> Result<(Setup, u64), Fai
         rig: manifest.rig.clone(),
         world: Some(world.clone()),
         policy: policy.map(|(name, _)| name.to_owned()),
+        duration_s: manifest.duration_s,
         parameters: manifest.parameters.clone(),
         program,
         firmware,

@@ -178,6 +178,7 @@ fn overrides(args: &RunArgs) -> Overrides {
         .overrides(args.program, &args.image, &args.parameters);
     Overrides {
         texts: lines.chain(hands).collect(),
+        duration_s: args.duration,
         ..of_scenario
     }
 }
@@ -254,7 +255,7 @@ fn sends_all(setup: &Setup) -> Result<(), Failure> {
     match setup.texts.iter().find(|text| text.at_s >= duration_s) {
         None => Ok(()),
         Some(late) => Err(Failure::Input(format!(
-            "scenario {}: lasts {duration_s} s, and `{}` is to be sent at {} s; send it earlier",
+            "scenario {}: lasts {duration_s} s, and `{}` is to be sent at {} s; send it earlier, or let it last longer, --duration",
             setup.scenario.name, late.text, late.at_s
         ))),
     }

@@ -16,6 +16,7 @@ rumbo_sim::notes! {
         TooManyEdges { most: f64 } "it switches the robot's pins more than {most} times a second, which no motor follows; the run was ended";
         NeverTurned { pwm: u16 } "it drove the motors, by a PWM of at most {pwm} of 255, and no wheel turned: that is too little for [plant.motor] at [plant.battery] of the robot's file";
         StoodStill { from_s: f64, for_s: f64, pwm: u16 } "it drove the motors from {from_s:.1} s on for {for_s:.1} s, by a PWM of at most {pwm} of 255, and no wheel turned: that is too little for [plant.motor] at [plant.battery] of the robot's file";
+        LostLine { at_s: f64, speed_m_s: f64 } "it lost its line at {at_s:.1} s, at {speed_m_s:.2} m/s; if yours is slower, or its sensors are elsewhere, say its motors, its battery and their places: --motor, --battery and --sensors of `rumbo new robot`, or the robot's file";
         HandedInAsImage {} "handed in as an image: its compiler is not known";
         HandedInLate {} "handed in late, as its name says";
         OtherCompiler { what: &'static str, is: String, wanted: String } "compiled with {what} {is}; the assignment's marks are for {wanted}";

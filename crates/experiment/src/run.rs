@@ -6,6 +6,7 @@
 mod batch;
 
 mod judge;
+mod lost;
 mod player;
 mod still;
 
@@ -228,6 +229,7 @@ impl<S: Deref<Target = Setup> + Clone> Member<S> {
             notes.extend(mega.notes().into_iter().map(of_program));
             notes.extend(mega.data_sheet().map(Note::from));
             notes.extend(still::in_vain(&self.trace.samples));
+            notes.extend(lost::its_line(&self.setup, &self.trace));
         }
         failures.extend(ended.clone());
         RunResult {

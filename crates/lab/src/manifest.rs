@@ -60,6 +60,7 @@ pub fn of(kind: LogKind, setup: &Setup, overrides: &Overrides, seed: u64) -> Man
         program,
         image: overrides.firmware.as_deref().and_then(hash),
         seed: Some(seed),
+        duration_s: overrides.duration_s,
         parameters: overrides.parameters.clone(),
         texts: lines(&overrides.texts, TypedPort::Link),
         usb_texts: lines(&overrides.texts, TypedPort::Usb),

@@ -57,6 +57,9 @@ pub struct Manifest {
     pub image: Option<String>,
     /// Seed of everything random.
     pub seed: Option<u64>,
+    /// How long the run was to last, where that is not what its scenario says \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub duration_s: Option<f64>,
     /// Parameters changed on the command line, in their order.
     pub parameters: Vec<(String, f64)>,
     /// Lines of text sent besides the scenario's commands, with their times \[s\].

@@ -10,7 +10,7 @@ use crate::layout::Layout;
 use crate::libraries::read;
 use crate::limits::Limits;
 use crate::options::{C, CPP, DEBUG, Options, RUN};
-use crate::platformio;
+use crate::platformio::Project;
 use crate::preprocess;
 use crate::sandbox::Sandbox;
 use crate::source::{Given, Source, given};
@@ -188,10 +188,10 @@ impl Compiler {
     /// If the compiler rejects it, or it exceeds a limit.
     pub fn compile(&self, source: &Source, macros: &[&str]) -> Result<Image, SketchError> {
         source.check()?;
-        let project = platformio::flags(source);
-        let flags: Vec<&str> = project.iter().map(String::as_str).collect();
+        let project = Project::of(source);
+        let flags: Vec<&str> = project.flags.iter().map(String::as_str).collect();
         let macros = &[&flags[..], macros].concat();
-        let layout = Layout::of(source);
+        let layout = Layout::of(source, &project);
         let main = preprocess::join(source, layout.main);
         if main.is_none() && !layout.own.iter().any(|name| is_source(name)) {
             return Err(SketchError::NoSketch(source.name.clone()));

@@ -4,8 +4,9 @@
 //! | | own files | headers | libraries |
 //! |---|---|---|---|
 //! | Arduino | those directly in the folder, and all below `src/` | there | `libraries/NAME/` |
-//! | PlatformIO, where no `.ino` lies directly in the folder | all below `src/` | `src/`, `include/` | `lib/NAME/` |
+//! | PlatformIO, where no `.ino` lies directly in the folder | below `src/` those of the environment | `src/`, `include/` | `lib/NAME/` |
 
+use crate::platformio::Project;
 use crate::source::Source;
 use std::collections::BTreeMap;
 
@@ -35,13 +36,15 @@ pub(crate) struct Beside<'a> {
 }
 
 impl<'a> Layout<'a> {
-    pub(crate) fn of(source: &'a Source) -> Self {
+    pub(crate) fn of(source: &'a Source, project: &Project) -> Self {
         let names = || source.files.keys().map(String::as_str);
         let is_ino = |name: &str| name.ends_with(".ino") || name.ends_with(".pde");
         let is_arduino = names().any(|name| !name.contains('/') && is_ino(name));
         let is_own = |name: &&str| match is_arduino {
             true => !name.contains('/') || name.starts_with("src/"),
-            false => name.starts_with("src/"),
+            false => name
+                .strip_prefix("src/")
+                .is_some_and(|name| project.builds(name)),
         };
         let mut roots: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
         for name in names() {

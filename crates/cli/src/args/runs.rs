@@ -1,7 +1,7 @@
 //! Options of the commands that run experiments and fit numbers: `run`, `experiments`, `identify`, `calibrate`.
 
 use super::groups::{ImageArgs, OverwriteArgs, ParameterArgs, ProgramName, SeedArgs, SettingArgs};
-use super::values::{at_rest, line_ending, press, put, timed_text, usb_text};
+use super::values::{at_rest, duration, line_ending, press, put, timed_text, usb_text};
 use clap::{Args, ValueEnum};
 use rumbo_experiment::files::TimedText;
 use rumbo_wire::LineEnding;
@@ -21,6 +21,9 @@ pub(crate) struct RunArgs {
     pub(crate) runs: u32,
     #[command(flatten)]
     pub(crate) setting: SettingArgs,
+    /// How long each run lasts, in s [default: the scenario's]
+    #[arg(long, value_name = "S", value_parser = duration)]
+    pub(crate) duration: Option<f64>,
     /// Program at the robot's pins: ours, or the report's with its schemes and gains (of parameters, only the plant's
     /// count for that one)
     #[arg(

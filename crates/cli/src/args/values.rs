@@ -86,6 +86,13 @@ pub(super) fn at_rest(text: &str) -> Result<f64, &'static str> {
     volts.ok_or("must be 5 to 13 V, e.g. 7.62")
 }
 
+/// How long a run lasts.
+pub(super) fn duration(text: &str) -> Result<f64, &'static str> {
+    let seconds = text.parse().ok();
+    let seconds = seconds.filter(|seconds| (0.1..=3600.0).contains(seconds));
+    seconds.ok_or("must be 0.1 to 3600 s")
+}
+
 /// Where a sensor sits and looks: `left=0.05:0.07:90`, ahead without a direction.
 pub(crate) fn sensor(text: &str) -> Result<(String, [f64; 3]), &'static str> {
     let read = text.split_once('=').and_then(|(name, place)| {

@@ -65,6 +65,9 @@ impl Library {
             scenario.rig.clone_from(rig);
         }
         set_parameters(&mut scenario, &overrides.parameters)?;
+        if let Some(duration_s) = overrides.duration_s {
+            last_for(&mut scenario, duration_s)?;
+        }
         if let Some(start) = world.start.filter(|_| alone) {
             scenario.start = start;
         }
@@ -100,6 +103,20 @@ impl Library {
             number: 0,
             fleet: Vec::new(),
         })
+    }
+}
+
+/// Has a scenario last for another time, in which all of its commands are.
+fn last_for(scenario: &mut ScenarioFile, duration_s: f64) -> Result<(), FileError> {
+    let commands = scenario.commands.iter().map(|command| command.at_s);
+    let texts = scenario.texts.iter().map(|text| text.at_s);
+    scenario.duration_s = duration_s;
+    match commands.chain(texts).find(|at_s| *at_s >= duration_s) {
+        None => Ok(()),
+        Some(at_s) => Err(FileError::Setting(format!(
+            "scenario {}: has a command at {at_s} s, and --duration is {duration_s} s: it must be more",
+            scenario.name
+        ))),
     }
 }
 

@@ -250,6 +250,7 @@ impl InRow {
             let angle_deg = self.apart_deg * aside;
             match is_behind(signal) {
                 false => [self.ahead_m, y_m, angle_deg],
+                true if self.apart_deg == 0.0 => [REAR_M, y_m, 0.0],
                 true => [REAR_M, y_m, 180.0_f64.copysign(angle_deg) - angle_deg],
             }
         };

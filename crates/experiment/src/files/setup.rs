@@ -35,6 +35,8 @@ pub struct Overrides {
     pub world: Option<String>,
     /// Another policy for mode 9.
     pub policy: Option<String>,
+    /// How long a run lasts [s].
+    pub duration_s: Option<f64>,
     /// Parameters by name: those of the control core, and the dotted keys of the plant such as `battery.open_circuit_v`.
     pub parameters: Vec<(String, f64)>,
     /// The program that drives the robot.

@@ -9,20 +9,20 @@ use rumbo_sim::trace::Trace;
 /// A robot that drives to its line has this long [s].
 const FROM_S: f64 = 1.0;
 /// Farther from it the robot has lost its line [m].
-const LOST_M: f64 = 0.05;
+pub(crate) const LOST_M: f64 = 0.05;
 
 /// From sample to sample a robot does not go farther along its line: it is another place of it [m].
 const STEP_M: f64 = 0.05;
 
-/// The distance from the nearest line, the way along it, and for how long it was lost.
-pub(super) fn following(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
+/// Where the middle of the line sensors was by the nearest line, in time [s]; nothing without sensors or lines.
+pub(crate) fn places(setup: &Setup, trace: &Trace) -> Vec<(f64, Nearest)> {
     let sensors = setup
         .firmware
         .as_ref()
         .map(|firmware| firmware.line_sensors());
     let sensors = sensors.unwrap_or_default();
-    if sensors.is_empty() || setup.world.lines.is_empty() {
-        return;
+    if sensors.is_empty() {
+        return Vec::new();
     }
     let mut middle = sensors[0].clone();
     for axis in 0..2 {
@@ -30,17 +30,25 @@ pub(super) fn following(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
         middle.at_m[axis] = sum / sensors.len() as f64;
     }
     let samples = trace.between(FROM_S, f64::INFINITY);
-    let places: Vec<Nearest> = samples
-        .iter()
-        .filter_map(|sample| {
-            let pose = Pose {
-                x_m: sample.x_m,
-                y_m: sample.y_m,
-                heading_rad: sample.heading_rad,
-            };
-            nearest(&setup.world.lines, middle.place(&pose))
-        })
-        .collect();
+    let places = samples.iter().filter_map(|sample| {
+        let pose = Pose {
+            x_m: sample.x_m,
+            y_m: sample.y_m,
+            heading_rad: sample.heading_rad,
+        };
+        let place = nearest(&setup.world.lines, middle.place(&pose))?;
+        Some((sample.t_s, place))
+    });
+    places.collect()
+}
+
+/// The distance from the nearest line, the way along it, and for how long it was lost.
+pub(super) fn following(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
+    let places = places(setup, trace).into_iter();
+    let places: Vec<Nearest> = places.map(|(_, place)| place).collect();
+    if places.is_empty() {
+        return;
+    }
     let distances: Vec<f64> = places.iter().map(|place| place.distance_m).collect();
     let count = distances.len().max(1) as f64;
     let square: f64 = distances.iter().map(|distance| distance * distance).sum();
@@ -59,7 +67,7 @@ pub(super) fn following(setup: &Setup, trace: &Trace, metrics: &mut Metrics) {
 }
 
 /// How far it came along its line, either way.
-fn way_m(lines: &[DarkLine], places: &[Nearest]) -> f64 {
+pub(crate) fn way_m(lines: &[DarkLine], places: &[Nearest]) -> f64 {
     let steps = places.windows(2).map(|pair| {
         let step_m = pair[1].along_m - pair[0].along_m;
         let lap_m = lines.get(pair[1].line).and_then(DarkLine::lap_m);

@@ -6,7 +6,7 @@
 mod align;
 mod curve;
 mod fleet;
-mod floor;
+pub(crate) mod floor;
 mod journey;
 mod lane;
 mod light;

@@ -3,8 +3,9 @@
 //!
 //! It measures the plant's true motion, a thousand times a second: gravity, the acceleration along the way and towards its
 //! centre, the turn rate. Offset and scale are drawn by the seed, three standard deviations being what the data sheet tolerates;
-//! noise has the data sheet's density, and passes the low-pass filter with the signal. FIFO and motion processor (DMP) are not
-//! modelled.
+//! noise has the data sheet's density, and passes the low-pass filter with the signal. What a program writes into the offset
+//! registers, which only the MPU-6500's map tells (RM-MPU-6500A-00, 2.1), is added; those of the accelerometer have 4096 counts
+//! in a g, as InvenSense's Motion Driver has it, and hold no factory trim. FIFO and motion processor (DMP) are not modelled.
 
 use rumbo_plant::noise::Noise;
 use std::f64::consts::{PI, TAU};
@@ -49,6 +50,10 @@ const BANDWIDTH: [[f64; 2]; 8] = [
 /// Of the chip in a room \[degC\].
 const TEMPERATURE_C: f64 = 25.0;
 
+const XA_OFFS_H: u8 = 0x06;
+const XG_OFFS_USR_H: u8 = 0x13;
+/// One count of the offset registers.
+const TRIMS: [f64; 2] = [GRAVITY / 4_096.0, 4.0 * RATE];
 const SMPLRT_DIV: u8 = 0x19;
 const CONFIG: u8 = 0x1A;
 const GYRO_CONFIG: u8 = 0x1B;
@@ -225,6 +230,7 @@ impl Mpu6050 {
             let density = DENSITY[axis / 3] * libm::sqrt(0.5 * SAMPLES_HZ);
             let measured = truth * (1.0 + drawn(SCALE, SCALES))
                 + error
+                + self.trim(axis)
                 + density * noise.normal(source, now_us);
             let share = 1.0 - libm::exp(-TAU * filter[axis / 3] * dt_s);
             self.filtered[axis] += share * (measured - self.filtered[axis]);
@@ -233,6 +239,15 @@ impl Mpu6050 {
             self.next_us = now_us.max(self.next_us + self.period_us());
             self.publish(now_us, noise);
         }
+    }
+
+    /// What the offset registers add to an axis; bit 0 of the accelerometer's is none of it.
+    fn trim(&self, axis: usize) -> f64 {
+        let first = [XA_OFFS_H, XG_OFFS_USR_H][axis / 3];
+        let from = usize::from(first) + 2 * (axis % 3);
+        let counts = i16::from_be_bytes([self.registers[from], self.registers[from + 1]]);
+        let mask = [!1, !0][axis / 3];
+        TRIMS[axis / 3] * f64::from(counts & mask)
     }
 
     /// From one value in the registers to the next.

@@ -399,6 +399,26 @@ fn what_a_project_says_in_its_build_flags_reaches_its_program() {
     };
     let image = compiler.compile(&files("-std=gnu++14\n  -D SPEED=7"), &[]);
     assert_eq!(image.unwrap().warnings, []);
+    // Files for another board, and a library that includes what the flags lead to.
+    let mut boards = files(
+        "-Iinclude/ -DSPEED=7 -std=gnu++14\nbuild_src_filter = -<*> +<main.cpp> +<*.c> +<lamp/>",
+    );
+    for (name, text) in [
+        ("src/esp.cpp", "#include <Update.h>\n"),
+        (
+            "src/lamp/on.cpp",
+            "#include \"Lamp.h\"\nint on() { return lamp(); }\n",
+        ),
+        ("lib/My Lamp/Lamp.h", "#include \"pins.h\"\nint lamp();\n"),
+        (
+            "lib/My Lamp/Lamp.cpp",
+            "#include \"Lamp.h\"\nint lamp() { return LAMP; }\n",
+        ),
+        ("include/pins.h", "#define LAMP 13\n"),
+    ] {
+        boards.files.insert(name.into(), text.into());
+    }
+    compiler.compile(&boards, &[]).unwrap();
     let without = refused(&compiler, &files("-D OTHER"));
     assert!(
         without.contains("SPEED") && without.contains("'auto'"),

@@ -22,18 +22,22 @@ fn new(bench: &PathBuf, name: &str, driver: &str, more: &[&str]) {
 /// The metrics of a run of a robot with a sketch, and what it noted.
 fn run(bench: &PathBuf, robot: &str, sketch: &str, more: &[&str]) -> (Value, String) {
     std::fs::write(bench.join("car.ino"), sketch).unwrap();
+    let world = ["--world", "wall_front"];
     let free = [
         "run",
         "free",
-        "--world",
-        "wall_front",
         "--sketch",
         "car.ino",
         "--json",
         "--no-record",
         "--robot",
     ];
-    let run = rumbo(bench, &[&free, &[robot][..], more].concat());
+    let world = if more.contains(&"--world") {
+        &[][..]
+    } else {
+        &world
+    };
+    let run = rumbo(bench, &[&free, &[robot][..], world, more].concat());
     let result: Value = serde_json::from_str(&stdout(&run)).unwrap_or_default();
     (result["metrics"].clone(), stdout(&run) + &stderr(&run))
 }
@@ -60,10 +64,9 @@ fn a_switch_and_a_sharp_see_the_wall_in_time() {
     );
     let far = pins("sharp_front=A0,sharp_model=gp2y0a02");
     new(&bench, "far", "l9110s", &[&far, "--battery=7.4"]);
-    // One that is high, beside one that looks back.
+    // One that is high, beside one that looks back, as its name says.
     let both = pins("obstacle_front=A0,obstacle_rear=A1,obstacle_seen=high,obstacle_reach_m=0.3");
-    let rear = "--sensors=obstacle_rear=-0.1:0:180";
-    new(&bench, "high", "l9110s", &[&both, rear, "--battery=7.4"]);
+    new(&bench, "high", "l9110s", &[&both, "--battery=7.4"]);
     // 15 cm, and 30 cm: 0.92 V, 1.66 V.
     for (robot, seen) in [
         ("switch.toml", "digitalRead(A0) == LOW"),
@@ -264,4 +267,40 @@ fn gears_of_metal_a_battery_s_divider_and_a_starter_kit_s_remote_are_options() {
     let sketch = &ino("braked");
     let (_, said) = run(&bench, "braked.toml", sketch, &[]);
     assert!(said.contains("of 255, and no wheel turned"), "{said}");
+}
+
+#[test]
+fn a_line_that_is_lost_is_told_with_the_speed() {
+    let Some(bench) = bench("lost_line") else {
+        return;
+    };
+    let pins = "--pins=left_forward=5,left_backward=6,right_forward=9,right_backward=10,line_left=2,line_right=3,\
+                line_rear=4,line_pitch_m=0.03,obstacle_back_left=7,obstacle_back_right=8";
+    new(&bench, "own", "l9110s", &[pins, "--battery=7.4"]);
+    let text = std::fs::read_to_string(bench.join("own.toml")).unwrap();
+    for place in [
+        "left = { pin = 2, x_m = 0.09, y_m = 0.0150 }",
+        "rear = { pin = 4, x_m = -0.08, y_m = 0.0000 }",
+        "back_left = { pin = 7, x_m = -0.08, y_m = 0.025, angle_deg = 165 }",
+        "back_right = { pin = 8, x_m = -0.08, y_m = -0.025, angle_deg = -165 }",
+    ] {
+        assert!(text.contains(place), "{text}");
+    }
+    let run = |more: &[&str]| {
+        let all = [&["--world", "line_loop"], more].concat();
+        run(&bench, "own.toml", &until("false"), &all)
+    };
+    let (metrics, said) = run(&["--duration", "6"]);
+    assert!(metrics["line_lost_share"].as_f64().unwrap() > 0.2, "{said}");
+    assert!(
+        said.contains("it lost its line at ") && said.contains(" m/s; if yours is slower"),
+        "{said}"
+    );
+    let (_, said) = run(&["--duration", "1.5"]);
+    assert!(!said.contains("it lost its line"), "{said}");
+    let late = run(&["--duration", "5", "--usb", "x@5"]).1;
+    assert!(
+        late.contains("lasts 5 s") && late.contains("--duration"),
+        "{late}"
+    );
 }

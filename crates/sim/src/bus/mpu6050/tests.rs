@@ -153,3 +153,27 @@ fn values_come_at_the_divided_rate_and_each_with_a_pulse_or_until_it_is_read() {
     assert_eq!(run(&mut imu, 201), 0);
     assert_eq!(imu.held, Some(true));
 }
+
+#[test]
+fn what_is_in_the_offset_registers_is_added() {
+    let mut imu = Mpu6050::new(0, [1, 2, 3]);
+    set(&mut imu, PWR_MGMT_1, 1);
+    let rest = means(&mut imu, 5, |_| Motion::default());
+    // As libraries calibrate: what is read at rest goes back with the other sign, in coarser counts.
+    for (axis, first, coarser) in [(0, XA_OFFS_H, 4.0), (6, XG_OFFS_USR_H + 4, 4.0)] {
+        let counts = (-rest[axis] / coarser).round() as i16;
+        let [high, low] = counts.to_be_bytes();
+        set(&mut imu, first, high);
+        set(&mut imu, first + 1, low);
+    }
+    let trimmed = means(&mut imu, 5, |_| Motion::default());
+    assert!(rest[0].abs() > 20.0 && rest[6].abs() > 20.0, "{rest:?}");
+    assert!(
+        trimmed[0].abs() < 6.0 && trimmed[6].abs() < 4.0,
+        "{trimmed:?}"
+    );
+    assert!(
+        (trimmed[5] - rest[5]).abs() < 1.0,
+        "another axis: {trimmed:?}"
+    );
+}
