@@ -158,12 +158,12 @@ pub(crate) struct NewArgs {
     #[arg(long, value_name = "DRIVER", value_parser = values::driver_named)]
     pub(crate) driver: Option<(&'static Driver, bool)>,
     /// Pins of the robot's signals, e.g. left_forward=7,servo=9,front_echo=A1; line sensors from left to right, by names of yours,
-    /// as line_left=2,line_right=A1; of all of them line_dark=low, line_rc=true (QTR-RC), line_pitch_m=0.0095, line_light_v=0.2, line_dark_v=4.8; so
-    /// infrared ones for obstacles, obstacle_left=3, of all of them obstacle_seen=high, obstacle_reach_m=0.3; sharp_front=A0, of all
-    /// of them sharp_model=gp2y0a02; light sensors light_left=A0,light_right=A1, of all of them light_bright=low,
-    /// light_resistor_kohm=4.7, light_rated_kohm=14, or light_switch_lux=50, which are modules; maxsonar_front=7, or A0, of all
-    /// maxsonar_rx=4; those named back or rear are behind, as obstacle_back_left; sonars have names of yours, rear_trigger=4,rear_echo=5; servo_ahead=35 and servo_reversed=true say how a
-    /// servo is mounted,
+    /// as line_left=2,line_right=A1; of all of them line_dark=low, line_rc=true (QTR-RC), line_pitch_m=0.0095, line_light_v=0.2,
+    /// line_dark_v=4.8; so infrared ones for obstacles, obstacle_left=3, of all of them obstacle_seen=high, obstacle_reach_m=0.3;
+    /// sharp_front=A0, of all of them sharp_model=gp2y0a02; light sensors light_left=A0,light_right=A1, of all of them
+    /// light_bright=low, light_resistor_kohm=4.7, light_rated_kohm=14, or light_switch_lux=50, which are modules;
+    /// maxsonar_front=7, or A0, of all of them maxsonar_rx=4; those named back or rear are behind, as obstacle_back_left; sonars
+    /// have names of yours, rear_trigger=4,rear_echo=5; servo_ahead=35 and servo_reversed=true say how a servo is mounted,
     /// link_baud=38400 is the rate of a Bluetooth module; battery=A0,battery_ratio=4 a divider for the battery's voltage
     #[arg(long, value_name = "SIGNAL=PIN", value_delimiter = ',', value_parser = values::pin)]
     pub(crate) pins: Vec<(String, String)>,

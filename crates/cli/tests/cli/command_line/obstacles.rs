@@ -281,8 +281,8 @@ fn a_line_that_is_lost_is_told_with_the_speed() {
     for place in [
         "left = { pin = 2, x_m = 0.09, y_m = 0.0150 }",
         "rear = { pin = 4, x_m = -0.08, y_m = 0.0000 }",
-        "back_left = { pin = 7, x_m = -0.08, y_m = 0.025, angle_deg = 165 }",
-        "back_right = { pin = 8, x_m = -0.08, y_m = -0.025, angle_deg = -165 }",
+        "back_left = { pin = 7, x_m = -0.08, y_m = 0.0250, angle_deg = 165 }",
+        "back_right = { pin = 8, x_m = -0.08, y_m = -0.0250, angle_deg = -165 }",
     ] {
         assert!(text.contains(place), "{text}");
     }
