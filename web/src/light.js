@@ -2,7 +2,7 @@
 /** What a light, a buzzer or a sensor at the robot's pins shows. */
 
 /** What is a sensor: what it measures, in words. @type {Partial<Record<import('./types.js').Part['kind'], (shown: (signal: string, digits: number) => string) => string>>} */
-const SENSORS = { mpu6050: inertial, vl53l0x: (shown) => `${shown('cm', 1)} cm`, qmc5883l: bearing, hmc5883l: bearing };
+const SENSORS = { mpu6050: inertial, vl53l0x: (shown) => `${shown('range_cm', 1)} cm`, qmc5883l: bearing, hmc5883l: bearing };
 
 /** Whether a kind of part is a sensor. @param {import('./types.js').Part['kind']} kind */
 export const isSensor = (kind) => kind in SENSORS;

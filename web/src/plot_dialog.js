@@ -15,7 +15,7 @@ import { numberAs, t } from './text.js';
 /** What the signals of a unit are. @returns {Record<keyof typeof UNITS, string>} */
 const GROUPS = () => ({
   cm: t('distances, cm'), rpm: t('wheel speeds, rpm'), 'of 255': t('PWM, of 255'), '°': t('angles, °'), m: t('positions, m'),
-  '°/s': t('yaw rates, °/s'), 'm/s': t('speeds, m/s'), 'm/s²': t('accelerations, m/s²'), level: t('levels of pins, 0 to 1'), edges: t('encoders, edges'), 'µs': t('pulses, µs'), printed: t('printed by the program'),
+  '°/s': t('yaw rates, °/s'), 'm/s': t('speeds, m/s'), 'm/s²': t('accelerations, m/s²'), level: t('levels of pins, 0 to 1'), edges: t('encoders, edges'), 'µs': t('pulses, µs'), lx: t('light, lx'), Hz: t('tones, Hz'), printed: t('printed by the program'),
 });
 
 export class PlotDialog {

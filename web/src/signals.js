@@ -3,11 +3,12 @@
 
 import { BadExpression, MARK, unitOfExpression } from './computed.js';
 import { ROW } from './row.js';
+import { sensed } from './sensed.js';
 import { named, t } from './text.js';
 import { CM_PER_M, DEG_PER_RAD, RPM_PER_RAD_S } from './units.js';
 
 /** @typedef {import('./theme.js').ColourName} ColourName */
-/** @typedef {'cm' | 'rpm' | 'of 255' | '°' | 'm' | '°/s' | 'm/s' | 'm/s²' | 'level' | 'edges' | 'µs' | 'printed'} Unit */
+/** @typedef {'cm' | 'rpm' | 'of 255' | '°' | 'm' | '°/s' | 'm/s' | 'm/s²' | 'level' | 'edges' | 'µs' | 'lx' | 'Hz' | 'printed'} Unit */
 
 /**
  * @typedef {object} Signal
@@ -32,6 +33,8 @@ export const UNITS = {
   level: { step: 0.1, decimals: 2 },
   edges: { step: 10, decimals: 0, free: true },
   'µs': { step: 100, decimals: 0, free: true },
+  lx: { step: 50, decimals: 0, free: true },
+  Hz: { step: 100, decimals: 0, free: true },
   printed: { step: 1, decimals: 2, free: true },
 };
 
@@ -105,18 +108,18 @@ function ifComputed(name) {
   }
 }
 
-/** The signal with this name: one of those above, a pin's, an inertial sensor's, a printed one, or an expression's. @param {string} name @returns {Signal | null} */
+/** The signal with this name: one of those above, a pin's, a sensor's, a printed one, or an expression's. @param {string} name @returns {Signal | null} */
 export function signal(name) {
   if (name.startsWith(MARK)) return ifComputed(name);
-  const known = met.get(name) ?? null;
-  const [, pin = null, port = null, printed = null, felt = null, turn = null, way = null, sonar = null] =
-    name.match(/^(?:pin_(\w+)|serial(\d+):(.+)|(\w+)_m_s2|(\w+_yaw)_deg_s|(true_range|pinged)_(\w+)_cm)$/) ?? [];
-  if (sonar !== null && known === null) return ranged(name, sonar.replaceAll('_', ' '), way === 'pinged');
-  const inertial = felt ?? turn;
-  const label = pin ? named(pin) : inertial?.replaceAll('_', ' ') ?? printed;
-  if (known || label === null) return known;
-  const about = pin ? t('level of the pin {}', named(pin)) : inertial ? t('by the inertial sensor: {}', label) : `${portName(Number(port))}: ${label}`;
-  const unit = pin ? 'level' : felt ? 'm/s²' : turn ? '°/s' : 'printed';
+  const known = met.get(name);
+  if (known) return known;
+  const [, pin = null, port = null, printed = null, way = null, sonar = null] = name.match(/^(?:pin_(\w+)|serial(\d+):(.+)|(true_range|pinged)_(\w+)_cm)$/) ?? [];
+  if (sonar !== null) return ranged(name, sonar.replaceAll('_', ' '), way === 'pinged');
+  const sensor = sensed(name);
+  const [label, about, unit] = pin !== null ? [named(pin), t('level of the pin {}', named(pin)), /** @type {Unit} */ ('level')]
+    : sensor !== null ? [sensor[0], t(sensor[1], sensor[0]), sensor[2]]
+      : [printed, `${portName(Number(port))}: ${printed}`, /** @type {Unit} */ ('printed')];
+  if (label === null) return null;
   const colour = COLOURS[(met.size - SIGNALS.length - LOOPS.length) % COLOURS.length] ?? 'left';
   /** @type {Signal} */
   const made = { name, label, about, unit, colour, kind: 'measured' };

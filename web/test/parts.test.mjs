@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { bitsOf, contentsOf, spoken } from '../src/displays.js';
 import { shownOf } from '../src/light.js';
+import { sensed } from '../src/sensed.js';
 
 test('a light shows its share of the time, a buzzer its tone', () => {
   /** @param {Record<string, number>} values */
@@ -33,9 +34,16 @@ test('a sensor of distance and a compass show what they measure, and a dash wher
   const tof = { name: 'tof', kind: 'vl53l0x', percent: 0, address: 0x29 };
   /** @type {import('../src/types.js').Part} */
   const compass = { name: 'north', kind: 'hmc5883l', percent: 0, address: 0x1e };
-  assert.deepEqual(shownOf(tof, () => 41.26), ['41.3 cm', 0]);
+  assert.deepEqual(shownOf(tof, (signal) => (signal === 'tof_range_cm' ? 41.26 : null)), ['41.3 cm', 0]);
   assert.deepEqual(shownOf(tof, () => Infinity), ['– cm', 0]);
   assert.deepEqual(shownOf(compass, (signal) => (signal === 'north_azimuth_deg' ? 271.4 : null)), ['271°', 0]);
+});
+
+test('what the sensors of a robot file give can be plotted, by their names there', () => {
+  const signals = ['line_far_left', 'obstacle_back_cm', 'maxsonar_front_cm', 'tof_range_cm', 'light_left_lux', 'north_azimuth_deg', 'imu_yaw_deg_s', 'horn_hz'];
+  assert.deepEqual(signals.map((name) => sensed(name)?.[0]), ['far left', 'back', 'front', 'tof', 'left', 'north', 'imu yaw', 'horn']);
+  assert.deepEqual(signals.map((name) => sensed(name)?.[2]), ['level', 'cm', 'cm', 'cm', 'lx', '°', '°/s', 'Hz']);
+  assert.equal(sensed('rang_front_cm'), null);
 });
 
 test('what displays show is told by name, with dots and with letters of the program', () => {

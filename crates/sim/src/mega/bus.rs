@@ -134,7 +134,7 @@ impl Mega {
         }
     }
 
-    /// What its sensors measure, by name: `imu_forward_m_s2`, `compass_azimuth_rad`, `tof_m`.
+    /// What its sensors measure, by name: `imu_forward_m_s2`, `compass_azimuth_rad`, `tof_range_m`.
     pub(super) fn read_bus(&mut self) -> Vec<(String, f64)> {
         let mut shown = Vec::new();
         for (device, imu) in self.bus.imus() {
@@ -146,7 +146,7 @@ impl Mega {
         shown.extend(azimuths.map(|(device, rad)| (format!("{}_azimuth_rad", device.name), rad)));
         let rangers = self.bus.rangers();
         shown.extend(
-            rangers.map(|(device, ranger)| (format!("{}_m", device.name), ranger.shown_m())),
+            rangers.map(|(device, ranger)| (format!("{}_range_m", device.name), ranger.shown_m())),
         );
         shown
     }
