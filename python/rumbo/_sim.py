@@ -458,7 +458,7 @@ class Sim:
         return Pin(self._batch._batch, name)
 
     def press(self, part: str, value: float | str | None = None, *, for_s: float | None = None) -> None:
-        """Presses a button of the robot's file for a time, 0.2 s, or puts a switch or a potentiometer to a value, 0 to 1.
+        """Presses a button of the robot's file for 0.2 s, or puts a switch or a potentiometer to a value, 0 to 1.
 
         A key of a remote control is pressed by its name, ``press("remote", "ok")``; it repeats while it is held,
         ``for_s=2``, or if it is pressed again within 0.2 s.
