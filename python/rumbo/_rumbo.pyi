@@ -27,6 +27,7 @@ __all__ = [
     "is_high",
     "load",
     "names",
+    "other_ranges",
     "parts",
     "pin",
     "plan",

@@ -196,6 +196,9 @@ def test_a_button_of_the_robot_s_file_is_pressed(image: pathlib.Path, tmp_path: 
     sim.step(0.1)
     [[at_s, width_us]] = sim.pin("start").pulses()
     assert at_s == pytest.approx(0.5, abs=1e-4) and width_us == pytest.approx(200_000, abs=100)
+    sim.press("start", for_s=0.5)
+    sim.step(0.1)
+    assert sim.pin("start").pulses()[-1, 1] == pytest.approx(500_000, abs=100)
 
 
 def test_a_key_of_a_remote_control_sends_its_code(image: pathlib.Path) -> None:
@@ -209,6 +212,11 @@ def test_a_key_of_a_remote_control_sends_its_code(image: pathlib.Path) -> None:
     leader_us, *bits_us = sim.pin("remote").pulses()[-33:, 1]
     assert leader_us == pytest.approx(4_500, abs=2)
     assert sum((width_us > 1_000) << bit for bit, width_us in enumerate(bits_us)) == 0xE31CFF00
+    before = len(sim.pin("remote").pulses())
+    sim.press("remote", "ok", for_s=1)
+    repeats_us = [width_us for _, width_us in sim.pin("remote").pulses()[before:] if 2_000 < width_us < 2_500]
+    # Every 108 ms.
+    assert len(repeats_us) in (8, 9)
     for key in ["walk", None]:
         with pytest.raises(ValueError, match="none of its keys: 1, 2, 3"):
             sim.press("remote", key)
