@@ -60,7 +60,10 @@ fn two_sensors_of_distance_that_xshut_tells_apart_measure_the_walls_before_them(
     let export = rumbo(&bench, &["export", "out/floor-1.mcap", "--format", "csv"]);
     assert!(export.status.success(), "{}", stderr(&export));
     let csv = std::fs::read_to_string(bench.join("floor-1.instruments.csv")).unwrap();
-    assert!(csv.lines().next().unwrap().contains("ahead_range_m"), "{csv}");
+    assert!(
+        csv.lines().next().unwrap().contains("ahead_range_m"),
+        "{csv}"
+    );
     // Both at once answer as one, and a run says so.
     let sketch = sketch.replace("pinMode(2, OUTPUT); pinMode(3, OUTPUT);", "");
     std::fs::write(
