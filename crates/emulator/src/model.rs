@@ -8,7 +8,7 @@ mod atmega2560;
 mod atmega328p;
 mod fuses;
 pub(crate) mod map;
-pub mod pin;
+pub(crate) mod pin;
 pub(crate) mod timer;
 pub(crate) mod usart;
 

@@ -24,6 +24,7 @@ pub mod obstacle;
 pub mod remote;
 mod sim;
 pub mod sonar_fault;
+mod source;
 mod tape;
 pub mod trace;
 pub mod wire_fault;

@@ -14,6 +14,7 @@
 //!
 //! Not identified from recordings; colours do not count.
 
+use crate::source;
 use rumbo_plant::cone;
 use rumbo_plant::contact::Pose;
 use rumbo_plant::noise::Noise;
@@ -40,8 +41,6 @@ const HYSTERESIS: f64 = 0.05;
 const DECK_M: f64 = 0.05;
 /// Nearer to a lamp it is no point \[m\].
 const NEAREST_M: f64 = 0.02;
-/// Noise source of the resistances, of the bag and then of each sensor.
-const SOURCE: u32 = 860;
 
 /// A lamp, a point that shines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,7 +137,8 @@ impl LightSensor {
     ) -> Lit {
         let [least, most] = RATED_OHM;
         let drawn = || {
-            let [bag, own] = [SOURCE, SOURCE + 1 + number as u32].map(|own| noise.uniform(own, 0));
+            let [bag, own] =
+                [0, 1 + number as u32].map(|own| noise.uniform(source::RESISTANCES + own, 0));
             (least + (most - least) * bag) * (1.0 + ALIKE * (2.0 * own - 1.0))
         };
         let rated_ohm = self.rated_ohm.unwrap_or_else(drawn);

@@ -1,10 +1,9 @@
 //! Sonars that fail in the middle of a run: what the board receives from then on.
 
+use crate::source;
 use rumbo_control::{Echo, SonarId};
 use rumbo_plant::noise::Noise;
 
-/// First noise source of the spikes; each sonar takes two. The plant's own sources are below.
-const SPIKES: u32 = 900;
 /// The report's recorded absurdities end here: 21.96 m [us].
 const LONGEST_SPIKE_US: f64 = 128_000.0;
 /// Longest spike that looks like a distance within reach: 2.5 m [us].
@@ -83,7 +82,7 @@ impl SonarFaults {
             Some(SonarFault::Stuck) => kept,
             Some(SonarFault::Clear) => Echo::Clear,
             Some(SonarFault::Spiking(share)) => {
-                let source = SPIKES + 2 * sonar as u32;
+                let source = source::SPIKES + 2 * sonar as u32;
                 if noise.chance(source, self.answers, share) {
                     spike(noise.uniform(source + 1, self.answers))
                 } else {
@@ -105,7 +104,7 @@ impl SonarFaults {
             },
             SonarFault::Clear => Some(HELD_US),
             SonarFault::Spiking(share) => {
-                let source = SPIKES + 2 * sonar as u32;
+                let source = source::SPIKES + 2 * sonar as u32;
                 noise
                     .chance(source, self.answers, share)
                     .then(|| spike_us(noise.uniform(source + 1, self.answers)).into())

@@ -1,13 +1,12 @@
 //! Wires between sensors and board that fail in the middle of a run: cut, shorted, loose, or picking up noise.
 
+use crate::source;
 use rumbo_control::SonarId;
 use rumbo_plant::drivetrain::Side;
 use rumbo_plant::encoder::Channel;
 use rumbo_plant::noise::Noise;
 use rumbo_plant::plant::Event;
 
-/// First noise source; each wire takes two.
-const SOURCE: u32 = 920;
 /// Length of a pulse of noise [us].
 const PULSE_US: u64 = 20;
 
@@ -70,7 +69,7 @@ impl Wire {
 
     fn source(self) -> u32 {
         let index = Wire::ALL.iter().position(|(_, wire)| *wire == self);
-        SOURCE + 2 * index.unwrap_or(0) as u32
+        source::WIRES + 2 * index.unwrap_or(0) as u32
     }
 }
 

@@ -5,7 +5,7 @@ use super::new_asked::{
     ASKED, Asked, BATTERY_RATIO, LINE_PITCH, LINK_BAUD, SERVO_AHEAD, TOP_SPEED, USUAL_RATIO,
 };
 use super::new_robot::NewRobot;
-use super::new_sensors::{line_pitch_m, places};
+use super::new_sensors::{are_photoresistors, line_pitch_m, places};
 use super::new_speed::top_speed_m_s;
 use super::obstacle::REACH_M;
 use rumbo_sim::drivers::Direction;
@@ -52,9 +52,11 @@ impl NewRobot {
             "line_dark_v" => return USUAL_V[1].to_string(),
             LINE_PITCH => return line_pitch_m(&self.pins).to_string(),
             "sharp_model" => "gp2y0a21",
-            "light_bright" => "high",
+            // Photoresistors; a module is low where it is bright.
+            "light_bright" if are_photoresistors(&self.pins) => "high",
+            "light_bright" => "low",
             "light_resistor_kohm" => return RESISTOR_KOHM.to_string(),
-            "light_rated_kohm" => "10 to 20",
+            "light_rated_kohm" => "15",
             "light_switch_lux" => return SWITCH_LUX.to_string(),
             "obstacle_seen" => "low",
             "obstacle_reach_m" => return REACH_M.to_string(),

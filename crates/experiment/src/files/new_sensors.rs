@@ -15,6 +15,8 @@ pub const NAMED: [(&str, &str); 5] = [
     (LIGHT, "light"),
     (MAXSONAR, "maxsonar"),
 ];
+/// Says that light sensors are modules with a comparator.
+const LIGHT_SWITCH: &str = "light_switch_lux";
 /// The pin of all MaxSonars' RX.
 const MAXSONAR_RX: &str = "maxsonar_rx";
 /// Words for what is behind the wheels.
@@ -132,7 +134,6 @@ pub(super) fn rows(wiring: &str, pins: &Pins, places: &Places) -> String {
     let said_of_all = |key: &str| pins.iter().any(|(signal, _)| signal == key);
     let rc = said_of_all("line_rc");
     // What else one says of itself, and which keys that are said of all it has.
-    let is_analogue = |pin: &str| pin.parse::<u8>().is_err();
     let line = |_: &str, pin: &str| match is_analogue(pin) && !rc {
         true => (ANALOGUE, &[][..]),
         false => ("", &["light_v", "dark_v"][..]),
@@ -141,7 +142,7 @@ pub(super) fn rows(wiring: &str, pins: &Pins, places: &Places) -> String {
         true => (ANALOGUE, &["seen", "reach_m"][..]),
         false => ("", &["model"][..]),
     };
-    let modules = said_of_all("light_switch_lux");
+    let modules = said_of_all(LIGHT_SWITCH);
     let light = |_: &str, pin: &str| match is_analogue(pin) && !modules {
         true => (ANALOGUE, &[][..]),
         false => ("", &["resistor_kohm"][..]),
@@ -176,7 +177,20 @@ pub(super) fn places(pins: &Pins, places: &Places) -> Vec<(String, [f64; 3])> {
 
 /// How far line sensors are apart where nobody says it \[m\].
 pub(super) fn line_pitch_m(pins: &Pins) -> f64 {
-    (LINES.apart_m)(LINES.sensors(pins, &[]).len())
+    let sensors = LINES.sensors(pins, &[]).into_iter();
+    let ahead = sensors.filter(|sensor| !is_behind(sensor.signal));
+    (LINES.apart_m)(ahead.count())
+}
+
+/// Whether there are photoresistors among the light sensors: on an analogue input, unless all are said to be modules.
+pub(super) fn are_photoresistors(pins: &Pins) -> bool {
+    let are_modules = pins.iter().any(|(signal, _)| signal == LIGHT_SWITCH);
+    let sensors = LIGHTS.sensors(pins, &[]);
+    !are_modules && sensors.iter().any(|sensor| is_analogue(sensor.pin))
+}
+
+fn is_analogue(pin: &str) -> bool {
+    pin.parse::<u8>().is_err()
 }
 
 /// A sensor in a row.

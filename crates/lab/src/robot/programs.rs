@@ -23,9 +23,10 @@ const FUNCTIONS: usize = 30;
 
 /// The robot that a page has wired, among the robots.
 const WIRED: &str = "wired";
-/// The scenario in which it starts, and the world of a robot that looks at lines.
+/// The scenario in which it starts, and the worlds of robots that look at lines and at lamps.
 const FREE: &str = "free";
 const LINES: &str = "line_loop";
+const LAMPS: &str = "lamps";
 
 /// What the text of a robot's file says.
 fn file_of(text: &str) -> Result<RobotFile, TargetError> {
@@ -187,16 +188,16 @@ impl SimulatedRobot {
         self.overrides.robot = Some(WIRED.into());
         self.overrides.wiring = None;
         let before = self.choice();
-        let looks_down = file_of(text).is_ok_and(|robot| {
-            robot
-                .wirings
-                .values()
-                .any(|wiring| !wiring.line_sensors.is_empty())
+        let robot = file_of(text).ok();
+        let wiring = robot.iter().find_map(|robot| robot.wirings.values().next());
+        let its_world = wiring.and_then(|wiring| {
+            let lines = (!wiring.line_sensors.is_empty()).then_some(LINES);
+            lines.or_else(|| (!wiring.light_sensors.is_empty()).then_some(LAMPS))
         });
         let world = before.world.filter(|_| before.scenario == FREE);
         Choice {
             scenario: FREE.into(),
-            world: world.or_else(|| looks_down.then(|| LINES.into())),
+            world: world.or_else(|| its_world.map(str::to_owned)),
             rig: None,
             seed: before.seed,
         }

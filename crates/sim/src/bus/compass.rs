@@ -10,10 +10,10 @@
 //!
 //! Iron of the robot that turns with it adds what the robot file says; currents of its motors add nothing.
 
+use crate::source;
 use rumbo_plant::noise::Noise;
 
-/// First noise source; each sensor takes [`SOURCES`].
-const SOURCE: u32 = 860;
+/// Noise sources of a sensor.
 const SOURCES: u32 = 3;
 /// The steps of the noise that draw offset and scale; measurements have their time.
 const OFFSET: u64 = u64::MAX;
@@ -40,7 +40,7 @@ impl Compass {
     /// That of the sensor of this number.
     pub(super) fn new(number: u32, axes: [i8; 3], iron_ut: [f64; 2]) -> Self {
         Self {
-            source: SOURCE + SOURCES * (number % 12),
+            source: source::COMPASSES + SOURCES * number,
             axes,
             iron_ut,
             level_ut: None,

@@ -7,11 +7,11 @@
 //! registers, which only the MPU-6500's map tells (RM-MPU-6500A-00, 2.1), is added; those of the accelerometer have 4096 counts
 //! in a g, as InvenSense's Motion Driver has it, and hold no factory trim. FIFO and motion processor (DMP) are not modelled.
 
+use crate::source;
 use rumbo_plant::noise::Noise;
 use std::f64::consts::{PI, TAU};
 
-/// First noise source; each sensor takes [`SOURCES`].
-const SOURCE: u32 = 970;
+/// Noise sources of a sensor.
 const SOURCES: u32 = 7;
 /// The step of the noise that draws offsets and scales; measurements have their time.
 const OFFSET: u64 = u64::MAX;
@@ -125,7 +125,7 @@ impl Mpu6050 {
     pub(super) fn new(number: u32, axes: [i8; 3]) -> Self {
         Self {
             axes,
-            source: SOURCE + SOURCES * number,
+            source: source::INERTIAL + SOURCES * number,
             registers: after_reset(),
             pointer: 0,
             begins: false,

@@ -15,11 +15,11 @@
 pub(crate) mod sight;
 mod timing;
 
+use crate::source;
 use rumbo_plant::noise::Noise;
 use sight::Sight;
 
-/// First noise source; each sensor takes [`SOURCES`].
-const SOURCE: u32 = 940;
+/// Noise sources of a sensor.
 const SOURCES: u32 = 2;
 /// The step of the noise that draws the scale; measurements have their time.
 const SCALE: u64 = u64::MAX;
@@ -151,7 +151,7 @@ impl Vl53l0x {
     /// The sensor of this number, as after power-on.
     pub(super) fn new(number: u32) -> Self {
         Self {
-            source: SOURCE + SOURCES * (number % 15),
+            source: source::DISTANCE + SOURCES * number,
             registers: after_reset(),
             page: 0,
             pointer: 0,

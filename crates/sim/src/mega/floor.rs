@@ -3,13 +3,11 @@
 use super::firmware::Firmware;
 use super::{CYCLES_PER_US, Mega};
 use crate::floor::{self, DarkLine, FloorReading, NOISE_V};
+use crate::source;
 use rumbo_emulator::devices::Input;
 use rumbo_emulator::devices::ports::{Drive, Pin};
 use rumbo_plant::contact::Pose;
 use rumbo_plant::noise::Noise;
-
-/// First noise source; each sensor takes one.
-const SOURCE: u32 = 960;
 
 /// A sensor's pin that a program charges.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +54,7 @@ impl Mega {
             let (before, level_before) = self.floor[index];
             let darkness = floor::darkness(lines, sensor.place(pose));
             if let FloorReading::Volts(usual_v) = sensor.reading {
-                let error_v = NOISE_V * noise.normal(SOURCE + index as u32, now_us);
+                let error_v = NOISE_V * noise.normal(source::FLOOR + index as u32, now_us);
                 let channel = sensor.pin.saturating_sub(firmware.board().first_analogue);
                 let volts = sensor.volts(usual_v, darkness) + error_v;
                 self.chip.input(cycle, Input::Volts { channel, volts });

@@ -3,12 +3,10 @@
 use super::Mega;
 use crate::floor::NOISE_V;
 use crate::light::{Light, LightReading};
+use crate::source;
 use rumbo_plant::contact::Pose;
 use rumbo_plant::noise::Noise;
 use rumbo_plant::world::World;
-
-/// First noise source; each sensor takes one.
-const SOURCE: u32 = 880;
 
 impl Mega {
     /// The robot stands there now: its sensors see the light.
@@ -27,7 +25,9 @@ impl Mega {
             let lux = sensor.lux(light, world, pose, now_us);
             let lit = sensor.respond(lux, now_us, (index, noise), before);
             let error_v = match sensor.reading {
-                LightReading::Volts(_) => NOISE_V * noise.normal(SOURCE + index as u32, now_us),
+                LightReading::Volts(_) => {
+                    NOISE_V * noise.normal(source::LIGHT + index as u32, now_us)
+                }
                 LightReading::Level(_) => 0.0,
             };
             if error_v != 0.0 || before.is_none_or(|before| before.volts != lit.volts) {
